@@ -1,0 +1,49 @@
+// Physical quantities as users write them: "0.1 MPa", "30 mm", "12 Pa s", "9.81 m/s^2".
+//
+// Lacuna computes in SI; units exist only at the YAML door, and this is the door.
+#ifndef LACUNA_CORE_QUANTITY_H_
+#define LACUNA_CORE_QUANTITY_H_
+
+#include <string>
+#include <string_view>
+
+namespace lacuna {
+
+// Exponents of metre, kilogram, second, kelvin and radian, with a name for error messages.
+struct Dimension {
+  int metre = 0, kilogram = 0, second = 0, kelvin = 0, radian = 0;
+  const char* name = "a plain number";  // "a density"
+  const char* example = "0.5";          // "1070 kg/m^3"
+  const char* unit = "";                // SI unit for output: "kg/m^3"
+
+  bool SameAs(const Dimension& other) const {
+    return metre == other.metre && kilogram == other.kilogram && second == other.second &&
+           kelvin == other.kelvin && radian == other.radian;
+  }
+};
+
+inline constexpr Dimension kDimensionless{};
+inline constexpr Dimension kLength{1, 0, 0, 0, 0, "a length", "30 mm", "m"};
+inline constexpr Dimension kArea{2, 0, 0, 0, 0, "an area", "4 mm^2", "m^2"};
+inline constexpr Dimension kVolume{3, 0, 0, 0, 0, "a volume", "8 mm^3", "m^3"};
+inline constexpr Dimension kTime{0, 0, 1, 0, 0, "a time", "10 ms", "s"};
+inline constexpr Dimension kRate{0, 0, -1, 0, 0, "a rate", "30 Hz", "1/s"};
+inline constexpr Dimension kVelocity{1, 0, -1, 0, 0, "a velocity", "0.2 m/s", "m/s"};
+inline constexpr Dimension kAcceleration{1, 0, -2, 0, 0, "an acceleration", "9.81 m/s^2", "m/s^2"};
+inline constexpr Dimension kMass{0, 1, 0, 0, 0, "a mass", "52 g", "kg"};
+inline constexpr Dimension kDensity{-3, 1, 0, 0, 0, "a density", "1070 kg/m^3", "kg/m^3"};
+inline constexpr Dimension kForce{1, 1, -2, 0, 0, "a force", "0.5 N", "N"};
+inline constexpr Dimension kPressure{-1, 1, -2, 0, 0, "a pressure", "0.1 MPa", "Pa"};
+inline constexpr Dimension kViscosity{-1, 1, -1, 0, 0, "a viscosity", "12 Pa s", "Pa s"};
+inline constexpr Dimension kStiffness{0, 1, -2, 0, 0, "a stiffness", "200 N/m", "N/m"};
+inline constexpr Dimension kTemperature{0, 0, 0, 1, 0, "a temperature", "20 K", "K"};
+inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
+
+// The SI value of `text`. A plain number is accepted only for a dimensionless quantity; a quantity
+// with a unit of another dimension, an unknown unit or trailing text throws std::invalid_argument
+// with what was expected. Products by space, '*' or '·', quotients by '/', powers by '^'.
+double ParseQuantity(std::string_view text, const Dimension& expected);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_CORE_QUANTITY_H_

@@ -1,0 +1,38 @@
+// A body at rest, discretised: nodes, elements, quadrature, mass, boundary. Knows no physics.
+#ifndef LACUNA_FEM_BODY_H_
+#define LACUNA_FEM_BODY_H_
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "fem/block_matrix.h"
+#include "geometry/tet_mesh.h"
+
+namespace lacuna {
+
+struct Body {
+  TetMesh mesh;              // rest shape, m
+  BoundarySurface boundary;
+  double density = 0;        // kg/m³
+
+  // Quadrature: 1 point per linear tet, 4 per quadratic tet (exact to degree 2). Point p of element
+  // e is q = e·points_per_element + p.
+  int points_per_element = 0;
+  Eigen::VectorXd weight;          // points: volume that each stands for, m³
+  Eigen::MatrixXd shape_gradient;  // (nodes per element) × (3·points): ∂N/∂X, 1/m; columns 3q…3q+2
+
+  Eigen::VectorXd node_mass;  // lumped (HRZ for quadratic), kg; sums to density·volume
+
+  std::shared_ptr<const BlockPattern> pattern;
+
+  int NodeCount() const { return static_cast<int>(mesh.NodeCount()); }
+  int ElementCount() const { return static_cast<int>(mesh.TetCount()); }
+  int PointCount() const { return ElementCount() * points_per_element; }
+};
+
+// Throws InputError when an element has no positive volume.
+Body MakeBody(const TetMesh& mesh, double density);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_BODY_H_

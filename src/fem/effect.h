@@ -1,0 +1,62 @@
+// A physical effect: a law that puts forces on a body. Everything the model can do, and everything
+// it may lack, is one of these; the time integrator, the fit and the diagnosis see nothing else.
+//
+// A new effect is one file in src/effects, one line in the catalogue, one test, one YAML entry.
+#ifndef LACUNA_FEM_EFFECT_H_
+#define LACUNA_FEM_EFFECT_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "fem/block_matrix.h"
+#include "fem/body.h"
+#include "record/effect_card.h"
+
+namespace lacuna {
+
+// What an effect may look at. Vectors have length 3·nodes, node-major, SI.
+struct Kinematics {
+  const Body& body;
+  const Eigen::VectorXd& position;  // m
+  const Eigen::VectorXd& velocity;  // m/s
+  double time = 0;                  // s
+  double time_step = 0;             // s; 0: statics
+  // Internal variables of this effect at the start of the step (StateSize() long), e.g. viscous
+  // strains; empty for an effect without memory.
+  const Eigen::VectorXd& state;
+};
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  virtual const EffectCard& Card() const = 0;
+
+  // Values in the order of the card's parameters, SI.
+  virtual Eigen::VectorXd Parameters() const = 0;
+  virtual void SetParameters(const Eigen::VectorXd& values) = 0;
+
+  // Adds the effect's nodal forces, N.
+  virtual void AddForce(const Kinematics& at, Eigen::VectorXd* force) const = 0;
+
+  // Adds position_weight · ∂f/∂x + velocity_weight · ∂f/∂v, N/m and N s/m. For an effect whose
+  // exact tangent is indefinite, `convexify` asks for a symmetric negative semi-definite stand-in.
+  virtual void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
+                           bool convexify, BlockMatrix* tangent) const = 0;
+
+  // Adds ∂f/∂(parameter), N per unit of the parameter.
+  virtual void AddParameterDerivative(const Kinematics& at, int parameter,
+                                      Eigen::VectorXd* derivative) const = 0;
+
+  // Stored energy E with f = −∂E/∂x, J; nothing where the force has no potential.
+  virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
+
+  // Memory: its length for a body, its value at rest, and its value at the end of a step.
+  virtual Eigen::Index StateSize(const Body&) const { return 0; }
+  virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
+  virtual void AdvanceState(const Kinematics&, Eigen::VectorXd* /*state_at_end*/) const {}
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_EFFECT_H_

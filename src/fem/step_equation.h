@@ -1,0 +1,69 @@
+// The equation of motion of one time step, as a function of the unknown positions alone.
+//
+// Every implicit integrator that Lacuna uses writes velocity and acceleration at the end of the
+// step as v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states:
+//   implicit Euler   γ = 1/h        x̃ = xₙ                     ṽ = vₙ
+//   BDF2             γ = 3/(2h)     x̃ = (4 xₙ − xₙ₋₁)/3        ṽ = (4 vₙ − vₙ₋₁)/3
+//   quasi-static     no inertia;    v = (x − xₙ)/h for rate-dependent effects, 0 without a step
+// so that a step is the root of
+//   r(x) = M a(x) − Σ f_effect(x, v(x), t)          and          ∂r/∂x = γ² M − Σ (∂f/∂x + γ ∂f/∂v).
+// r(x) is also the force that would have to act from outside for x to be the motion: what the
+// force fit estimates and what the diagnosis reads.
+#ifndef LACUNA_FEM_STEP_EQUATION_H_
+#define LACUNA_FEM_STEP_EQUATION_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/model.h"
+
+namespace lacuna {
+
+enum class TimeScheme { kQuasiStatic, kImplicitEuler, kBdf2 };
+
+// The motion up to now. `previous_*` is one step earlier, of the same length; empty before the
+// second step (BDF2 then starts with one implicit Euler step).
+struct MotionHistory {
+  double time = 0;                          // s
+  Eigen::VectorXd position, velocity;       // 3n
+  Eigen::VectorXd previous_position, previous_velocity;
+  std::vector<Eigen::VectorXd> effect_state;  // one per effect of the model
+};
+MotionHistory RestHistory(const Model& model);
+
+class StepEquation {
+ public:
+  // `time_step` > 0, or 0 for statics. The model and the history must outlive the equation.
+  StepEquation(const Model& model, const MotionHistory& history, TimeScheme scheme,
+               double time_step);
+
+  Eigen::VectorXd Velocity(const Eigen::VectorXd& position) const;
+  // r(x), N, at all nodes (at gripped nodes: the reaction of the grip with a minus sign removed,
+  // i.e. the force the grip exerts).
+  void Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual) const;
+  // ∂r/∂x, N/m, at all nodes.
+  void Tangent(const Eigen::VectorXd& position, bool convexify, BlockMatrix* tangent) const;
+  // ∂r/∂(parameter k of effect j), N per unit.
+  void ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
+                           Eigen::VectorXd* derivative) const;
+  // Inertial plus stored energy whose gradient r is, where all effects have one; used by the line
+  // search. NaN otherwise.
+  double Potential(const Eigen::VectorXd& position) const;
+  // The history after the step ended at `position`.
+  MotionHistory Advance(const Eigen::VectorXd& position) const;
+
+  double end_time() const { return end_time_; }
+
+ private:
+  const Model& model_;
+  const MotionHistory& history_;
+  double rate_ = 0;           // γ
+  bool inertia_ = true;
+  double time_step_ = 0;
+  double end_time_ = 0;
+  Eigen::VectorXd position_history_, velocity_history_;  // x̃, ṽ
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_STEP_EQUATION_H_
