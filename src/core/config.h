@@ -11,12 +11,11 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <nlohmann/json_fwd.hpp>
 
 #include "core/error.h"
 #include "core/quantity.h"
@@ -53,7 +52,7 @@ class Config {
   std::string Text(const std::string& key) const;
   std::string Text(const std::string& key, const std::string& default_value) const;
   std::vector<std::string> Texts(const std::string& key) const;  // a text or a list; absent: empty
-  std::vector<int> Integers(const std::string& key, int min) const;             // absent: empty
+  std::vector<int> Integers(const std::string& key, int min) const;  // absent: empty
   // Three quantities: [0, 0, -9.81 m/s^2]; a bare 0 needs no unit.
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension) const;
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension,
@@ -77,9 +76,9 @@ class Config {
   }
 
   bool Has(const std::string& key) const;
-  Config Child(const std::string& key) const;                 // required mapping
+  Config Child(const std::string& key) const;  // required mapping
   std::optional<Config> OptionalChild(const std::string& key) const;
-  std::vector<Config> Items(const std::string& key) const;    // a list of mappings; absent: empty
+  std::vector<Config> Items(const std::string& key) const;  // a list of mappings; absent: empty
 
   // Refuses every key, here and below, that no read has asked for. Call when all has been read.
   void RefuseUnknownKeys() const;

@@ -1,0 +1,133 @@
+#include "core/config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace lacuna {
+namespace {
+
+constexpr char kBeam[] = R"(schema_version: 1
+material:
+  law: neo_hookean
+  young_modulus: 0.1 MPa
+  poisson_ratio: 0.3
+gravity: [0, 0, -9.81 m/s^2]
+effects:
+  - type: viscous_damping
+    eta: 12 Pa s
+)";
+
+void ExpectInputError(const std::function<void()>& read, const std::string& whole_message) {
+  try {
+    read();
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_EQ(std::string(problem.what()), whole_message);
+  }
+}
+
+TEST(Config, ReadsValuesInSi) {
+  const Config beam = Config::Parse(kBeam, "beam.yaml");
+  EXPECT_EQ(beam.Integer("schema_version", 1, 1), 1);
+  const Config material = beam.Child("material");
+  EXPECT_EQ(material.Choice<int>("law", {{"corotational", 1}, {"neo_hookean", 2}}), 2);
+  EXPECT_DOUBLE_EQ(material.Quantity("young_modulus", kPressure, kPositive), 1e5);
+  EXPECT_DOUBLE_EQ(material.Number("poisson_ratio", {-1, 0.5, true, true}), 0.3);
+  EXPECT_DOUBLE_EQ(beam.Vector("gravity", kAcceleration)[2], -9.81);
+  const auto effects = beam.Items("effects");
+  ASSERT_EQ(effects.size(), 1u);
+  EXPECT_EQ(effects[0].Text("type"), "viscous_damping");
+  EXPECT_DOUBLE_EQ(effects[0].Quantity("eta", kViscosity, kNotNegative), 12);
+  EXPECT_NO_THROW(beam.RefuseUnknownKeys());
+}
+
+TEST(Config, NamesFileLineColumnAndField) {
+  const Config beam = Config::Parse("effects:\n  - type: viscous_damping\n    eta: 12 Pas\n",
+                                    "experiments/bend.yaml");
+  const Config effect = beam.Items("effects")[0];
+  ExpectInputError([&] { effect.Quantity("eta", kViscosity, kNotNegative); },
+                   "experiments/bend.yaml:3:10: effects[0].eta: got \"12 Pas\" (unknown unit "
+                   "\"Pas\"); expected a viscosity, e.g. \"12 Pa s\"");
+  ExpectInputError([&] { effect.Number("exponent", kAnyValue); },
+                   "experiments/bend.yaml:2:5: effects[0].exponent: is missing; expected a plain "
+                   "number, e.g. \"0.5\"");
+}
+
+TEST(Config, RefusesValuesOutOfBounds) {
+  const Config config = Config::Parse("poisson_ratio: 0.7\nscale: -1\n", "a.yaml");
+  ExpectInputError(
+      [&] {
+        config.Number("poisson_ratio", {-1, 0.5, true, true});
+      },
+      "a.yaml:1:16: poisson_ratio: got \"0.7\"; expected a plain number in (-1, 0.5)");
+  ExpectInputError([&] { config.Number("scale", kPositive); },
+                   "a.yaml:2:8: scale: got \"-1\"; expected a plain number > 0");
+}
+
+TEST(Config, RefusesUnknownKeysWithTheNearestKnownOne) {
+  const Config beam = Config::Parse("material:\n  young_modulos: 1 MPa\n", "a.yaml");
+  const Config material = beam.Child("material");
+  material.Quantity("young_modulus", kPressure, kPositive, 1e5);
+  material.Text("law", "corotational");
+  ExpectInputError([&] { beam.RefuseUnknownKeys(); },
+                   "a.yaml:2:3: material.young_modulos: unknown key; did you mean "
+                   "\"young_modulus\"?");
+}
+
+TEST(Config, RefusesAKeyGivenTwice) {
+  ExpectInputError([] { Config::Parse("a: 1\nb:\n  c: 1\n  c: 2\n", "a.yaml"); },
+                   "a.yaml:4:3: c: is given twice");
+}
+
+TEST(Config, RefusesWhatIsNotYamlOrNotAMapping) {
+  EXPECT_THROW(Config::Parse("a: [1, 2\n", "a.yaml"), InputError);
+  EXPECT_THROW(Config::Parse("- 1\n", "a.yaml"), InputError);
+  EXPECT_THROW(Config::Parse("", "a.yaml"), InputError);
+  EXPECT_THROW(Config::Load("no/such/file.yaml"), InputError);
+}
+
+TEST(Config, SuggestsTheNearestChoice) {
+  const Config config = Config::Parse("law: neohookean\n", "a.yaml");
+  const auto read = [&] { config.Choice<int>("law", {{"corotational", 1}, {"neo_hookean", 2}}); };
+  ExpectInputError(read,
+                   "a.yaml:1:6: law: got \"neohookean\"; expected one of: corotational, "
+                   "neo_hookean; did you mean \"neo_hookean\"?");
+}
+
+TEST(Config, TakesPathsRelativeToTheFileAndExpandsTheEnvironment) {
+  ASSERT_EQ(setenv("LACUNA_CONFIG_TEST", "data", 1), 0);
+  const Config config = Config::Parse(
+      "a: ../scan\nb: ${LACUNA_CONFIG_TEST}/x\nc: ${LACUNA_NOT_SET:-other}/y\nd: ${LACUNA_NOT_SET}",
+      "study/a.yaml");
+  EXPECT_EQ(config.Path("a"), "scan");
+  EXPECT_EQ(config.Path("b"), "study/data/x");
+  EXPECT_EQ(config.Path("c"), "study/other/y");
+  EXPECT_THROW(config.Path("d"), InputError);
+}
+
+TEST(Config, ResolvesToSiWithDefaults) {
+  const Config beam = Config::Parse("material: {young_modulus: 0.1 MPa}\n", "a.yaml");
+  beam.Child("material").Quantity("young_modulus", kPressure, kPositive);
+  beam.Child("material").Number("poisson_ratio", kAnyValue, 0.3);
+  beam.Items("effects");
+  EXPECT_EQ(beam.Resolved(),
+            nlohmann::json::parse(
+                R"({"material": {"young_modulus": 1e5, "poisson_ratio": 0.3}, "effects": []})"));
+}
+
+TEST(Config, TellsAWrongKindOfEntry) {
+  const Config config = Config::Parse("a: {b: 1}\nv: [1 m, 2 m]\nn: 1.5\nf: maybe\n", "a.yaml");
+  EXPECT_THROW(config.Text("a"), InputError);
+  EXPECT_THROW(config.Items("a"), InputError);
+  EXPECT_THROW(config.Vector("v", kLength), InputError);
+  EXPECT_THROW(config.Integer("n", 0, 9), InputError);
+  EXPECT_THROW(config.Flag("f", true), InputError);
+  EXPECT_THROW(config.Child("n"), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna

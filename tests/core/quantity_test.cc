@@ -1,0 +1,55 @@
+#include "core/quantity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <stdexcept>
+
+namespace lacuna {
+namespace {
+
+TEST(Quantity, ReadsUnitsIntoSi) {
+  EXPECT_DOUBLE_EQ(ParseQuantity("0.1 MPa", kPressure), 1e5);
+  EXPECT_DOUBLE_EQ(ParseQuantity("30 mm", kLength), 0.03);
+  EXPECT_DOUBLE_EQ(ParseQuantity("30mm", kLength), 0.03);
+  EXPECT_DOUBLE_EQ(ParseQuantity("12 Pa s", kViscosity), 12);
+  EXPECT_DOUBLE_EQ(ParseQuantity("12 Pa*s", kViscosity), 12);
+  EXPECT_DOUBLE_EQ(ParseQuantity("12 N s/m^2", kViscosity), 12);
+  EXPECT_DOUBLE_EQ(ParseQuantity("1.07 g/cm^3", kDensity), 1070);
+  EXPECT_DOUBLE_EQ(ParseQuantity("1.07 g/cm³", kDensity), 1070);
+  EXPECT_DOUBLE_EQ(ParseQuantity("1070 kg m^-3", kDensity), 1070);
+  EXPECT_DOUBLE_EQ(ParseQuantity("-9.81 m/s2", kAcceleration), -9.81);
+  EXPECT_DOUBLE_EQ(ParseQuantity("180 deg", kAngle), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(ParseQuantity("2 min", kTime), 120);
+  EXPECT_DOUBLE_EQ(ParseQuantity("5 µm", kLength), 5e-6);
+  EXPECT_DOUBLE_EQ(ParseQuantity("1e-4", kDimensionless), 1e-4);
+  EXPECT_DOUBLE_EQ(ParseQuantity("25 %", kDimensionless), 0.25);
+}
+
+void ExpectRefused(const char* text, const Dimension& dimension, const char* part) {
+  try {
+    const double value = ParseQuantity(text, dimension);
+    ADD_FAILURE() << "\"" << text << "\" was read as " << value;
+  } catch (const std::invalid_argument& problem) {
+    EXPECT_THAT(problem.what(), testing::HasSubstr(part));
+  }
+}
+
+TEST(Quantity, RefusesWhatItCannotMeanAndSaysWhatWasExpected) {
+  ExpectRefused("12 Pas", kViscosity, "expected a viscosity, e.g. \"12 Pa s\"");
+  ExpectRefused("30", kLength, "a unit is missing");
+  ExpectRefused("30 kg", kLength, "measures something else");
+  ExpectRefused("30 mmm", kLength, "unknown unit \"mmm\"");
+  ExpectRefused("30 mm extra", kLength, "unknown unit \"extra\"");
+  ExpectRefused("m", kLength, "expected a length");
+  ExpectRefused("", kLength, "expected a length");
+  ExpectRefused("nan mm", kLength, "not a finite number");
+  ExpectRefused("1e999 mm", kLength, "expected a length");
+  ExpectRefused("3 m/", kVelocity, "must follow \"/\"");
+  ExpectRefused("3 m^x", kArea, "must follow \"^\"");
+  ExpectRefused("3 kmin", kTime, "unknown unit");  // a minute takes no prefix
+}
+
+}  // namespace
+}  // namespace lacuna
