@@ -1,0 +1,92 @@
+#include "core/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Unique among the threads of this process by the count, among processes by the id.
+fs::path TemporaryName(const fs::path& file) {
+  static std::atomic<unsigned> count{0};
+  return file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
+                               "." + std::to_string(count++) + ".tmp");
+}
+
+fs::path FolderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
+  std::error_code error;
+  if (fs::is_symlink(file_, error)) {
+    const fs::path target = fs::weakly_canonical(file_, error);
+    if (!error) file_ = target;
+  }
+  // Renaming onto a device or a pipe would replace it for everybody.
+  if (fs::exists(file_, error) && !fs::is_regular_file(file_, error)) {
+    throw InputError({file.string()}, "cannot be written: it is not an ordinary file");
+  }
+  temporary_ = TemporaryName(file_);
+  descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) Fail(errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  unlink(temporary_.c_str());
+}
+
+void AtomicFile::Write(std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = write(descriptor_, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) Fail(errno);
+    content.remove_prefix(static_cast<size_t>(written));
+  }
+}
+
+void AtomicFile::Commit() {
+  if (fsync(descriptor_) != 0) Fail(errno);
+  const int closed = close(descriptor_);
+  descriptor_ = -1;
+  if (closed != 0 || rename(temporary_.c_str(), file_.c_str()) != 0) {
+    const int error = errno;
+    unlink(temporary_.c_str());
+    Fail(error);
+  }
+  SyncFolder(FolderOf(file_));
+}
+
+void AtomicFile::Fail(int error) const {
+  throw InputError({file_.string()}, std::string("cannot be written: ") + std::strerror(error));
+}
+
+void WriteFileAtomically(const fs::path& file, std::string_view content) {
+  AtomicFile output(file);
+  output.Write(content);
+  output.Commit();
+}
+
+void SyncFolder(const fs::path& folder) {
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  // Some file systems refuse to sync a folder; the rename is atomic on them all the same.
+  fsync(descriptor);
+  close(descriptor);
+}
+
+}  // namespace lacuna

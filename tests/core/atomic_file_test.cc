@@ -1,0 +1,128 @@
+#include "core/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+std::string Content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class AtomicFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) / (std::string("lacuna_atomic_") + test->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  int FileCount() const {
+    return static_cast<int>(std::distance(fs::directory_iterator(folder_), {}));
+  }
+  fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, ReplacesTheWholeContentAndLeavesNothingElse) {
+  WriteFileAtomically(folder_ / "a", "the first, longer content");
+  WriteFileAtomically(folder_ / "a", "second");
+  EXPECT_EQ(Content(folder_ / "a"), "second");
+  EXPECT_EQ(FileCount(), 1);
+}
+
+TEST_F(AtomicFileTest, UncommittedContentIsDiscarded) {
+  WriteFileAtomically(folder_ / "a", "old");
+  {
+    AtomicFile file(folder_ / "a");
+    file.Write("new");
+    EXPECT_EQ(Content(folder_ / "a"), "old");
+  }
+  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(FileCount(), 1);
+}
+
+TEST_F(AtomicFileTest, ProcessKilledWhileWritingLeavesTheOldContent) {
+  WriteFileAtomically(folder_ / "a", "old");
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(folder_ / "a");
+    file.Write(std::string(1 << 20, 'x'));
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(Content(folder_ / "a"), "old");
+}
+
+TEST_F(AtomicFileTest, PiecesAreJoinedInOrder) {
+  AtomicFile file(folder_ / "a");
+  file.Write("one ");
+  file.Write("");
+  file.Write("two");
+  file.Commit();
+  EXPECT_EQ(Content(folder_ / "a"), "one two");
+}
+
+TEST_F(AtomicFileTest, LinkKeepsPointingToTheFileThatIsReplaced) {
+  WriteFileAtomically(folder_ / "target", "old");
+  fs::create_symlink("target", folder_ / "link");
+  WriteFileAtomically(folder_ / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(Content(folder_ / "target"), "new");
+}
+
+TEST_F(AtomicFileTest, UnwritablePlacesAreNamedWithTheirCause) {
+  WriteFileAtomically(folder_ / "file", "");
+  const auto expect = [](const fs::path& file, const std::string& cause) {
+    EXPECT_THAT(
+        [&] { WriteFileAtomically(file, "x"); },
+        ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(file.string()), HasSubstr(cause))));
+  };
+  expect(folder_ / "file" / "below_a_file", "Not a directory");
+  expect(folder_ / "absent" / "a", "No such file or directory");
+  expect(folder_, "not an ordinary file");
+  expect("/dev/null", "not an ordinary file");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFileTest, FullDiskIsAnErrorAndKeepsTheOldContent) {
+  // A limit on the file size stands for the full disk: write(2) fails in the same place.
+  WriteFileAtomically(folder_ / "a", "old");
+  const auto write_beyond_the_limit = [this] {
+    signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    limit.rlim_cur = limit.rlim_max = 1000;
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      WriteFileAtomically(folder_ / "a", std::string(5000, 'x'));
+    } catch (const InputError& error) {
+      _exit(std::string(error.what()).find("too large") != std::string::npos ? 3 : 4);
+    }
+    _exit(0);
+  };
+  EXPECT_EXIT(write_beyond_the_limit(), ::testing::ExitedWithCode(3), "");
+  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(FileCount(), 1);
+}
+
+}  // namespace
+}  // namespace lacuna
