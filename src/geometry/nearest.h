@@ -9,7 +9,9 @@
 
 namespace lacuna {
 
-// For each query point the nearest point of a surface. The search structure is built once.
+// For each query point the nearest point of a surface. The search structure is built once and keeps
+// its own copy. Of equally near triangles the first is taken; a query that is not finite gets
+// triangle −1, distance ∞ and NaN. The surface must have triangles.
 struct SurfaceHits {
   Eigen::Matrix3Xd point;        // 3 × n, m, on the surface
   Eigen::VectorXi triangle;      // n
@@ -30,7 +32,7 @@ class SurfaceSearch {
   std::unique_ptr<Tree> tree_;
 };
 
-// The same for a cloud of points.
+// The same for a cloud of points, which must not be empty.
 struct PointHits {
   Eigen::MatrixXi index;     // k × n, nearest first
   Eigen::MatrixXd distance;  // k × n, m

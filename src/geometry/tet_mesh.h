@@ -22,7 +22,8 @@ struct TetMesh {
 // Signed volume of each tetrahedron's corners, m³.
 Eigen::VectorXd TetVolumes(const TetMesh& mesh);
 
-// The same mesh with a node on each edge's midpoint; corner nodes keep their numbers.
+// The same mesh with a node on each edge's midpoint; corner nodes keep their numbers. A mesh that
+// is quadratic already comes back as it is.
 TetMesh ToQuadratic(const TetMesh& linear);
 
 // The boundary of the mesh, oriented outward. `node` maps the vertices of `surface` to nodes of
@@ -30,8 +31,8 @@ TetMesh ToQuadratic(const TetMesh& linear);
 // edge nodes too.
 struct BoundarySurface {
   TriMesh surface;
-  Eigen::VectorXi node;           // n_surface
-  Eigen::MatrixXi faces;          // 3 or 6 × m_faces: the mesh nodes of each boundary face
+  Eigen::VectorXi node;   // n_surface
+  Eigen::MatrixXi faces;  // 3 or 6 × m_faces: the mesh nodes of each boundary face
 };
 BoundarySurface ExtractBoundary(const TetMesh& mesh);
 

@@ -1,0 +1,171 @@
+#include "geometry/tet_mesh.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace lacuna {
+namespace {
+
+constexpr std::array<std::array<int, 2>, 6> kEdges{
+    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+// The faces opposite corners 0..3, counter-clockwise from outside: three corners, then the
+// midpoints of their edges (0,1) (1,2) (2,0).
+constexpr std::array<std::array<int, 6>, 4> kFaces{
+    {{1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}}};
+
+// A six-node face as four triangles of its local nodes.
+constexpr std::array<std::array<int, 3>, 4> kFaceQuarters{
+    {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+
+// Places in 6 × m (edges of tets), grouped by the edge they hold: equal edges become neighbours.
+struct EdgePlace {
+  uint64_t edge;
+  int64_t place;
+  bool operator<(const EdgePlace& other) const {
+    return std::pair(edge, place) < std::pair(other.edge, other.place);
+  }
+};
+
+std::vector<EdgePlace> SortedEdgePlaces(const Eigen::MatrixXi& tets) {
+  std::vector<EdgePlace> places;
+  places.reserve(6 * tets.cols());
+  for (Eigen::Index e = 0; e < tets.cols(); ++e) {
+    for (const auto& [i, j] : kEdges) {
+      const auto [low, high] = std::minmax(tets(i, e), tets(j, e));
+      const uint64_t edge = static_cast<uint64_t>(low) << 32 | static_cast<uint32_t>(high);
+      places.push_back({edge, static_cast<int64_t>(places.size())});
+    }
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+struct FacePlace {
+  std::array<int, 3> corners;  // ascending
+  int64_t place;               // 4 · tet + face
+  bool operator<(const FacePlace& other) const {
+    return std::pair(corners, place) < std::pair(other.corners, other.place);
+  }
+};
+
+// The faces (4 · tet + face) that belong to one tetrahedron only, ascending.
+std::vector<int64_t> BoundaryPlaces(const Eigen::MatrixXi& tets) {
+  std::vector<FacePlace> places;
+  places.reserve(4 * tets.cols());
+  for (Eigen::Index e = 0; e < tets.cols(); ++e) {
+    for (const auto& face : kFaces) {
+      std::array<int, 3> corners{tets(face[0], e), tets(face[1], e), tets(face[2], e)};
+      std::sort(corners.begin(), corners.end());
+      places.push_back({corners, static_cast<int64_t>(places.size())});
+    }
+  }
+  std::sort(places.begin(), places.end());
+
+  std::vector<int64_t> boundary;
+  for (size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+    while (end < places.size() && places[end].corners == places[begin].corners) ++end;
+    if (end - begin == 1) boundary.push_back(places[begin].place);
+  }
+  std::sort(boundary.begin(), boundary.end());
+  return boundary;
+}
+
+}  // namespace
+
+Eigen::VectorXd TetVolumes(const TetMesh& mesh) {
+  Eigen::VectorXd volumes(mesh.TetCount());
+  for (Eigen::Index e = 0; e < volumes.size(); ++e) {
+    const Eigen::Vector3d a = mesh.nodes.col(mesh.tets(0, e));
+    const Eigen::Vector3d b = mesh.nodes.col(mesh.tets(1, e));
+    const Eigen::Vector3d c = mesh.nodes.col(mesh.tets(2, e));
+    const Eigen::Vector3d d = mesh.nodes.col(mesh.tets(3, e));
+    volumes(e) = (b - a).cross(c - a).dot(d - a) / 6;
+  }
+  return volumes;
+}
+
+TetMesh ToQuadratic(const TetMesh& linear) {
+  if (linear.Order() == 2) return linear;
+  const std::vector<EdgePlace> places = SortedEdgePlaces(linear.tets);
+
+  // An edge's node is numbered by the first tetrahedron that has it, so that nodes which meet in an
+  // element stay close in memory.
+  std::vector<int64_t> first_place(places.size());
+  for (size_t begin = 0, end = 0; begin < places.size(); begin = end) {
+    for (; end < places.size() && places[end].edge == places[begin].edge; ++end) {
+      first_place[places[end].place] = places[begin].place;
+    }
+  }
+  TetMesh quadratic{{}, Eigen::MatrixXi(10, linear.TetCount())};
+  quadratic.tets.topRows(4) = linear.tets;
+  std::vector<Eigen::Vector3d> midpoints;
+  for (size_t place = 0; place < first_place.size(); ++place) {
+    const Eigen::Index e = place / 6, edge = place % 6;
+    if (first_place[place] == static_cast<int64_t>(place)) {
+      const auto& [i, j] = kEdges[edge];
+      quadratic.tets(4 + edge, e) = static_cast<int>(linear.NodeCount() + midpoints.size());
+      midpoints.push_back(
+          0.5 * (linear.nodes.col(linear.tets(i, e)) + linear.nodes.col(linear.tets(j, e))));
+    } else {
+      const int64_t first = first_place[place];
+      quadratic.tets(4 + edge, e) = quadratic.tets(4 + first % 6, first / 6);
+    }
+  }
+  quadratic.nodes.resize(3, linear.NodeCount() + midpoints.size());
+  quadratic.nodes.leftCols(linear.NodeCount()) = linear.nodes;
+  for (size_t k = 0; k < midpoints.size(); ++k) {
+    quadratic.nodes.col(linear.NodeCount() + k) = midpoints[k];
+  }
+  return quadratic;
+}
+
+BoundarySurface ExtractBoundary(const TetMesh& mesh) {
+  const std::vector<int64_t> places = BoundaryPlaces(mesh.tets);
+  const int nodes_per_face = mesh.Order() == 2 ? 6 : 3;
+  const int triangles_per_face = mesh.Order() == 2 ? 4 : 1;
+
+  BoundarySurface boundary;
+  boundary.faces.resize(nodes_per_face, places.size());
+  for (size_t f = 0; f < places.size(); ++f) {
+    const auto& face = kFaces[places[f] % 4];
+    for (int i = 0; i < nodes_per_face; ++i) {
+      boundary.faces(i, f) = mesh.tets(face[i], places[f] / 4);
+    }
+  }
+
+  std::vector<int> vertex_of_node(mesh.NodeCount(), -1);
+  for (const int node : boundary.faces.reshaped()) vertex_of_node[node] = 0;
+  std::vector<int> node_of_vertex;
+  for (Eigen::Index node = 0; node < mesh.NodeCount(); ++node) {
+    if (vertex_of_node[node] < 0) continue;
+    vertex_of_node[node] = static_cast<int>(node_of_vertex.size());
+    node_of_vertex.push_back(static_cast<int>(node));
+  }
+  boundary.node = Eigen::Map<const Eigen::VectorXi>(node_of_vertex.data(), node_of_vertex.size());
+
+  boundary.surface.triangles.resize(3, triangles_per_face * places.size());
+  for (Eigen::Index f = 0; f < boundary.faces.cols(); ++f) {
+    for (int quarter = 0; quarter < triangles_per_face; ++quarter) {
+      for (int corner = 0; corner < 3; ++corner) {
+        const int local = mesh.Order() == 2 ? kFaceQuarters[quarter][corner] : corner;
+        boundary.surface.triangles(corner, triangles_per_face * f + quarter) =
+            vertex_of_node[boundary.faces(local, f)];
+      }
+    }
+  }
+  boundary.surface.vertices = BoundaryAt(boundary, mesh.nodes).vertices;
+  return boundary;
+}
+
+TriMesh BoundaryAt(const BoundarySurface& boundary, const Eigen::Matrix3Xd& nodes) {
+  CHECK(boundary.node.size() == 0 || boundary.node.maxCoeff() < nodes.cols());
+  return {nodes(Eigen::all, boundary.node), boundary.surface.triangles};
+}
+
+}  // namespace lacuna
