@@ -15,9 +15,9 @@ namespace lacuna {
 // Which blocks are present, and where the contribution of each element goes. Built once per mesh.
 struct BlockPattern {
   int nodes = 0;
-  std::vector<int> row_begin;   // nodes + 1
-  std::vector<int> column;      // block columns, ascending within a row
-  std::vector<int> diagonal;    // position of block (i, i)
+  std::vector<int> row_begin;  // nodes + 1
+  std::vector<int> column;     // block columns, ascending within a row
+  std::vector<int> diagonal;   // position of block (i, i)
 
   int BlockCount() const { return static_cast<int>(column.size()); }
   // Position of block (row, col), or −1.

@@ -29,9 +29,9 @@ struct LinearSolveSummary {
   enum class Status { kNotRun, kSolved, kNotPositiveDefinite, kNoConvergence };
   Status status = Status::kNotRun;
   std::string message;
-  int iterations = 0;              // of CG
-  bool factorised = false;         // a numeric factorisation was needed
-  double relative_residual = 0;    // ‖b − A x‖ / ‖b‖ reached
+  int iterations = 0;            // of CG
+  bool factorised = false;       // a numeric factorisation was needed
+  double relative_residual = 0;  // ‖b − A x‖ / ‖b‖ reached
   bool IsUsable() const { return status == Status::kSolved; }
 };
 

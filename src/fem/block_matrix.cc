@@ -1,0 +1,87 @@
+#include "fem/block_matrix.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kRowsPerBlock = 1024;
+
+// elements_of[begin[i]…begin[i+1]): the elements that node i belongs to, ascending.
+struct NodeElements {
+  std::vector<int> begin, elements;
+};
+
+NodeElements ElementsOfNodes(int nodes, const Eigen::MatrixXi& elements) {
+  NodeElements of;
+  of.begin.assign(nodes + 1, 0);
+  for (Eigen::Index k = 0; k < elements.size(); ++k) {
+    const int node = elements.data()[k];
+    CHECK(node >= 0 && node < nodes) << "an element names node " << node << " of " << nodes;
+    ++of.begin[node + 1];
+  }
+  for (int i = 0; i < nodes; ++i) of.begin[i + 1] += of.begin[i];
+  of.elements.resize(elements.size());
+  std::vector<int> next(of.begin.begin(), of.begin.end() - 1);
+  for (Eigen::Index e = 0; e < elements.cols(); ++e) {
+    for (Eigen::Index a = 0; a < elements.rows(); ++a) {
+      of.elements[next[elements(a, e)]++] = static_cast<int>(e);
+    }
+  }
+  return of;
+}
+
+}  // namespace
+
+int BlockPattern::Find(int row, int col) const {
+  const auto begin = column.begin() + row_begin[row], end = column.begin() + row_begin[row + 1];
+  const auto at = std::lower_bound(begin, end, col);
+  return at != end && *at == col ? static_cast<int>(at - column.begin()) : -1;
+}
+
+BlockPattern MakeBlockPattern(int nodes, const Eigen::MatrixXi& elements) {
+  const NodeElements of = ElementsOfNodes(nodes, elements);
+  BlockPattern pattern;
+  pattern.nodes = nodes;
+  pattern.row_begin.assign(1, 0);
+  pattern.diagonal.resize(nodes);
+  std::vector<int> row;
+  for (int i = 0; i < nodes; ++i) {
+    row.assign(1, i);
+    for (int k = of.begin[i]; k < of.begin[i + 1]; ++k) {
+      const auto element = elements.col(of.elements[k]);
+      row.insert(row.end(), element.begin(), element.end());
+    }
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    const auto self = std::lower_bound(row.begin(), row.end(), i);
+    pattern.diagonal[i] = pattern.row_begin[i] + static_cast<int>(self - row.begin());
+    pattern.column.insert(pattern.column.end(), row.begin(), row.end());
+    pattern.row_begin.push_back(static_cast<int>(pattern.column.size()));
+  }
+  return pattern;
+}
+
+BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern)
+    : pattern_(std::move(pattern)), values_(9 * static_cast<size_t>(pattern_->BlockCount()), 0.0) {}
+
+void BlockMatrix::SetZero() { std::fill(values_.begin(), values_.end(), 0.0); }
+
+void BlockMatrix::Multiply(const Eigen::VectorXd& x, Eigen::VectorXd* y) const {
+  CHECK_EQ(x.size(), 3 * pattern_->nodes);
+  CHECK_NE(&x, y) << "the product cannot overwrite its argument";
+  y->resize(x.size());
+  ParallelFor(pattern_->nodes, kRowsPerBlock, [&](int64_t i) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int k = pattern_->row_begin[i]; k < pattern_->row_begin[i + 1]; ++k) {
+      sum += Block(k) * x.segment<3>(3 * pattern_->column[k]);
+    }
+    y->segment<3>(3 * i) = sum;
+  });
+}
+
+}  // namespace lacuna
