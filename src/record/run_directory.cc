@@ -1,0 +1,229 @@
+#include "record/run_directory.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "record/library_versions.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kManifestName[] = "manifest.json";
+constexpr char kLockName[] = ".lock";
+
+fs::path PartialFolder(const fs::path& run, const std::string& stage) {
+  return run / ("." + stage + ".partial");
+}
+
+bool IsPartialFolder(const fs::path& path) {
+  return path.filename().string().starts_with(".") && path.extension() == ".partial";
+}
+
+void CheckStageName(const std::string& stage) {
+  CHECK(!stage.empty() &&
+        stage.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos)
+      << "'" << stage << "' is no name for a stage";
+}
+
+// Refuses a folder with other contents than a run's: results must not be mixed into them.
+void RefuseForeignFolder(const fs::path& folder) {
+  if (fs::exists(folder / kManifestName)) return;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() == kLockName || IsPartialFolder(entry.path())) continue;
+    throw InputError({folder.string()},
+                     fmt::format("is not a run folder (it has no {}) and not empty; choose another",
+                                 kManifestName));
+  }
+}
+
+int Lock(const fs::path& folder) {
+  const fs::path file = folder / kLockName;
+  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    throw InputError({folder.string()}, fmt::format("cannot be written: {}", std::strerror(errno)));
+  }
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+  const int error = errno;
+  close(descriptor);
+  if (error == EWOULDBLOCK) {
+    throw InputError({folder.string()}, "is in use by another run that has not ended");
+  }
+  throw InputError({folder.string()}, fmt::format("cannot be locked: {}", std::strerror(error)));
+}
+
+void SyncFile(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (!synced) {
+    throw InputError({file.string()}, fmt::format("cannot be written: {}", std::strerror(error)));
+  }
+}
+
+// The files of a folder by name, after they have reached the disk.
+std::vector<StoredFile> SyncAndList(const fs::path& folder) {
+  std::vector<StoredFile> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) {
+      SyncFolder(entry.path());
+      continue;
+    }
+    SyncFile(entry.path());
+    files.push_back({entry.path().lexically_relative(folder).generic_string(), entry.file_size(),
+                     HashFile(entry.path())});
+  }
+  SyncFolder(folder);
+  std::sort(files.begin(), files.end(),
+            [](const StoredFile& a, const StoredFile& b) { return a.name < b.name; });
+  return files;
+}
+
+// Empty when every file is as it was stored.
+std::string FindDamage(const fs::path& folder, const StageResult& result) {
+  for (const StoredFile& stored : result.files) {
+    const fs::path file = folder / stored.name;
+    std::error_code error;
+    const auto size = fs::file_size(file, error);
+    if (error) return file.string() + " is missing";
+    if (size != stored.size) {
+      return fmt::format("{} has {} bytes instead of {}", file.string(), size, stored.size);
+    }
+    if (HashFile(file) != stored.hash) return file.string() + " has been changed";
+  }
+  return "";
+}
+
+}  // namespace
+
+RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
+  std::error_code error;
+  fs::create_directories(folder_, error);
+  if (error || !fs::is_directory(folder_)) {
+    const std::string cause = error ? error.message() : "it is not a folder";
+    throw InputError({folder_.string()}, "cannot be made a run folder: " + cause);
+  }
+  RefuseForeignFolder(folder_);
+  lock_ = Lock(folder_);
+  try {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
+    }
+    if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
+    manifest_.schema_version = kManifestSchemaVersion;
+    manifest_.program_version = ProgramVersion();
+    manifest_.library_versions = LibraryVersions();
+  } catch (...) {
+    close(lock_);
+    throw;
+  }
+}
+
+RunDirectory::~RunDirectory() { close(lock_); }
+
+void RunDirectory::Begin(const nlohmann::json& configuration,
+                         const std::map<std::string, std::string>& inputs, uint64_t seed) {
+  manifest_.configuration = configuration;
+  manifest_.inputs = inputs;
+  manifest_.seed = seed;
+  manifest_.finished = false;
+  current_.clear();
+  Save();
+}
+
+StageCheck RunDirectory::Check(const std::string& stage, const std::string& key) {
+  CheckStageName(stage);
+  using Status = StageCheck::Status;
+  const auto found = manifest_.stages.find(stage);
+  if (found == manifest_.stages.end()) return {Status::kAbsent, ""};
+  if (found->second.key != key) {
+    return {Status::kOtherKey, "the options or inputs of " + stage + " have changed"};
+  }
+  const std::string damage = FindDamage(StageFolder(stage), found->second);
+  if (!damage.empty()) return {Status::kDamaged, damage};
+  current_.insert(stage);
+  return {Status::kReady, ""};
+}
+
+void RunDirectory::Store(const std::string& stage, const std::string& key,
+                         const std::function<void(const fs::path& folder)>& write) {
+  CheckStageName(stage);
+  const fs::path partial = PartialFolder(folder_, stage);
+  StageResult result;
+  result.key = key;
+  try {
+    fs::remove_all(partial);
+    fs::create_directory(partial);
+    write(partial);
+    result.files = SyncAndList(partial);
+    // From here to the last Save no manifest names the stage, whatever happens in between.
+    if (manifest_.stages.erase(stage) > 0) Save();
+    fs::remove_all(StageFolder(stage));
+    fs::rename(partial, StageFolder(stage));
+    SyncFolder(folder_);
+  } catch (const fs::filesystem_error& error) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    throw InputError({partial.string()}, "cannot be written: " + error.code().message());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    throw;
+  }
+  manifest_.stages[stage] = std::move(result);
+  current_.insert(stage);
+  Save();
+}
+
+std::string RunDirectory::ResultHash(const std::string& stage) const {
+  const auto found = manifest_.stages.find(stage);
+  CHECK(found != manifest_.stages.end()) << "stage " << stage << " has no result yet";
+  std::string listing;
+  for (const StoredFile& file : found->second.files) listing += file.name + '\0' + file.hash;
+  return HashBytes(listing);
+}
+
+void RunDirectory::Finish() {
+  std::vector<std::string> outdated;
+  for (const auto& [stage, result] : manifest_.stages) {
+    if (!current_.contains(stage)) outdated.push_back(stage);
+  }
+  for (const std::string& stage : outdated) manifest_.stages.erase(stage);
+  manifest_.finished = true;
+  Save();
+  std::error_code ignored;  // what no manifest names harms nobody
+  for (const std::string& stage : outdated) fs::remove_all(StageFolder(stage), ignored);
+}
+
+void RunDirectory::Save() const { SaveManifest(manifest_, folder_ / kManifestName); }
+
+fs::path FinishedStage(const fs::path& run, const std::string& stage) {
+  const Manifest manifest = LoadManifest(run / kManifestName);
+  if (!manifest.finished) {
+    throw InputError({run.string()},
+                     "is the folder of a run that was not finished; start the run "
+                     "again and it goes on where it stopped");
+  }
+  const auto found = manifest.stages.find(stage);
+  if (found == manifest.stages.end()) {
+    throw InputError({run.string()}, "has no results of the stage '" + stage + "'");
+  }
+  const std::string damage = FindDamage(run / stage, found->second);
+  if (!damage.empty()) throw InputError({run.string()}, "is damaged: " + damage);
+  return run / stage;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,202 @@
+#include "record/run_record.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/npy.h"
+#include "record/csv_table.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSchemaVersion = 1;
+constexpr char kRecordName[] = "record.json";
+constexpr char kFramesName[] = "frames.csv";
+constexpr char kPointResidualsName[] = "point_residuals.npy";
+
+// JSON has no NaN: null stands for "not measured".
+json FromNumber(double value) {
+  CHECK(!std::isinf(value)) << "an infinite measure cannot be recorded";
+  return std::isnan(value) ? json() : json(value);
+}
+double ToNumber(const json& value) { return value.is_null() ? kNotMeasured : value.get<double>(); }
+
+json FromVector(const Eigen::Vector3d& v) {
+  return {FromNumber(v.x()), FromNumber(v.y()), FromNumber(v.z())};
+}
+Eigen::Vector3d ToVector(const json& value) {
+  return {ToNumber(value.at(0)), ToNumber(value.at(1)), ToNumber(value.at(2))};
+}
+
+// The numbers of a frame under the names that both files use, so that neither can forget one.
+struct FrameNumber {
+  const char* name;
+  double FrameRecord::*value;
+};
+constexpr FrameNumber kFrameNumbers[] = {
+    {"time_s", &FrameRecord::time},
+    {"residual_m", &FrameRecord::residual},
+    {"relative_residual", &FrameRecord::relative_residual},
+    {"surface_distance_mean_m", &FrameRecord::surface_distance_mean},
+    {"surface_distance_rms_m", &FrameRecord::surface_distance_rms},
+    {"surface_distance_max_m", &FrameRecord::surface_distance_max},
+    {"relative_surface_distance", &FrameRecord::relative_surface_distance},
+};
+
+json FromStatus(const SolverStatus& status) {
+  return {{"usable", status.usable},
+          {"status", status.status},
+          {"message", status.message},
+          {"iterations", status.iterations}};
+}
+SolverStatus ToStatus(const json& value) {
+  return {value.at("usable"), value.at("status"), value.at("message"), value.at("iterations")};
+}
+
+json FromFrame(const FrameRecord& frame) {
+  json value{{"frame", frame.frame}};
+  for (const FrameNumber& number : kFrameNumbers) {
+    value[number.name] = FromNumber(frame.*number.value);
+  }
+  value["force_resultant_N"] = FromVector(frame.force_resultant);
+  value["torque_resultant_Nm"] = FromVector(frame.torque_resultant);
+  value["solver"] = FromStatus(frame.solver);
+  return value;
+}
+FrameRecord ToFrame(const json& value) {
+  FrameRecord frame;
+  frame.frame = value.at("frame");
+  for (const FrameNumber& number : kFrameNumbers) {
+    frame.*number.value = ToNumber(value.at(number.name));
+  }
+  frame.force_resultant = ToVector(value.at("force_resultant_N"));
+  frame.torque_resultant = ToVector(value.at("torque_resultant_Nm"));
+  frame.solver = ToStatus(value.at("solver"));
+  return frame;
+}
+
+json FromMesh(const MeshRecord& mesh) {
+  return {{"node_count", mesh.node_count},
+          {"tet_count", mesh.tet_count},
+          {"order", mesh.order},
+          {"volume_m3", FromNumber(mesh.volume)},
+          {"smallest_angle_rad", FromNumber(mesh.smallest_angle)},
+          {"largest_radius_edge_ratio", FromNumber(mesh.largest_radius_edge_ratio)}};
+}
+MeshRecord ToMesh(const json& value) {
+  return {value.at("node_count"),
+          value.at("tet_count"),
+          value.at("order"),
+          ToNumber(value.at("volume_m3")),
+          ToNumber(value.at("smallest_angle_rad")),
+          ToNumber(value.at("largest_radius_edge_ratio"))};
+}
+
+CsvTable FrameTable(const std::vector<FrameRecord>& frames) {
+  const auto column = [&frames](const std::string& name, const auto& value) {
+    CsvColumn result{name, Eigen::VectorXd(static_cast<Eigen::Index>(frames.size()))};
+    std::transform(frames.begin(), frames.end(), result.values.begin(), value);
+    return result;
+  };
+  CsvTable table{column("frame", [](const FrameRecord& f) { return double(f.frame); })};
+  for (const FrameNumber& number : kFrameNumbers) {
+    table.push_back(column(number.name, [&](const FrameRecord& f) { return f.*number.value; }));
+  }
+  for (int k = 0; k < 3; ++k) {
+    table.push_back(column(fmt::format("force_{}_N", "xyz"[k]),
+                           [k](const FrameRecord& f) { return f.force_resultant[k]; }));
+  }
+  for (int k = 0; k < 3; ++k) {
+    table.push_back(column(fmt::format("torque_{}_Nm", "xyz"[k]),
+                           [k](const FrameRecord& f) { return f.torque_resultant[k]; }));
+  }
+  table.push_back(column("usable", [](const FrameRecord& f) { return f.solver.usable ? 1. : 0.; }));
+  return table;
+}
+
+}  // namespace
+
+bool RunRecord::IsUsable() const {
+  return !frames.empty() && std::all_of(frames.begin(), frames.end(), [](const FrameRecord& frame) {
+    return frame.solver.usable;
+  }) && std::all_of(stages.begin(), stages.end(), [](const auto& stage) {
+    return stage.second.usable;
+  });
+}
+
+void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder) {
+  const bool has_points = record.point_residuals.size() > 0;
+  if (has_points) {
+    CHECK_EQ(record.point_residuals.cols(), static_cast<Eigen::Index>(record.frames.size()));
+  }
+  json document{{"schema_version", kSchemaVersion},
+                {"recording", record.recording},
+                {"object_size_m", FromNumber(record.object_size)},
+                {"animation_residual_m", FromNumber(record.animation_residual)},
+                {"relative_animation_residual", FromNumber(record.relative_animation_residual)},
+                {"mesh", FromMesh(record.mesh)},
+                {"frames", json::array()},
+                {"stages", json::object()},
+                {"measures", json::object()},
+                {"warnings", record.warnings},
+                {"has_point_residuals", has_points}};
+  for (const FrameRecord& frame : record.frames) document["frames"].push_back(FromFrame(frame));
+  for (const auto& [stage, status] : record.stages) document["stages"][stage] = FromStatus(status);
+  for (const auto& [name, value] : record.measures) document["measures"][name] = FromNumber(value);
+
+  if (has_points) WriteNpy(folder / kPointResidualsName, record.point_residuals);
+  SaveCsv(FrameTable(record.frames), folder / kFramesName);
+  WriteFileAtomically(folder / kRecordName,
+                      document.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+RunRecord LoadRunRecord(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kRecordName;
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file.string()}, "cannot be read: no such file, or no permission");
+  RunRecord record;
+  try {
+    const json document = json::parse(stream);
+    const int version = document.at("schema_version");
+    if (version != kSchemaVersion) {
+      throw InputError({file.string()},
+                       fmt::format("has schema_version {}; expected {}", version, kSchemaVersion));
+    }
+    record.recording = document.at("recording");
+    record.object_size = ToNumber(document.at("object_size_m"));
+    record.animation_residual = ToNumber(document.at("animation_residual_m"));
+    record.relative_animation_residual = ToNumber(document.at("relative_animation_residual"));
+    record.mesh = ToMesh(document.at("mesh"));
+    for (const json& frame : document.at("frames")) record.frames.push_back(ToFrame(frame));
+    for (const auto& [stage, status] : document.at("stages").items()) {
+      record.stages[stage] = ToStatus(status);
+    }
+    for (const auto& [name, value] : document.at("measures").items()) {
+      record.measures[name] = ToNumber(value);
+    }
+    document.at("warnings").get_to(record.warnings);
+    if (document.at("has_point_residuals").get<bool>()) {
+      record.point_residuals = ReadNpyMatrix(folder / kPointResidualsName);
+    }
+  } catch (const json::exception& error) {
+    throw InputError({file.string()}, std::string("is not a sound record: ") + error.what());
+  }
+  if (record.point_residuals.size() > 0 &&
+      record.point_residuals.cols() != static_cast<Eigen::Index>(record.frames.size())) {
+    throw InputError({(folder / kPointResidualsName).string()},
+                     fmt::format("has {} columns for {} frames", record.point_residuals.cols(),
+                                 record.frames.size()));
+  }
+  return record;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,237 @@
+#include "record/run_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using Status = StageCheck::Status;
+
+std::function<void(const fs::path&)> WriteResult(const std::string& content) {
+  return [content](const fs::path& folder) {
+    WriteFileAtomically(folder / "result.txt", content);
+    fs::create_directory(folder / "frames");
+    WriteFileAtomically(folder / "frames" / "000.txt", content + " of frame 0");
+  };
+}
+
+// Runs `body` in a process of its own that kills itself, or is killed by `body`, without clean-up.
+void InKilledProcess(const std::function<void()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    body();
+    raise(SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "ended by itself with " << WEXITSTATUS(status);
+}
+
+class RunDirectoryTest : public ::testing::Test {
+ protected:
+  // A run with the stages `surface` and `fit`, closed again.
+  void MakeFinishedRun() {
+    RunDirectory run(folder_);
+    run.Begin({{"density", 1070.0}}, {{"scan.ply", "00"}}, 7);
+    run.Store("surface", "key s", WriteResult("surface"));
+    run.Store("fit", "key f", WriteResult("fit"));
+    run.Finish();
+  }
+  bool HasPartialFolder() const {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().extension() == ".partial") return true;
+    }
+    return false;
+  }
+
+  const TemporaryFolder parent_;
+  const fs::path folder_ = parent_ / "some/run";
+};
+
+TEST_F(RunDirectoryTest, StoredStageIsFoundAgainUnderItsKeyOnly) {
+  MakeFinishedRun();
+  RunDirectory run(folder_);
+  EXPECT_TRUE(run.Has("surface", "key s"));
+  EXPECT_EQ(run.Check("surface", "another key").status, Status::kOtherKey);
+  EXPECT_EQ(run.Check("mesh", "key s").status, Status::kAbsent);
+  EXPECT_EQ(FileContent(run.StageFolder("surface") / "frames" / "000.txt"), "surface of frame 0");
+}
+
+TEST_F(RunDirectoryTest, ManifestTellsConfigurationInputsSeedAndVersions) {
+  MakeFinishedRun();
+  const Manifest manifest = LoadManifest(folder_ / "manifest.json");
+  EXPECT_EQ(manifest.configuration["density"], 1070.0);
+  EXPECT_EQ(manifest.inputs.at("scan.ply"), "00");
+  EXPECT_EQ(manifest.seed, 7u);
+  EXPECT_FALSE(manifest.program_version.empty());
+  EXPECT_EQ(manifest.library_versions.at("Eigen"), "3.4.0");
+  EXPECT_TRUE(manifest.library_versions.contains("SuiteSparse"));
+  EXPECT_EQ(manifest.stages.at("fit").files.size(), 2u);
+  EXPECT_TRUE(manifest.finished);
+}
+
+TEST_F(RunDirectoryTest, SameRunElsewhereWritesTheSameManifest) {
+  MakeFinishedRun();
+  const std::string first = FileContent(folder_ / "manifest.json");
+  fs::remove_all(folder_);
+  MakeFinishedRun();
+  EXPECT_EQ(FileContent(folder_ / "manifest.json"), first);
+}
+
+TEST_F(RunDirectoryTest, EachKindOfDamageIsDetectedAndNamed) {
+  const auto damaged = [this](const std::function<void(const fs::path&)>& damage) {
+    fs::remove_all(folder_);
+    MakeFinishedRun();
+    damage(folder_ / "fit" / "result.txt");
+    RunDirectory run(folder_);
+    EXPECT_TRUE(run.Has("surface", "key s"));
+    const StageCheck check = run.Check("fit", "key f");
+    EXPECT_EQ(check.status, Status::kDamaged);
+    EXPECT_THAT(check.message, HasSubstr("result.txt"));
+    EXPECT_THAT([this] { FinishedStage(folder_, "fit"); },
+                ThrowsMessage<InputError>(HasSubstr("is damaged")));
+  };
+  damaged([](const fs::path& file) { std::ofstream(file) << "fiT"; });
+  damaged([](const fs::path& file) { fs::resize_file(file, 1); });
+  damaged([](const fs::path& file) { fs::remove(file); });
+}
+
+TEST_F(RunDirectoryTest, DamagedStageIsReplacedByStoringItAgain) {
+  MakeFinishedRun();
+  fs::remove(folder_ / "fit" / "result.txt");
+  RunDirectory run(folder_);
+  run.Store("fit", "key f", WriteResult("fit"));
+  EXPECT_TRUE(run.Has("fit", "key f"));
+}
+
+TEST_F(RunDirectoryTest, ExceptionWhileWritingKeepsTheEarlierResult) {
+  MakeFinishedRun();
+  RunDirectory run(folder_);
+  EXPECT_THROW(run.Store("fit", "new key",
+                         [](const fs::path& folder) {
+                           WriteFileAtomically(folder / "result.txt", "half");
+                           throw Interrupted(SIGINT);
+                         }),
+               Interrupted);
+  EXPECT_FALSE(HasPartialFolder());
+  EXPECT_FALSE(run.Has("fit", "new key"));
+  EXPECT_TRUE(run.Has("fit", "key f"));
+}
+
+TEST_F(RunDirectoryTest, ProcessKilledWhileWritingLeavesNothingThatIsTrusted) {
+  MakeFinishedRun();
+  InKilledProcess([this] {
+    RunDirectory run(folder_);
+    run.Begin({}, {}, 0);
+    run.Store("surface", "key s2", [](const fs::path& folder) {
+      WriteFileAtomically(folder / "result.txt", "half");
+      raise(SIGKILL);
+    });
+  });
+  EXPECT_TRUE(HasPartialFolder());
+  EXPECT_THAT([this] { FinishedStage(folder_, "surface"); },
+              ThrowsMessage<InputError>(HasSubstr("was not finished")));
+  RunDirectory run(folder_);  // the lock went with the process
+  EXPECT_FALSE(HasPartialFolder());
+  EXPECT_FALSE(run.Has("surface", "key s2"));
+  EXPECT_TRUE(run.Has("surface", "key s"));
+}
+
+TEST_F(RunDirectoryTest, ResultsUnknownToTheManifestAreNotTrusted) {
+  MakeFinishedRun();
+  // As after a crash between the rename of the folder and the writing of the manifest.
+  fs::copy(folder_ / "surface", folder_ / "mesh");
+  RunDirectory run(folder_);
+  EXPECT_EQ(run.Check("mesh", "key s").status, Status::kAbsent);
+  run.Store("mesh", "key m", WriteResult("mesh"));
+  EXPECT_EQ(FileContent(run.StageFolder("mesh") / "result.txt"), "mesh");
+}
+
+TEST_F(RunDirectoryTest, UnfinishedRunResumesWhereItStopped) {
+  {
+    RunDirectory run(folder_);
+    run.Begin({}, {}, 0);
+    run.Store("surface", "key s", WriteResult("surface"));
+  }
+  EXPECT_THAT([this] { FinishedStage(folder_, "surface"); },
+              ThrowsMessage<InputError>(HasSubstr("was not finished")));
+  RunDirectory run(folder_);
+  run.Begin({}, {}, 0);
+  EXPECT_TRUE(run.Has("surface", "key s"));
+  EXPECT_FALSE(run.Has("fit", "key f"));
+  run.Store("fit", "key f", WriteResult("fit"));
+  run.Finish();
+  EXPECT_EQ(FinishedStage(folder_, "fit"), folder_ / "fit");
+}
+
+TEST_F(RunDirectoryTest, FinishRemovesStagesOfAnEarlierConfiguration) {
+  MakeFinishedRun();
+  {
+    RunDirectory run(folder_);
+    run.Begin({{"other", true}}, {}, 0);
+    EXPECT_TRUE(run.Has("surface", "key s"));
+    run.Finish();
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "fit"));
+  EXPECT_TRUE(fs::exists(folder_ / "surface" / "result.txt"));
+  EXPECT_THAT([this] { FinishedStage(folder_, "fit"); },
+              ThrowsMessage<InputError>(HasSubstr("no results of the stage 'fit'")));
+}
+
+TEST_F(RunDirectoryTest, SecondRunInTheSameFolderIsRefusedWhileTheFirstLives) {
+  std::optional<RunDirectory> first(folder_);
+  EXPECT_THAT([this] { RunDirectory second(folder_); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr(folder_.string()), HasSubstr("in use by another run"))));
+  first.reset();
+  EXPECT_NO_THROW(RunDirectory second(folder_));
+}
+
+TEST_F(RunDirectoryTest, FolderWithOtherContentsIsRefusedAndLeftAlone) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "thesis.tex") << "x";
+  EXPECT_THAT([this] { RunDirectory run(folder_); },
+              ThrowsMessage<InputError>(HasSubstr("is not a run folder")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(RunDirectoryTest, PlaceThatCannotBeAFolderIsNamed) {
+  std::ofstream(parent_ / "file") << "x";
+  for (const fs::path& folder : {parent_ / "file", parent_ / "file/run", fs::path("/proc/run")}) {
+    EXPECT_THAT([&] { RunDirectory run(folder); },
+                ThrowsMessage<InputError>(
+                    AllOf(HasSubstr(folder.string()), HasSubstr("cannot be made a run folder"))));
+  }
+}
+
+TEST_F(RunDirectoryTest, ResultHashFollowsTheContentAndTheNames) {
+  RunDirectory run(folder_);
+  run.Begin({}, {}, 0);
+  run.Store("surface", "k", WriteResult("a"));
+  const std::string hash = run.ResultHash("surface");
+  run.Store("surface", "k2", WriteResult("a"));
+  EXPECT_EQ(run.ResultHash("surface"), hash);
+  run.Store("surface", "k", WriteResult("b"));
+  EXPECT_NE(run.ResultHash("surface"), hash);
+}
+
+}  // namespace
+}  // namespace lacuna
