@@ -1,0 +1,121 @@
+#include "surface/reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/error.h"
+#include "geometry/nearest.h"
+#include "surface/poisson.h"
+#include "surface/repair.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kMinDepth = 3, kMaxDepth = 12;
+constexpr Eigen::Index kFewestPoints = 10;
+
+void RefuseUnusable(const PointCloud& cloud) {
+  if (cloud.Size() < kFewestPoints) {
+    throw InputError(
+        fmt::format("a surface needs at least {} points, got {}", kFewestPoints, cloud.Size()));
+  }
+  if (!cloud.HasNormals()) throw InputError("a surface needs points with normals");
+  for (Eigen::Index i = 0; i < cloud.Size(); ++i) {
+    if (!cloud.points.col(i).allFinite() || !cloud.normals.col(i).allFinite()) {
+      throw InputError(fmt::format("point {} of {} is not finite", i + 1, cloud.Size()));
+    }
+  }
+  if (!(BoundingBoxDiagonal(cloud.points) > 0)) throw InputError("all points lie in one place");
+}
+
+int DepthForSpacing(const PointCloud& cloud, double spacing) {
+  const double cube = kPoissonCubeScale * BoundingBox(cloud.points).sizes().maxCoeff();
+  return std::clamp(static_cast<int>(std::floor(std::log2(cube / spacing))), kMinDepth, kMaxDepth);
+}
+
+// Drops the triangles that reach farther than `distance` from all points.
+TriMesh TrimToPoints(const TriMesh& mesh, const Eigen::Matrix3Xd& points, double distance) {
+  const Eigen::VectorXd gap = PointSearch(points).Nearest(mesh.vertices).distance.row(0);
+  std::vector<int> kept;
+  for (int t = 0; t < mesh.triangles.cols(); ++t) {
+    if (gap(mesh.triangles.col(t)).maxCoeff() <= distance) kept.push_back(t);
+  }
+  return {mesh.vertices, mesh.triangles(Eigen::all, kept)};
+}
+
+RepairOptions RepairFor(const SurfaceOptions& options, double spacing) {
+  RepairOptions repair;
+  if (!options.closed) {
+    repair.keep_longest_boundary = true;
+    repair.max_hole_perimeter =
+        options.max_hole_perimeter > 0 ? options.max_hole_perimeter : 20 * spacing;
+  }
+  return repair;
+}
+
+void Append(std::vector<std::string>& notes, const std::vector<std::string>& more) {
+  notes.insert(notes.end(), more.begin(), more.end());
+}
+
+// Judges the result, with its report already filled in.
+void Conclude(const SurfaceOptions& options, Surface& surface) {
+  SurfaceReport judged = surface.report;
+  if (!options.closed) {
+    judged.boundary_loops.clear();
+    judged.inside_out_components.clear();
+  }
+  surface.message = DescribeFaults(judged);
+  surface.status = surface.message.empty() ? SurfaceStatus::kUsable : SurfaceStatus::kFaulty;
+}
+
+}  // namespace
+
+double TypicalSpacing(const Eigen::Matrix3Xd& points) {
+  const int k = static_cast<int>(std::min<Eigen::Index>(8, points.cols() - 1));
+  // The nearest point to each is itself.
+  Eigen::VectorXd reach = PointSearch(points).Nearest(points, k + 1).distance.row(k);
+  std::nth_element(reach.begin(), reach.begin() + reach.size() / 2, reach.end());
+  return std::sqrt(std::numbers::pi / k) * reach(reach.size() / 2);
+}
+
+Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& options) {
+  RefuseUnusable(oriented);
+  Surface surface;
+  surface.spacing = TypicalSpacing(oriented.points);
+  if (!(surface.spacing > 0)) throw InputError("most points repeat others");
+  surface.depth = options.depth > 0 ? std::clamp(options.depth, kMinDepth, kMaxDepth)
+                                    : DepthForSpacing(oriented, surface.spacing);
+
+  TriMesh mesh =
+      PoissonIsoSurface(oriented, {surface.depth, options.samples_per_node, options.point_weight});
+  if (!options.closed && mesh.triangles.cols() > 0) {
+    const double trim = options.trim_distance > 0 ? options.trim_distance : 3 * surface.spacing;
+    mesh = TrimToPoints(mesh, oriented.points, trim);
+  }
+  const RepairOptions repair = RepairFor(options, surface.spacing);
+  RepairedSurface repaired = RepairSurface(mesh, repair);
+  surface.notes = std::move(repaired.notes);
+  if (repaired.mesh.triangles.cols() == 0) {
+    surface.status = SurfaceStatus::kEmpty;
+    surface.message = "Poisson reconstruction found no surface: are the normals consistent?";
+    return surface;
+  }
+  if (options.remesh_iterations > 0) {
+    const double edge = options.edge_length > 0 ? options.edge_length : 2 * surface.spacing;
+    repaired = RepairSurface(
+        RemeshIsotropic(repaired.mesh,
+                        {.edge_length = edge, .iterations = options.remesh_iterations}),
+        repair);
+    Append(surface.notes, repaired.notes);
+  }
+  surface.mesh = std::move(repaired.mesh);
+  surface.report = CheckSurface(surface.mesh);
+  Conclude(options, surface);
+  return surface;
+}
+
+}  // namespace lacuna
