@@ -6,14 +6,15 @@
 #include <memory>
 
 #include "fem/block_matrix.h"
+#include "fem/element_schedule.h"
 #include "geometry/tet_mesh.h"
 
 namespace lacuna {
 
 struct Body {
-  TetMesh mesh;              // rest shape, m
+  TetMesh mesh;  // rest shape, m
   BoundarySurface boundary;
-  double density = 0;        // kg/m³
+  double density = 0;  // kg/m³
 
   // Quadrature: 1 point per linear tet, 4 per quadratic tet (exact to degree 2). Point p of element
   // e is q = e·points_per_element + p.
@@ -24,14 +25,21 @@ struct Body {
   Eigen::VectorXd node_mass;  // lumped (HRZ for quadratic), kg; sums to density·volume
 
   std::shared_ptr<const BlockPattern> pattern;
+  std::shared_ptr<const ElementSchedule> schedule;  // how elements add into shared arrays
 
   int NodeCount() const { return static_cast<int>(mesh.NodeCount()); }
   int ElementCount() const { return static_cast<int>(mesh.TetCount()); }
   int PointCount() const { return ElementCount() * points_per_element; }
 };
 
-// Throws InputError when an element has no positive volume.
+// Throws InputError when the mesh is empty, names a node that is not there, has an element without
+// positive volume (at a quadrature point of a curved one) or a node without element, or when the
+// density is not positive.
 Body MakeBody(const TetMesh& mesh, double density);
+
+// An element that is inside out or flat (det ∂x/∂X ≤ 0 at a quadrature point) when the nodes are at
+// `position` (3n), the one with the smallest number; −1 when there is none.
+int FindInvertedElement(const Body& body, const Eigen::VectorXd& position);
 
 }  // namespace lacuna
 

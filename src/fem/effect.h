@@ -39,8 +39,9 @@ class Effect {
   // Adds the effect's nodal forces, N.
   virtual void AddForce(const Kinematics& at, Eigen::VectorXd* force) const = 0;
 
-  // Adds position_weight · ∂f/∂x + velocity_weight · ∂f/∂v, N/m and N s/m. For an effect whose
-  // exact tangent is indefinite, `convexify` asks for a symmetric negative semi-definite stand-in.
+  // Adds position_weight · ∂f/∂x + velocity_weight · ∂f/∂v, N/m and N s/m; of a matrix that is not
+  // symmetric, the symmetric part. For an effect whose exact tangent is indefinite, `convexify`
+  // asks for a symmetric negative semi-definite stand-in (for weights ≥ 0).
   virtual void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
                            bool convexify, BlockMatrix* tangent) const = 0;
 

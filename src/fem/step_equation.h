@@ -4,9 +4,12 @@
 // step as v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states:
 //   implicit Euler   γ = 1/h        x̃ = xₙ                     ṽ = vₙ
 //   BDF2             γ = 3/(2h)     x̃ = (4 xₙ − xₙ₋₁)/3        ṽ = (4 vₙ − vₙ₋₁)/3
+//     after a step of another length, h/ω:
+//                    γ = (1+2ω)/(1+ω)/h    x̃ = ((1+ω)² xₙ − ω² xₙ₋₁)/(1+2ω),  ṽ likewise
 //   quasi-static     no inertia;    v = (x − xₙ)/h for rate-dependent effects, 0 without a step
 // so that a step is the root of
-//   r(x) = M a(x) − Σ f_effect(x, v(x), t)          and          ∂r/∂x = γ² M − Σ (∂f/∂x + γ ∂f/∂v).
+//   r(x) = M a(x) − Σ f_effect(x, v(x), t)          and          ∂r/∂x = γ² M − Σ (∂f/∂x + γ
+//   ∂f/∂v).
 // r(x) is also the force that would have to act from outside for x to be the motion: what the
 // force fit estimates and what the diagnosis reads.
 #ifndef LACUNA_FEM_STEP_EQUATION_H_
@@ -21,14 +24,16 @@ namespace lacuna {
 
 enum class TimeScheme { kQuasiStatic, kImplicitEuler, kBdf2 };
 
-// The motion up to now. `previous_*` is one step earlier, of the same length; empty before the
-// second step (BDF2 then starts with one implicit Euler step).
+// The motion up to now. `previous_*` is one step earlier; empty before the second step (BDF2 then
+// starts with one implicit Euler step, whose error is of second order as one step's is).
 struct MotionHistory {
-  double time = 0;                          // s
-  Eigen::VectorXd position, velocity;       // 3n
+  double time = 0;                     // s
+  Eigen::VectorXd position, velocity;  // 3n
   Eigen::VectorXd previous_position, previous_velocity;
+  double previous_time_step = 0;              // s; 0: as long as the next one
   std::vector<Eigen::VectorXd> effect_state;  // one per effect of the model
 };
+// At rest in the rest shape, at time 0.
 MotionHistory RestHistory(const Model& model);
 
 class StepEquation {
@@ -39,11 +44,13 @@ class StepEquation {
 
   Eigen::VectorXd Velocity(const Eigen::VectorXd& position) const;
   // r(x), N, at all nodes (at gripped nodes: the reaction of the grip with a minus sign removed,
-  // i.e. the force the grip exerts).
-  void Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual) const;
-  // ∂r/∂x, N/m, at all nodes.
+  // i.e. the force the grip exerts). `force_scale`, where asked for, becomes the sum of the
+  // Euclidean norms of the terms of r, N: what "small" is to be measured by.
+  void Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
+                double* force_scale = nullptr) const;
+  // ∂r/∂x, N/m, at all nodes (overwrites `tangent`).
   void Tangent(const Eigen::VectorXd& position, bool convexify, BlockMatrix* tangent) const;
-  // ∂r/∂(parameter k of effect j), N per unit.
+  // ∂r/∂(parameter k of effect j), N per unit (overwrites `derivative`).
   void ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
                            Eigen::VectorXd* derivative) const;
   // Inertial plus stored energy whose gradient r is, where all effects have one; used by the line
@@ -53,11 +60,14 @@ class StepEquation {
   MotionHistory Advance(const Eigen::VectorXd& position) const;
 
   double end_time() const { return end_time_; }
+  double rate() const { return rate_; }  // γ, 1/s; 0 in statics
 
  private:
+  Kinematics At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity, int effect) const;
+
   const Model& model_;
   const MotionHistory& history_;
-  double rate_ = 0;           // γ
+  double rate_ = 0;  // γ
   bool inertia_ = true;
   double time_step_ = 0;
   double end_time_ = 0;

@@ -6,16 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "core/config.h"
 #include "core/quantity.h"
 
 namespace lacuna {
 
 struct ParameterCard {
-  std::string name;         // the YAML key
-  std::string meaning;      // one phrase
-  Dimension dimension;      // of the value; SI inside
-  double null_value = 0;    // the value at which the effect vanishes (NaN where it has none)
-  double plausible_min = 0;  // plausible range for soft objects, SI; also the scale of its prior
+  std::string name;           // the YAML key
+  std::string meaning;        // one phrase
+  Dimension dimension;        // of the value; SI inside
+  Bounds bounds = kAnyValue;  // values outside make no sense: the YAML check refuses them
+  double null_value = 0;      // the value at which the effect vanishes (NaN where it has none)
+  double plausible_min = 0;   // plausible range for soft objects, SI; also the scale of its prior
   double plausible_max = 0;
   double default_value = 0;  // SI; NaN: the user must give it
   bool log_scale = false;    // searched on a logarithmic scale
@@ -27,8 +29,8 @@ struct EffectCard {
   std::string equation;  // in plain Unicode
   std::string citation;
   std::vector<ParameterCard> parameters;
-  std::string residual_when_missing;   // what a user sees when the model lacks it
-  std::string separating_experiment;   // what tells it from its look-alikes
+  std::string residual_when_missing;     // what a user sees when the model lacks it
+  std::string separating_experiment;     // what tells it from its look-alikes
   std::vector<std::string> look_alikes;  // types of effects easily taken for it
   // Invariances that the test suite then checks.
   bool conserves_momentum = false;          // forces sum to zero

@@ -1,0 +1,85 @@
+#include "effects/catalogue.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <utility>
+
+namespace lacuna {
+
+CatalogueEntry LinearElasticity();
+CatalogueEntry CorotationalElasticity();
+CatalogueEntry SaintVenantKirchhoff();
+CatalogueEntry NeoHookean();
+CatalogueEntry Gravity();
+CatalogueEntry MassDamping();
+CatalogueEntry StiffnessDamping();
+
+const std::vector<CatalogueEntry>& Catalogue() {
+  static const std::vector<CatalogueEntry> entries{
+      LinearElasticity(), CorotationalElasticity(), SaintVenantKirchhoff(), NeoHookean(), Gravity(),
+      MassDamping(),      StiffnessDamping(),
+  };
+  return entries;
+}
+
+namespace {
+
+std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string& key,
+                                   const Config& config, const Effect* material) {
+  std::vector<std::pair<std::string, const CatalogueEntry*>> choices;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    if (entry.kind == kind) choices.emplace_back(entry.card->type, &entry);
+  }
+  const CatalogueEntry* entry = config.Choice(key, choices);
+  return entry->make(entry->read(*entry->card, config, material));
+}
+
+}  // namespace
+
+const CatalogueEntry* FindEntry(const std::string& type) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    if (entry.card->type == type) return &entry;
+  }
+  return nullptr;
+}
+
+std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material) {
+  return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material);
+}
+
+std::shared_ptr<Effect> MakeMaterial(const Config& config) {
+  return MakeOfKind(CatalogueEntry::Kind::kMaterial, "law", config, nullptr);
+}
+
+std::shared_ptr<Effect> MakeEffect(const std::string& type,
+                                   const std::map<std::string, double>& parameters) {
+  const CatalogueEntry* entry = FindEntry(type);
+  CHECK(entry != nullptr) << "no effect is called " << type;
+  Eigen::VectorXd values(entry->card->parameters.size());
+  size_t named = 0;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const ParameterCard& parameter = entry->card->parameters[k];
+    const auto given = parameters.find(parameter.name);
+    named += given != parameters.end();
+    values[k] = given != parameters.end() ? given->second : parameter.default_value;
+    CHECK(!std::isnan(values[k])) << type << " needs " << parameter.name;
+  }
+  CHECK_EQ(named, parameters.size()) << "a parameter that " << type << " does not have";
+  return entry->make(values);
+}
+
+Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
+                               const Effect* /*material*/) {
+  Eigen::VectorXd values(card.parameters.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const ParameterCard& parameter = card.parameters[k];
+    values[k] = std::isnan(parameter.default_value)
+                    ? config.Quantity(parameter.name, parameter.dimension, parameter.bounds)
+                    : config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
+                                      parameter.default_value);
+  }
+  return values;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,39 @@
+// The two parameters that all isotropic elasticity laws have in common.
+#ifndef LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
+#define LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
+
+#include <limits>
+#include <vector>
+
+#include "record/effect_card.h"
+
+namespace lacuna {
+
+// young_modulus and poisson_ratio, in the order that ElasticSolid expects.
+inline std::vector<ParameterCard> ElasticParameters() {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  return {{.name = "young_modulus",
+           .meaning = "Young's modulus at small strain",
+           .dimension = kPressure,
+           .bounds = kPositive,
+           .null_value = 0,
+           .plausible_min = 1e3,
+           .plausible_max = 1e7,
+           .default_value = kNone,
+           .log_scale = true},
+          {.name = "poisson_ratio",
+           .meaning = "Poisson's ratio at small strain; 0.5 would be incompressible, which a "
+                      "displacement formulation cannot represent (0.49 comes close; use quadratic "
+                      "elements above 0.45, linear ones lock)",
+           .dimension = kDimensionless,
+           .bounds = {-1, 0.5, true, true},
+           .null_value = kNone,
+           .plausible_min = 0.2,
+           .plausible_max = 0.499,
+           .default_value = kNone,
+           .log_scale = false}};
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_

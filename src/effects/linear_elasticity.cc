@@ -1,0 +1,81 @@
+// Small-strain linear elasticity (Hooke's law).
+#include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
+#include "fem/elastic_solid.h"
+
+namespace lacuna {
+namespace {
+
+class LinearLaw {
+ public:
+  static const EffectCard& Card() {
+    static const EffectCard card{
+        .type = "linear",
+        .title = "Linear elasticity",
+        .equation = "ψ = μ ε:ε + λ/2 (tr ε)²,  ε = ½ (F + Fᵀ) − I,  P = 2μ ε + λ (tr ε) I",
+        .citation =
+            "R. Hooke, De Potentia Restitutiva, 1678; T. J. R. Hughes, The Finite Element "
+            "Method, Dover 2000, ch. 2.7",
+        .parameters = ElasticParameters(),
+        .residual_when_missing =
+            "without any elasticity the body flows; where a nonlinear law stands in for it, "
+            "nothing "
+            "is missing as long as rotations stay below a few degrees",
+        .separating_experiment =
+            "load in small steps: the linear law's displacements are proportional to the load at "
+            "every amplitude and its body swells when it turns; a corotational body does neither",
+        .look_alikes = {"corotational", "st_venant_kirchhoff", "neo_hookean"},
+        .conserves_momentum = true,
+        // Torques balance about the rest positions only: the law does not know of rotations.
+        .conserves_angular_momentum = false};
+    return card;
+  }
+
+  explicit LinearLaw(const LameConstants& lame) : lame_(lame) {}
+
+  double EnergyDensity(const Eigen::Matrix3d& F) const {
+    const Eigen::Matrix3d strain = Strain(F);
+    const double trace = strain.trace();
+    return lame_.mu * strain.squaredNorm() + 0.5 * lame_.lambda * trace * trace;
+  }
+
+  Eigen::Matrix3d Stress(const Eigen::Matrix3d& F) const {
+    Eigen::Matrix3d stress = Strain(F);
+    const double trace = stress.trace();
+    stress *= 2 * lame_.mu;
+    stress.diagonal().array() += lame_.lambda * trace;
+    return stress;
+  }
+
+  // Constant and positive semi-definite by itself.
+  StressTangent Tangent(const Eigen::Matrix3d& /*F*/, bool /*convexify*/) const {
+    StressTangent tangent = StressTangent::Zero();
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        tangent(i + 3 * j, i + 3 * j) += lame_.mu;
+        tangent(i + 3 * j, j + 3 * i) += lame_.mu;
+        tangent(4 * i, 4 * j) += lame_.lambda;
+      }
+    }
+    return tangent;
+  }
+
+ private:
+  static Eigen::Matrix3d Strain(const Eigen::Matrix3d& F) {
+    return 0.5 * (F + F.transpose()) - Eigen::Matrix3d::Identity();
+  }
+
+  LameConstants lame_;
+};
+
+}  // namespace
+
+CatalogueEntry LinearElasticity() {
+  return {&LinearLaw::Card(), CatalogueEntry::Kind::kMaterial,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<ElasticSolid<LinearLaw>>(parameters);
+          },
+          &ReadParameters};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,86 @@
+// Mass-proportional damping, the first half of Rayleigh's.
+#include <glog/logging.h>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+class MassDampingEffect final : public Effect {
+ public:
+  static const EffectCard& TheCard() {
+    static const EffectCard card{
+        .type = "mass_damping",
+        .title = "Mass-proportional damping",
+        .equation = "f_i = −α m_i v_i;  damping ratio of a mode of angular frequency ω: α/(2ω)",
+        .citation = "J. W. Strutt, Baron Rayleigh, The Theory of Sound, vol. 1, 1877, §81–82",
+        .parameters = {{.name = "alpha",
+                        .meaning = "rate at which free motion in the laboratory frame decays",
+                        .dimension = kRate,
+                        .bounds = kNotNegative,
+                        .null_value = 0,
+                        .plausible_min = 0,
+                        .plausible_max = 20,
+                        .default_value = std::numeric_limits<double>::quiet_NaN(),
+                        .log_scale = false}},
+        .residual_when_missing =
+            "a force against the velocity, proportional to mass: all modes, "
+            "and free flight too, die out at the same rate α/2",
+        .separating_experiment =
+            "compare the decay of a slow and a fast mode: here both decay at the same rate, with "
+            "stiffness-proportional damping the fast one decays by the square of its frequency "
+            "sooner; or let it fall freely",
+        .look_alikes = {"stiffness_damping"},
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    return card;
+  }
+
+  explicit MassDampingEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, alpha_); }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), 1);
+    alpha_ = values[0];
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddDrag(at, alpha_, force);
+  }
+
+  void AddTangents(const Kinematics& at, double /*position_weight*/, double velocity_weight,
+                   bool /*convexify*/, BlockMatrix* tangent) const override {
+    for (int i = 0; i < at.body.NodeCount(); ++i) {
+      tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() -=
+          velocity_weight * alpha_ * at.body.node_mass[i];
+    }
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK_EQ(parameter, 0);
+    AddDrag(at, 1, derivative);
+  }
+
+ private:
+  static void AddDrag(const Kinematics& at, double alpha, Eigen::VectorXd* force) {
+    for (int i = 0; i < at.body.NodeCount(); ++i) {
+      force->segment<3>(3 * i) -= alpha * at.body.node_mass[i] * at.velocity.segment<3>(3 * i);
+    }
+  }
+
+  double alpha_ = 0;  // 1/s
+};
+
+}  // namespace
+
+CatalogueEntry MassDamping() {
+  return {&MassDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<MassDampingEffect>(parameters);
+          },
+          &ReadParameters};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,240 @@
+// Stiffness-proportional damping, the second half of Rayleigh's, for large rotations and strains.
+//
+// The textbook force −β K v is unsound in a nonlinear body whichever K is taken: with the stiffness
+// of the rest shape it brakes a body that merely turns (a rigid rotation is a null vector of K only
+// about the rest position), with the current tangent it feeds energy in where that is indefinite.
+// Here the rest-state elasticity acts on the *rate of the Green–Lagrange strain* instead, a
+// Kelvin–Voigt solid: no force under any rigid motion, power −Ė : βC : Ė ≤ 0 always, and −β K v for
+// small strains and rotations whatever the elasticity law.
+//
+// The moduli are the effect's own (by default copies of the material's): when a fit changes
+// Young's modulus, the viscosity βC stays what it was, and ∂f/∂(parameter) is complete.
+#include <glog/logging.h>
+
+#include <string>
+
+#include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
+#include "fem/element_kinematics.h"
+#include "fem/lame_constants.h"
+
+namespace lacuna {
+namespace {
+
+// S = 2μ Ė + λ (tr Ė) I,  Ė = sym(Fᵀ Ḟ)
+Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matrix3d& F,
+                              const Eigen::Matrix3d& rate) {
+  const Eigen::Matrix3d product = F.transpose() * rate;
+  Eigen::Matrix3d stress = viscosity.mu * (product + product.transpose());
+  stress.diagonal().array() += viscosity.lambda * product.trace();
+  return stress;
+}
+
+class StiffnessDampingEffect final : public Effect {
+ public:
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit StiffnessDampingEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override {
+    return Eigen::Vector3d(beta_, young_modulus_, poisson_ratio_);
+  }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), 3);
+    beta_ = values[0];
+    young_modulus_ = values[1];
+    poisson_ratio_ = values[2];
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddViscousForce(at, Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_)), force);
+  }
+
+  void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
+                   bool convexify, BlockMatrix* tangent) const override {
+    if (at.body.mesh.Order() == 1) {
+      AddDampingMatrix<4>(at, position_weight, velocity_weight, convexify, tangent);
+    } else {
+      AddDampingMatrix<10>(at, position_weight, velocity_weight, convexify, tangent);
+    }
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter >= 0 && parameter < 3);
+    if (parameter == 0) {
+      AddViscousForce(at, LameFromYoung(young_modulus_, poisson_ratio_), derivative);
+    } else if (parameter == 1) {
+      AddViscousForce(at, Scaled(beta_, LameByYoungModulus(poisson_ratio_)), derivative);
+    } else {
+      AddViscousForce(at, Scaled(beta_, LameByPoissonRatio(young_modulus_, poisson_ratio_)),
+                      derivative);
+    }
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "stiffness_damping",
+        .title = "Stiffness-proportional damping (Kelvin–Voigt)",
+        .equation =
+            "P = F β (2μ Ė + λ (tr Ė) I),  Ė = ½ (FᵀḞ + ḞᵀF);  at small strain "
+            "f = −β K v, damping ratio of a mode of angular frequency ω: βω/2",
+        .citation =
+            "J. W. Strutt, Baron Rayleigh, The Theory of Sound, vol. 1, 1877, §81–82; "
+            "objective form: J. C. Simo, T. J. R. Hughes, Computational Inelasticity, "
+            "Springer 1998, ch. 10",
+        .parameters = {},
+        .residual_when_missing =
+            "a self-equilibrated force against the rate of strain: fast modes "
+            "die out much sooner than predicted, slow ones hardly",
+        .separating_experiment =
+            "compare the decay of two modes: here the decay rate grows as the square of the "
+            "frequency, with mass-proportional damping it is the same; strain it and hold: stress "
+            "relaxes at once, with a viscoelastic branch it takes the branch's time",
+        .look_alikes = {"mass_damping"},
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+    card.parameters.push_back({.name = "beta",
+                               .meaning = "time by which viscous stress leads elastic stress",
+                               .dimension = kTime,
+                               .bounds = kNotNegative,
+                               .null_value = 0,
+                               .plausible_min = 0,
+                               .plausible_max = 0.05,
+                               .default_value = std::numeric_limits<double>::quiet_NaN(),
+                               .log_scale = false});
+    for (ParameterCard parameter : ElasticParameters()) {
+      parameter.meaning =
+          "of the stiffness that β refers to (if left out: the material's): " + parameter.meaning;
+      card.parameters.push_back(std::move(parameter));
+    }
+    return card;
+  }
+
+  static LameConstants Scaled(double factor, const LameConstants& constants) {
+    return {factor * constants.lambda, factor * constants.mu};
+  }
+
+  static void AddViscousForce(const Kinematics& at, const LameConstants& viscosity,
+                              Eigen::VectorXd* force) {
+    if (at.body.mesh.Order() == 1) {
+      AddViscousForce<4>(at, viscosity, force);
+    } else {
+      AddViscousForce<10>(at, viscosity, force);
+    }
+  }
+
+  template <int kNodes>
+  static void AddViscousForce(const Kinematics& at, const LameConstants& viscosity,
+                              Eigen::VectorXd* force) {
+    const Body& body = at.body;
+    ForEachElement(*body.schedule, [&](int element) {
+      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
+      const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(body, element, at.velocity);
+      Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+        const int q = element * QuadraturePoints<kNodes>() + p;
+        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
+        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
+        const Eigen::Matrix3d stress = F * ViscousStress(viscosity, F, FieldGradient<kNodes>(v, g));
+        nodal.noalias() -= (body.weight[q] * stress).lazyProduct(g.transpose());
+      }
+      ScatterNodes<kNodes>(body, element, nodal, force);
+    });
+  }
+
+  // ∂P/∂Ḟ is symmetric. ∂P/∂F at fixed Ḟ is δF S + F βC : sym(δFᵀ Ḟ), of which the matrix takes the
+  // symmetric part; the definite stand-in drops it, as it is small beside ∂P/∂Ḟ by the strain
+  // increment of a step.
+  template <int kNodes>
+  void AddDampingMatrix(const Kinematics& at, double position_weight, double velocity_weight,
+                        bool convexify, BlockMatrix* tangent) const {
+    const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
+    const Body& body = at.body;
+    ForEachElement(*body.schedule, [&](int element) {
+      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
+      const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(body, element, at.velocity);
+      ElementStiffness<kNodes> stiffness;
+      stiffness.SetZero();
+      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+        const int q = element * QuadraturePoints<kNodes>() + p;
+        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
+        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
+        StressTangent C = velocity_weight * RateTangent(viscosity, F, F);
+        if (!convexify && position_weight != 0) {
+          const Eigen::Matrix3d rate = FieldGradient<kNodes>(v, g);
+          StressTangent by_position = RateTangent(viscosity, F, rate);
+          const Eigen::Matrix3d stress = ViscousStress(viscosity, F, rate);
+          for (int j = 0; j < 3; ++j) {
+            for (int l = 0; l < 3; ++l) {
+              by_position.block<3, 3>(3 * j, 3 * l).diagonal().array() += stress(l, j);
+            }
+          }
+          C += 0.5 * position_weight * (by_position + by_position.transpose());
+        }
+        AddStiffness<kNodes>(C, g, -body.weight[q], &stiffness);
+      }
+      ScatterStiffness<kNodes>(body, element, stiffness, tangent);
+    });
+  }
+
+  // The map δ ↦ F (2μ sym(Aᵀ δ) + λ tr(Aᵀ δ) I).
+  static StressTangent RateTangent(const LameConstants& viscosity, const Eigen::Matrix3d& F,
+                                   const Eigen::Matrix3d& A) {
+    const Eigen::Map<const Eigen::Matrix<double, 9, 1>> f(F.data());
+    const Eigen::Map<const Eigen::Matrix<double, 9, 1>> a(A.data());
+    const Eigen::Matrix3d FAt = F * A.transpose();
+    StressTangent tangent = viscosity.lambda * f * a.transpose();
+    for (int l = 0; l < 3; ++l) {
+      for (int j = 0; j < 3; ++j) {
+        auto block = tangent.block<3, 3>(3 * j, 3 * l);
+        block.noalias() += viscosity.mu * F.col(l) * A.col(j).transpose();
+        if (l == j) block += viscosity.mu * FAt;
+      }
+    }
+    return tangent;
+  }
+
+  double beta_ = 0;           // s
+  double young_modulus_ = 0;  // Pa
+  double poisson_ratio_ = 0;
+};
+
+// The moduli are the material's unless given.
+Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
+                                 const Effect* material) {
+  Eigen::VectorXd values(card.parameters.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const ParameterCard& parameter = card.parameters[k];
+    if (material != nullptr && !config.Has(parameter.name)) {
+      const std::vector<ParameterCard>& offered = material->Card().parameters;
+      const auto same = std::find_if(offered.begin(), offered.end(), [&](const ParameterCard& p) {
+        return p.name == parameter.name;
+      });
+      if (same != offered.end()) {
+        values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
+                                    material->Parameters()[same - offered.begin()]);
+        continue;
+      }
+    }
+    values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
+  }
+  return values;
+}
+
+}  // namespace
+
+CatalogueEntry StiffnessDamping() {
+  return {&StiffnessDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<StiffnessDampingEffect>(parameters);
+          },
+          &ReadWithMaterial};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,122 @@
+#include "fem/body.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "core/error.h"
+#include "fem/shape_functions.h"
+
+namespace lacuna {
+namespace {
+
+void CheckNodeNumbers(const TetMesh& mesh) {
+  if (mesh.TetCount() == 0) throw InputError("the tetrahedral mesh has no element");
+  if (mesh.tets.rows() != 4 && mesh.tets.rows() != 10) {
+    throw InputError(fmt::format("a tetrahedron has 4 or 10 nodes, not {}", mesh.tets.rows()));
+  }
+  if (!mesh.nodes.allFinite())
+    throw InputError("the tetrahedral mesh has a node that is not finite");
+  std::vector<char> used(mesh.NodeCount(), 0);
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    for (const int node : mesh.tets.col(e)) {
+      if (node < 0 || node >= mesh.NodeCount()) {
+        throw InputError(fmt::format("tetrahedron {} names node {}; the mesh has nodes 0 to {}", e,
+                                     node, mesh.NodeCount() - 1));
+      }
+      used[node] = 1;
+    }
+  }
+  for (size_t node = 0; node < used.size(); ++node) {
+    if (!used[node]) throw InputError(fmt::format("node {} belongs to no tetrahedron", node));
+  }
+}
+
+void Integrate(Body* body) {
+  const TetMesh& mesh = body->mesh;
+  const TetQuadrature rule = ElementQuadrature(mesh.Order());
+  const int nodes = static_cast<int>(mesh.tets.rows());
+  const int points = static_cast<int>(rule.weights.size());
+  body->points_per_element = points;
+  body->weight.resize(body->PointCount());
+  body->shape_gradient.resize(nodes, 3 * body->PointCount());
+
+  // ∂N/∂ξ along the edges that leave corner 0 (the four coordinates sum to 1).
+  const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Eigen::MatrixX3d> reference(points);
+  for (int p = 0; p < points; ++p) {
+    reference[p] = ShapeDerivatives(mesh.Order(), rule.points.col(p)) * along_edges;
+  }
+
+  Eigen::Matrix3Xd corner(3, nodes);
+  for (int e = 0; e < body->ElementCount(); ++e) {
+    for (int a = 0; a < nodes; ++a) corner.col(a) = mesh.nodes.col(mesh.tets(a, e));
+    for (int p = 0; p < points; ++p) {
+      const Eigen::Matrix3d jacobian = corner * reference[p];
+      const double volume = jacobian.determinant() / 6;
+      if (!(volume > 0)) {
+        throw InputError(fmt::format(
+            "tetrahedron {} (corners {}, {}, {}, {}) has volume {:.3g} m^3; a rest shape needs "
+            "positive volumes, corners in right-handed order",
+            e, mesh.tets(0, e), mesh.tets(1, e), mesh.tets(2, e), mesh.tets(3, e), volume));
+      }
+      const int q = e * points + p;
+      body->weight[q] = rule.weights[p] * volume;
+      body->shape_gradient.middleCols<3>(3 * q) = reference[p] * jacobian.inverse();
+    }
+  }
+}
+
+// Hinton, Rock & Zienkiewicz 1976: the diagonal of the consistent mass, scaled to the element's
+// mass. For a straight-sided quadratic tetrahedron it is 1/36 at corners and 4/27 at midpoints
+// (row sums would be negative at the corners); for the linear one a quarter each.
+Eigen::VectorXd LumpedMass(const Body& body) {
+  const TetMesh& mesh = body.mesh;
+  const double corner_share = mesh.Order() == 1 ? 1.0 / 4 : 1.0 / 36;
+  const double midpoint_share = 4.0 / 27;
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(mesh.NodeCount());
+  for (int e = 0; e < body.ElementCount(); ++e) {
+    const double element_mass =
+        body.density *
+        body.weight.segment(e * body.points_per_element, body.points_per_element).sum();
+    for (int a = 0; a < mesh.tets.rows(); ++a) {
+      mass[mesh.tets(a, e)] += element_mass * (a < 4 ? corner_share : midpoint_share);
+    }
+  }
+  return mass;
+}
+
+}  // namespace
+
+Body MakeBody(const TetMesh& mesh, double density) {
+  if (!(density > 0)) {
+    throw InputError(fmt::format("the density must be positive, not {} kg/m^3", density));
+  }
+  CheckNodeNumbers(mesh);
+  Body body;
+  body.mesh = mesh;
+  body.boundary = ExtractBoundary(mesh);
+  body.density = density;
+  Integrate(&body);
+  body.node_mass = LumpedMass(body);
+  body.pattern = std::make_shared<const BlockPattern>(
+      MakeBlockPattern(static_cast<int>(mesh.NodeCount()), mesh.tets));
+  body.schedule = std::make_shared<const ElementSchedule>(MakeElementSchedule(mesh, *body.pattern));
+  return body;
+}
+
+int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
+  const int nodes = static_cast<int>(body.mesh.tets.rows());
+  Eigen::Matrix3Xd x(3, nodes);
+  for (int e = 0; e < body.ElementCount(); ++e) {
+    for (int a = 0; a < nodes; ++a) x.col(a) = position.segment<3>(3 * body.mesh.tets(a, e));
+    for (int q = e * body.points_per_element; q < (e + 1) * body.points_per_element; ++q) {
+      const Eigen::Matrix3d F = x * body.shape_gradient.middleCols<3>(3 * q);
+      if (!(F.determinant() > 0)) return e;
+    }
+  }
+  return -1;
+}
+
+}  // namespace lacuna

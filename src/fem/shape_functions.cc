@@ -1,0 +1,51 @@
+#include "fem/shape_functions.h"
+
+#include <array>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+constexpr std::array<std::array<int, 2>, 6> kEdges{
+    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+
+}  // namespace
+
+Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric) {
+  if (order == 1) return barycentric;
+  Eigen::VectorXd values(10);
+  for (int a = 0; a < 4; ++a) values[a] = barycentric[a] * (2 * barycentric[a] - 1);
+  for (int k = 0; k < 6; ++k) {
+    values[4 + k] = 4 * barycentric[kEdges[k][0]] * barycentric[kEdges[k][1]];
+  }
+  return values;
+}
+
+Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric) {
+  if (order == 1) return Eigen::Matrix4d::Identity();
+  Eigen::MatrixX4d derivatives = Eigen::MatrixX4d::Zero(10, 4);
+  for (int a = 0; a < 4; ++a) derivatives(a, a) = 4 * barycentric[a] - 1;
+  for (int k = 0; k < 6; ++k) {
+    const auto [a, b] = kEdges[k];
+    derivatives(4 + k, a) = 4 * barycentric[b];
+    derivatives(4 + k, b) = 4 * barycentric[a];
+  }
+  return derivatives;
+}
+
+TetQuadrature ElementQuadrature(int order) {
+  TetQuadrature rule;
+  if (order == 1) {
+    rule.points = Eigen::Vector4d::Constant(0.25);
+    rule.weights = Eigen::VectorXd::Ones(1);
+    return rule;
+  }
+  const double near = (5 + 3 * std::sqrt(5.0)) / 20;
+  const double far = (5 - std::sqrt(5.0)) / 20;
+  rule.points = Eigen::Matrix4d::Constant(far);
+  rule.points.diagonal().setConstant(near);
+  rule.weights = Eigen::VectorXd::Constant(4, 0.25);
+  return rule;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,182 @@
+#include "fem/simulate.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "fem/newton.h"
+
+namespace lacuna {
+namespace {
+
+std::vector<char> FixedNodes(const Model& model) {
+  const int nodes = model.body->NodeCount();
+  std::vector<char> fixed(nodes, 0);
+  for (const Grip& grip : model.grips) {
+    for (const int node : grip.nodes) {
+      if (node < 0 || node >= nodes) {
+        throw InputError(
+            fmt::format("a grip holds node {}; the mesh has nodes 0 to {}", node, nodes - 1));
+      }
+      if (fixed[node]) throw InputError(fmt::format("node {} is held twice", node));
+      fixed[node] = 1;
+    }
+  }
+  return fixed;
+}
+
+// `position` with the gripped nodes where their grips put them at `time`.
+Eigen::VectorXd Gripped(const Model& model, double time, Eigen::VectorXd position) {
+  for (const Grip& grip : model.grips) {
+    Eigen::Matrix3Xd places(3, grip.nodes.size());
+    if (grip.motion) {
+      places = grip.motion(time);
+      CHECK_EQ(places.cols(), grip.nodes.size()) << "a grip's motion must place all its nodes";
+    } else {
+      for (Eigen::Index k = 0; k < grip.nodes.size(); ++k) {
+        places.col(k) = model.body->mesh.nodes.col(grip.nodes[k]);
+      }
+    }
+    for (Eigen::Index k = 0; k < grip.nodes.size(); ++k) {
+      position.segment<3>(3 * grip.nodes[k]) = places.col(k);
+    }
+  }
+  return position;
+}
+
+StepSummary::Status StepStatus(NewtonSummary::Status status) {
+  switch (status) {
+    case NewtonSummary::Status::kConverged:
+      return StepSummary::Status::kConverged;
+    case NewtonSummary::Status::kNoConvergence:
+      return StepSummary::Status::kNoConvergence;
+    case NewtonSummary::Status::kLinearSolverFailed:
+      return StepSummary::Status::kLinearSolverFailed;
+    case NewtonSummary::Status::kNotRun:
+      break;
+  }
+  return StepSummary::Status::kNotRun;
+}
+
+}  // namespace
+
+struct Stepper::Implementation {
+  Implementation(const Model& the_model, const StepOptions& the_options)
+      : model(the_model),
+        options(the_options),
+        fixed(FixedNodes(model)),
+        solver(model.body->pattern, fixed, options.linear),
+        tangent(model.body->pattern) {}
+
+  NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
+                      const Eigen::VectorXd& target, Eigen::VectorXd* position) {
+    const NewtonProblem problem{equation, force, fixed, options.relative_tolerance,
+                                options.max_iterations};
+    return SolveByNewton(problem, target, &solver, &tangent, position);
+  }
+
+  // From the start, where an applied force r(start) would keep the balance, to the wanted state:
+  // that force is withdrawn, and the grips are moved, a fraction at a time.
+  NewtonSummary SolveByIncrements(const StepEquation& equation, const Eigen::VectorXd& force,
+                                  const Eigen::VectorXd& target, int* increments,
+                                  Eigen::VectorXd* position) {
+    constexpr double kSmallestIncrement = 1.0 / 512;
+    const Eigen::VectorXd start = *position;
+    Eigen::VectorXd imbalance;
+    equation.Residual(start, &imbalance);
+    imbalance -= force;
+    double reached = 0, increment = 0.25;
+    NewtonSummary summary;
+    int iterations = 0;
+    while (reached < 1) {
+      const double aim = std::min(1.0, reached + increment);
+      Eigen::VectorXd trial = *position;
+      solver.DropFactor();
+      summary =
+          Solve(equation, force + (1 - aim) * imbalance, start + aim * (target - start), &trial);
+      iterations += summary.iterations;
+      ++*increments;
+      if (summary.IsUsable()) {
+        reached = aim;
+        *position = trial;
+        if (summary.iterations <= 6) increment *= 1.5;
+      } else {
+        increment *= 0.5;
+        if (increment < kSmallestIncrement) {
+          summary.message += fmt::format("; {:.1f} % of the load could be applied", 100 * reached);
+          break;
+        }
+      }
+    }
+    summary.iterations = iterations;
+    return summary;
+  }
+
+  StepSummary Take(TimeScheme scheme, double time_step, const Eigen::VectorXd& external_force,
+                   MotionHistory* history) {
+    const Eigen::Index size = history->position.size();
+    CHECK(external_force.size() == 0 || external_force.size() == size);
+    const Eigen::VectorXd force =
+        external_force.size() > 0 ? external_force : Eigen::VectorXd::Zero(size);
+    const StepEquation equation(model, *history, scheme, time_step);
+    const Eigen::VectorXd target = Gripped(model, equation.end_time(), history->position);
+
+    StepSummary result;
+    if (!target.allFinite() || !force.allFinite()) {
+      result.status = StepSummary::Status::kNoConvergence;
+      result.message = fmt::format(
+          "at {:.6g} s: a grip's position or an external force is not finite", equation.end_time());
+      return result;
+    }
+    const int factorisations_before = solver.factorisations();
+    Eigen::VectorXd position = history->position;
+    NewtonSummary solved = Solve(equation, force, target, &position);
+    int inverted = solved.IsUsable() ? FindInvertedElement(*model.body, position) : -1;
+    if (!solved.IsUsable() || inverted >= 0) {
+      const int iterations = solved.iterations;
+      position = history->position;
+      solved = SolveByIncrements(equation, force, target, &result.load_increments, &position);
+      solved.iterations += iterations;
+      inverted = solved.IsUsable() ? FindInvertedElement(*model.body, position) : -1;
+    }
+    result.iterations = solved.iterations;
+    result.factorisations = solver.factorisations() - factorisations_before;
+    result.residual = solved.residual;
+    result.status = StepStatus(solved.status);
+    if (!solved.IsUsable()) {
+      result.message = fmt::format("at {:.6g} s: {}", equation.end_time(), solved.message);
+    } else if (inverted >= 0) {
+      result.status = StepSummary::Status::kInvertedElement;
+      result.message =
+          fmt::format("at {:.6g} s: element {} is inverted", equation.end_time(), inverted);
+    }
+    if (result.IsUsable()) *history = equation.Advance(position);
+    return result;
+  }
+
+  const Model model;
+  const StepOptions options;
+  const std::vector<char> fixed;
+  LinearSolver solver;
+  BlockMatrix tangent;
+};
+
+Stepper::Stepper(const Model& model, const StepOptions& options)
+    : implementation_(std::make_unique<Implementation>(model, options)) {}
+Stepper::~Stepper() = default;
+Stepper::Stepper(Stepper&&) noexcept = default;
+Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+
+StepSummary Stepper::Step(double time_step, const Eigen::VectorXd& external_force,
+                          MotionHistory* history) {
+  CHECK_GT(time_step, 0);
+  return implementation_->Take(implementation_->options.scheme, time_step, external_force, history);
+}
+
+StepSummary Stepper::Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history) {
+  return implementation_->Take(TimeScheme::kQuasiStatic, 0, external_force, history);
+}
+
+}  // namespace lacuna

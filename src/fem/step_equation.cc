@@ -1,0 +1,148 @@
+#include "fem/step_equation.h"
+
+#include <glog/logging.h>
+
+#include <limits>
+
+namespace lacuna {
+namespace {
+
+Eigen::VectorXd RestPosition(const Body& body) {
+  return Eigen::Map<const Eigen::VectorXd>(body.mesh.nodes.data(), body.mesh.nodes.size());
+}
+
+}  // namespace
+
+MotionHistory RestHistory(const Model& model) {
+  MotionHistory history;
+  history.position = RestPosition(*model.body);
+  history.velocity = Eigen::VectorXd::Zero(history.position.size());
+  for (const auto& effect : model.effects) {
+    Eigen::VectorXd state(effect->StateSize(*model.body));
+    effect->InitialState(*model.body, &state);
+    history.effect_state.push_back(std::move(state));
+  }
+  return history;
+}
+
+StepEquation::StepEquation(const Model& model, const MotionHistory& history, TimeScheme scheme,
+                           double time_step)
+    : model_(model),
+      history_(history),
+      inertia_(scheme != TimeScheme::kQuasiStatic),
+      time_step_(time_step),
+      end_time_(history.time + time_step) {
+  CHECK_EQ(history.position.size(), 3 * model.body->NodeCount());
+  CHECK_EQ(history.effect_state.size(), model.effects.size());
+  CHECK(time_step > 0 || (time_step == 0 && !inertia_)) << "a step with inertia needs a length";
+  if (time_step == 0) return;
+  const double h = time_step;
+  if (scheme == TimeScheme::kBdf2 && history.previous_position.size() > 0) {
+    const double ratio = history.previous_time_step > 0 ? h / history.previous_time_step : 1;
+    const double now = (1 + ratio) * (1 + ratio) / (1 + 2 * ratio);
+    const double before = ratio * ratio / (1 + 2 * ratio);
+    rate_ = (1 + 2 * ratio) / (1 + ratio) / h;
+    position_history_ = now * history.position - before * history.previous_position;
+    velocity_history_ = now * history.velocity - before * history.previous_velocity;
+  } else {
+    rate_ = 1 / h;
+    position_history_ = history.position;
+    velocity_history_ = history.velocity;
+  }
+}
+
+Kinematics StepEquation::At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,
+                            int effect) const {
+  return {*model_.body, position, velocity, end_time_, time_step_, history_.effect_state[effect]};
+}
+
+Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
+  if (rate_ == 0) return Eigen::VectorXd::Zero(position.size());
+  return rate_ * (position - position_history_);
+}
+
+void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
+                            double* force_scale) const {
+  const Eigen::VectorXd velocity = Velocity(position);
+  residual->setZero(position.size());
+  if (inertia_) {
+    const Eigen::VectorXd& mass = model_.body->node_mass;
+    for (Eigen::Index i = 0; i < mass.size(); ++i) {
+      residual->segment<3>(3 * i) =
+          mass[i] * rate_ * (velocity.segment<3>(3 * i) - velocity_history_.segment<3>(3 * i));
+    }
+  }
+  double scale = residual->norm();
+  Eigen::VectorXd force(position.size());
+  for (size_t j = 0; j < model_.effects.size(); ++j) {
+    force.setZero();
+    model_.effects[j]->AddForce(At(position, velocity, static_cast<int>(j)), &force);
+    *residual -= force;
+    scale += force.norm();
+  }
+  if (force_scale != nullptr) *force_scale = scale;
+}
+
+void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
+                           BlockMatrix* tangent) const {
+  const Eigen::VectorXd velocity = Velocity(position);
+  tangent->SetZero();
+  for (size_t j = 0; j < model_.effects.size(); ++j) {
+    model_.effects[j]->AddTangents(At(position, velocity, static_cast<int>(j)), -1, -rate_,
+                                   convexify, tangent);
+  }
+  if (!inertia_) return;
+  const Eigen::VectorXd& mass = model_.body->node_mass;
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() += rate_ * rate_ * mass[i];
+  }
+}
+
+void StepEquation::ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
+                                       Eigen::VectorXd* derivative) const {
+  const Eigen::VectorXd velocity = Velocity(position);
+  derivative->setZero(position.size());
+  model_.effects[effect]->AddParameterDerivative(At(position, velocity, effect), parameter,
+                                                 derivative);
+  *derivative *= -1;
+}
+
+double StepEquation::Potential(const Eigen::VectorXd& position) const {
+  const Eigen::VectorXd velocity = Velocity(position);
+  double potential = 0;
+  if (inertia_) {
+    // ½ γ² (x − x̃ − ṽ/γ)ᵀ M (x − x̃ − ṽ/γ), whose gradient is M a.
+    const Eigen::VectorXd& mass = model_.body->node_mass;
+    for (Eigen::Index i = 0; i < mass.size(); ++i) {
+      potential += 0.5 * mass[i] *
+                   (velocity.segment<3>(3 * i) - velocity_history_.segment<3>(3 * i)).squaredNorm();
+    }
+  }
+  for (size_t j = 0; j < model_.effects.size(); ++j) {
+    const std::optional<double> energy =
+        model_.effects[j]->Energy(At(position, velocity, static_cast<int>(j)));
+    if (!energy) return std::numeric_limits<double>::quiet_NaN();
+    potential += *energy;
+  }
+  return potential;
+}
+
+MotionHistory StepEquation::Advance(const Eigen::VectorXd& position) const {
+  MotionHistory next;
+  next.time = end_time_;
+  next.position = position;
+  next.velocity = Velocity(position);
+  if (time_step_ > 0) {
+    next.previous_position = history_.position;
+    next.previous_velocity = history_.velocity;
+    next.previous_time_step = time_step_;
+  }
+  for (size_t j = 0; j < model_.effects.size(); ++j) {
+    Eigen::VectorXd state = history_.effect_state[j];
+    model_.effects[j]->AdvanceState(At(position, next.velocity, static_cast<int>(j)), &state);
+    next.effect_state.push_back(std::move(state));
+  }
+  return next;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,73 @@
+// Derivatives of the first Piola–Kirchhoff stress and the stiffness blocks made from them.
+//
+// A tangent C maps a change of the deformation gradient to a change of stress, δP = C : δF. Nodes a
+// and b of an element with shape gradients g_a, g_b are coupled by the 3 × 3 block
+//   K_ab = ∂(P g_a)/∂x_b,      (K_ab)_ik = Σ_jl C_ijkl (g_a)_j (g_b)_l.
+#ifndef LACUNA_FEM_STRESS_TANGENT_H_
+#define LACUNA_FEM_STRESS_TANGENT_H_
+
+#include <Eigen/Core>
+
+#include "fem/polar_decomposition.h"
+
+namespace lacuna {
+
+// C as a matrix between column-major vectors: entry (i + 3j, k + 3l) is ∂P_ij/∂F_kl.
+using StressTangent = Eigen::Matrix<double, 9, 9>;
+
+// The stiffness blocks of an element's node pairs a ≤ b, in the order (0,0) (0,1) … (0,n−1) (1,1) …
+template <int kNodes>
+struct ElementStiffness {
+  static constexpr int kPairs = kNodes * (kNodes + 1) / 2;
+  Eigen::Matrix3d block[kPairs];
+  void SetZero() {
+    for (Eigen::Matrix3d& b : block) b.setZero();
+  }
+};
+
+// K += scale · K_ab, for all pairs.
+template <int kNodes>
+void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNodes, 3>& gradient,
+                  double scale, ElementStiffness<kNodes>* stiffness) {
+  // right[b](i + 3j, k) = Σ_l C_ijkl (g_b)_l
+  Eigen::Matrix<double, 9, 3> right[kNodes];
+  for (int b = 0; b < kNodes; ++b) {
+    const double x = scale * gradient(b, 0);
+    const double y = scale * gradient(b, 1);
+    const double z = scale * gradient(b, 2);
+    right[b].noalias() = x * tangent.template middleCols<3>(0);
+    right[b].noalias() += y * tangent.template middleCols<3>(3);
+    right[b].noalias() += z * tangent.template middleCols<3>(6);
+  }
+  int pair = 0;
+  for (int a = 0; a < kNodes; ++a) {
+    const double x = gradient(a, 0);
+    const double y = gradient(a, 1);
+    const double z = gradient(a, 2);
+    for (int b = a; b < kNodes; ++b) {
+      stiffness->block[pair++].noalias() += x * right[b].template middleRows<3>(0) +
+                                            y * right[b].template middleRows<3>(3) +
+                                            z * right[b].template middleRows<3>(6);
+    }
+  }
+}
+
+// The tangent of an isotropic law in the axes of the principal stretches s (Smith, de Goes & Kim
+// 2019, "Analytic eigensystems for isotropic distortion energies"), ψ_i = ∂ψ/∂s_i. Entry k of
+// `twist` and `flip` belongs to the pair (i, j) of the two other axes:
+//   stretch_ij = ∂²ψ/∂s_i∂s_j,   twist = (ψ_i + ψ_j)/(s_i + s_j),   flip = (ψ_i − ψ_j)/(s_i − s_j).
+struct PrincipalTangent {
+  Eigen::Matrix3d stretch;
+  Eigen::Vector3d twist, flip;
+};
+
+// The tangent with these principal values, negative eigenvalues replaced by zero.
+StressTangent ProjectedTangent(const SignedSvd& axes, const PrincipalTangent& principal);
+
+// True when the symmetric tangent has no negative eigenvalue (up to rounding), by its Cholesky
+// factorisation.
+bool IsPositiveSemidefinite(const StressTangent& tangent);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_STRESS_TANGENT_H_

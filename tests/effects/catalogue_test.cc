@@ -1,0 +1,88 @@
+#include "effects/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+namespace lacuna {
+namespace {
+
+std::string ErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Catalogue, HasEachNameOnce) {
+  std::set<std::string> names;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    EXPECT_TRUE(names.insert(entry.card->type).second) << entry.card->type;
+    EXPECT_EQ(FindEntry(entry.card->type), &entry);
+  }
+  EXPECT_EQ(FindEntry("luminiferous_aether"), nullptr);
+}
+
+TEST(Catalogue, NamesOnlyLookAlikesThatExist) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    for (const std::string& other : entry.card->look_alikes) {
+      EXPECT_NE(FindEntry(other), nullptr) << entry.card->type << " and " << other;
+      EXPECT_NE(other, entry.card->type);
+    }
+  }
+}
+
+TEST(Catalogue, MakesAMaterialFromYaml) {
+  const Config config = Config::Parse(
+      "material: {law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}\n", "a.yaml");
+  const auto material = MakeMaterial(config.Child("material"));
+  EXPECT_EQ(material->Card().type, "neo_hookean");
+  EXPECT_DOUBLE_EQ(material->Parameters()[0], 1e5);
+  EXPECT_DOUBLE_EQ(material->Parameters()[1], 0.3);
+  config.RefuseUnknownKeys();
+}
+
+TEST(Catalogue, MakesEffectsFromYaml) {
+  const Config config = Config::Parse(
+      "effects:\n"
+      "  - {type: gravity, acceleration: [0, 0, -9.81 m/s^2]}\n"
+      "  - {type: mass_damping, alpha: 0.5 1/s}\n",
+      "a.yaml");
+  const std::vector<Config> items = config.Items("effects");
+  EXPECT_EQ(MakeEffect(items[0])->Parameters(), Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_DOUBLE_EQ(MakeEffect(items[1])->Parameters()[0], 0.5);
+  config.RefuseUnknownKeys();
+}
+
+TEST(Catalogue, TakesTheModuliOfDampingFromTheMaterial) {
+  const auto material =
+      MakeEffect("corotational", {{"young_modulus", 7e4}, {"poisson_ratio", 0.42}});
+  const Config config = Config::Parse("type: stiffness_damping\nbeta: 3 ms\n", "a.yaml");
+  EXPECT_TRUE(
+      MakeEffect(config, material.get())->Parameters().isApprox(Eigen::Vector3d(0.003, 7e4, 0.42)));
+  EXPECT_THAT(ErrorOf([&] { MakeEffect(config); }), testing::HasSubstr("young_modulus"));
+}
+
+TEST(Catalogue, RefusesAnImpossiblePoissonRatio) {
+  for (const std::string value : {"0.5", "0.6", "-1", "-3"}) {
+    const Config config = Config::Parse(
+        "law: linear\nyoung_modulus: 1 MPa\npoisson_ratio: " + value + "\n", "a.yaml");
+    const std::string message = ErrorOf([&] { MakeMaterial(config); });
+    EXPECT_THAT(message, testing::HasSubstr("a.yaml:3:")) << value;
+    EXPECT_THAT(message, testing::HasSubstr("poisson_ratio")) << value;
+  }
+}
+
+TEST(Catalogue, RefusesAnUnknownEffectAndALawAmongEffects) {
+  const Config unknown = Config::Parse("type: gravty\n", "a.yaml");
+  EXPECT_THAT(ErrorOf([&] { MakeEffect(unknown); }), testing::HasSubstr("gravity"));
+  const Config law = Config::Parse("type: neo_hookean\n", "a.yaml");
+  EXPECT_NE(ErrorOf([&] { MakeEffect(law); }), "");
+}
+
+}  // namespace
+}  // namespace lacuna

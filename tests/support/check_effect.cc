@@ -1,0 +1,311 @@
+#include "support/check_effect.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "core/parallel.h"
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+// A block whose elements all differ, moved and deformed at random.
+struct MovingBody {
+  Body body;
+  Eigen::VectorXd position = {}, velocity = {}, state = {};
+};
+
+Eigen::VectorXd Random(Eigen::Index size, std::mt19937* random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return Eigen::VectorXd::NullaryExpr(size, [&] { return uniform(*random); });
+}
+
+MovingBody MakeMovingBody(const Effect& effect, int order, const CheckEffectOptions& options) {
+  constexpr double kCell = 0.02;  // m
+  std::mt19937 random(options.seed);
+  TetMesh mesh =
+      BoxMesh({0.01, -0.03, 0.02}, {0.01 + 2 * kCell, -0.03 + kCell, 0.02 + 2 * kCell}, {2, 1, 2});
+  mesh = Jittered(mesh, kCell, 0.15, options.seed);
+  MovingBody moving{.body = MakeBody(order == 1 ? mesh : ToQuadratic(mesh), 1100)};
+  const Eigen::Index size = 3 * moving.body.NodeCount();
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  Eigen::Matrix3Xd nodes = moving.body.mesh.nodes;
+  // Nodes of quadratic elements are half as far apart.
+  nodes.reshaped() += 0.25 * options.strain * kCell / order * Random(size, &random);
+  nodes = (rotation * nodes).colwise() + Eigen::Vector3d(0.05, -0.02, 0.01);
+  moving.position = nodes.reshaped();
+  moving.velocity = 0.25 * options.strain_rate * kCell / order * Random(size, &random);
+  moving.state.resize(effect.StateSize(moving.body));
+  effect.InitialState(moving.body, &moving.state);
+  return moving;
+}
+
+class Checker {
+ public:
+  Checker(Effect* effect, int order, const CheckEffectOptions& options)
+      : effect_(*effect),
+        options_(options),
+        order_(order),
+        moving_(MakeMovingBody(*effect, order, {2, 1, 2}, options)),
+        size_(moving_.position.size()) {}
+
+  void Run() {
+    CheckEnergy();
+    CheckTangent("position", 1, 0, options_.depends_on_position);
+    CheckTangent("velocity", 0, 1, options_.depends_on_velocity);
+    CheckTangentsAdd();
+    CheckStandIn();
+    CheckParameters();
+    CheckInvariances();
+    CheckThreads();
+  }
+
+ private:
+  Kinematics At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity) const {
+    return {moving_.body, position, velocity, options_.time, options_.time_step, moving_.state};
+  }
+
+  Eigen::VectorXd Force(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
+    effect_.AddForce(At(position, velocity), &force);
+    return force;
+  }
+
+  Eigen::MatrixXd Tangent(double position_weight, double velocity_weight, bool convexify) const {
+    BlockMatrix tangent(moving_.body.pattern);
+    effect_.AddTangents(At(moving_.position, moving_.velocity), position_weight, velocity_weight,
+                        convexify, &tangent);
+    return Dense(tangent);
+  }
+
+  Eigen::MatrixXd Dense(const BlockMatrix& matrix) const {
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size_, size_);
+    const BlockPattern& pattern = matrix.pattern();
+    for (int i = 0; i < pattern.nodes; ++i) {
+      for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
+        dense.block<3, 3>(3 * i, 3 * pattern.column[k]) = matrix.Block(k);
+      }
+    }
+    return dense;
+  }
+
+  // The smallest relative error of `analytic` against central differences of `value` over step
+  // sizes from coarse (truncation) to fine (rounding).
+  template <typename Value, typename Result>
+  static double BestError(const Value& value, const Result& analytic, double unit) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const double relative : {1e-3, 1e-4, 1e-5, 1e-6}) {
+      const double h = relative * unit;
+      const Result difference = (value(h) - value(-h)) / (2 * h);
+      best = std::min(best, (difference - analytic).norm() / analytic.norm());
+    }
+    return best;
+  }
+
+  void CheckEnergy() const {
+    const auto energy = effect_.Energy(At(moving_.position, moving_.velocity));
+    if (!energy) return;
+    ASSERT_TRUE(std::isfinite(*energy));
+    std::mt19937 random(options_.seed + 1);
+    const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+    ASSERT_GT(force.norm(), 0);
+    for (int k = 0; k < 3; ++k) {
+      // A component along the force itself keeps the derivative away from zero.
+      const Eigen::VectorXd direction = Random(size_, &random) + force / force.norm();
+      const auto value = [&](double h) {
+        const Eigen::VectorXd position = moving_.position + h * direction;
+        return Eigen::Matrix<double, 1, 1>(-*effect_.Energy(At(position, moving_.velocity)));
+      };
+      const Eigen::Matrix<double, 1, 1> power(force.dot(direction));
+      EXPECT_LT(BestError(value, power, 0.001), options_.tolerance) << "f = −∂E/∂x";
+    }
+  }
+
+  void CheckTangent(const std::string& name, double position_weight, double velocity_weight,
+                    bool depends) const {
+    const Eigen::MatrixXd tangent = Tangent(position_weight, velocity_weight, false);
+    const auto derivative = [&](double h) {
+      Eigen::MatrixXd columns(size_, size_);
+      for (Eigen::Index k = 0; k < size_; ++k) {
+        const Eigen::VectorXd shift = h * Eigen::VectorXd::Unit(size_, k);
+        columns.col(k) = Force(moving_.position + position_weight * shift,
+                               moving_.velocity + velocity_weight * shift);
+      }
+      return Eigen::MatrixXd(0.5 * (columns + columns.transpose()));
+    };
+    if (!depends) {
+      EXPECT_EQ(tangent.norm(), 0) << "∂f/∂" << name << " was said to be zero";
+      EXPECT_EQ((derivative(1e-4) - derivative(-1e-4)).norm(), 0) << "∂f/∂" << name;
+      return;
+    }
+    ASSERT_GT(tangent.norm(), 0) << "∂f/∂" << name << " is zero";
+    EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13 * tangent.norm());
+    const double unit = velocity_weight != 0 ? 1 : 0.01;  // m/s or m
+    EXPECT_LT(BestError(derivative, tangent, unit), options_.tolerance) << "∂f/∂" << name;
+  }
+
+  void CheckTangentsAdd() const {
+    BlockMatrix twice(moving_.body.pattern);
+    const Kinematics at = At(moving_.position, moving_.velocity);
+    effect_.AddTangents(at, 1.5, 0, false, &twice);
+    effect_.AddTangents(at, 0, -0.5, false, &twice);
+    const Eigen::MatrixXd sum = 1.5 * Tangent(1, 0, false) - 0.5 * Tangent(0, 1, false);
+    EXPECT_LE((Dense(twice) - sum).norm(), 1e-13 * sum.norm()) << "tangents add, by their weights";
+
+    Eigen::VectorXd force = Eigen::VectorXd::Ones(size_);
+    effect_.AddForce(at, &force);
+    const Eigen::VectorXd alone = Force(moving_.position, moving_.velocity);
+    EXPECT_LE((force - alone - Eigen::VectorXd::Ones(size_)).norm(), 1e-13 * force.norm())
+        << "forces add";
+  }
+
+  void CheckStandIn() const {
+    const Eigen::MatrixXd stand_in = Tangent(1, 1, true);
+    const double largest = stand_in.norm();
+    EXPECT_LE((stand_in - stand_in.transpose()).norm(), 1e-13 * largest);
+    const Eigen::VectorXd eigenvalues = stand_in.selfadjointView<Eigen::Lower>().eigenvalues();
+    EXPECT_LE(eigenvalues.maxCoeff(), 1e-12 * largest) << "negative semi-definite";
+  }
+
+  void CheckParameters() const {
+    const EffectCard& card = effect_.Card();
+    const Eigen::VectorXd values = effect_.Parameters();
+    ASSERT_EQ(values.size(), static_cast<Eigen::Index>(card.parameters.size()));
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      const ParameterCard& parameter = card.parameters[k];
+      Eigen::VectorXd derivative = Eigen::VectorXd::Zero(size_);
+      effect_.AddParameterDerivative(At(moving_.position, moving_.velocity), static_cast<int>(k),
+                                     &derivative);
+      ASSERT_GT(derivative.norm(), 0) << "∂f/∂" << parameter.name << " is zero";
+      const auto value = [&](double h) {
+        effect_.SetParameters(values + h * Eigen::VectorXd::Unit(values.size(), k));
+        const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+        effect_.SetParameters(values);
+        return force;
+      };
+      const double unit =
+          values[k] != 0 ? std::abs(values[k]) : parameter.plausible_max - parameter.plausible_min;
+      EXPECT_LT(BestError(value, derivative, 0.1 * unit), options_.tolerance)
+          << "∂f/∂" << parameter.name;
+      EXPECT_EQ(effect_.Parameters(), values) << "SetParameters and Parameters agree";
+      if (!std::isnan(parameter.null_value)) {
+        Eigen::VectorXd at_null = values;
+        at_null[k] = parameter.null_value;
+        if (card.parameters.size() == 1 || k == 0) {
+          effect_.SetParameters(at_null);
+          const double left = Force(moving_.position, moving_.velocity).norm();
+          effect_.SetParameters(values);
+          const double full = Force(moving_.position, moving_.velocity).norm();
+          EXPECT_LT(left, full) << "the null value of " << parameter.name << " weakens the effect";
+        }
+      }
+    }
+  }
+
+  // Sum of forces and of torques about the origin.
+  void Resultants(const Eigen::VectorXd& force, Eigen::Vector3d* sum, Eigen::Vector3d* torque,
+                  double* force_size, double* torque_size) const {
+    sum->setZero();
+    torque->setZero();
+    *force_size = *torque_size = 0;
+    for (Eigen::Index i = 0; i < size_ / 3; ++i) {
+      const Eigen::Vector3d f = force.segment<3>(3 * i);
+      const Eigen::Vector3d x = moving_.position.segment<3>(3 * i);
+      *sum += f;
+      *torque += x.cross(f);
+      *force_size += f.norm();
+      *torque_size += x.norm() * f.norm();
+    }
+  }
+
+  void CheckInvariances() const {
+    const EffectCard& card = effect_.Card();
+    const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+    Eigen::Vector3d sum, torque;
+    double force_size, torque_size;
+    Resultants(force, &sum, &torque, &force_size, &torque_size);
+    // Rounding of a few hundred additions.
+    if (card.conserves_momentum) {
+      EXPECT_LT(sum.norm(), 1e-12 * force_size) << "forces sum to zero";
+    }
+    if (!card.conserves_angular_momentum) return;
+    EXPECT_LT(torque.norm(), 1e-12 * torque_size) << "torques sum to zero";
+
+    // Seen from a frame turned, shifted and spinning, the forces are the same but turned.
+    const Eigen::Matrix3d Q =
+        Eigen::AngleAxisd(2.2, Eigen::Vector3d(0.3, 1, -0.7).normalized()).toRotationMatrix();
+    const Eigen::Vector3d spin(4, -2, 3), shift(0.3, 0.1, -0.2);
+    Eigen::VectorXd position(size_), velocity(size_), turned(size_);
+    for (Eigen::Index i = 0; i < size_ / 3; ++i) {
+      const Eigen::Vector3d x = Q * moving_.position.segment<3>(3 * i);
+      position.segment<3>(3 * i) = x + shift;
+      velocity.segment<3>(3 * i) = Q * moving_.velocity.segment<3>(3 * i) + spin.cross(x);
+      turned.segment<3>(3 * i) = Q * force.segment<3>(3 * i);
+    }
+    // Positions of 0.3 m are known to 5e-17 m, strains of 0.02 m elements to 1e-14.
+    EXPECT_LT((Force(position, velocity) - turned).norm(), 1e-11 * force.norm())
+        << "the same in a turned and spinning frame";
+  }
+
+  void CheckThreads() const {
+    // Large enough that several threads find work.
+    const MovingBody large = MakeMovingBody(effect_, order_, {7, 6, 5}, options_);
+    const Kinematics at{large.body,    large.position,     large.velocity,
+                        options_.time, options_.time_step, large.state};
+    const int threads = ThreadCount();
+    Eigen::VectorXd force[2];
+    BlockMatrix tangent[2] = {BlockMatrix(large.body.pattern), BlockMatrix(large.body.pattern)};
+    for (const int k : {0, 1}) {
+      SetThreadCount(1 + k);
+      force[k] = Eigen::VectorXd::Zero(large.position.size());
+      effect_.AddForce(at, &force[k]);
+      effect_.AddTangents(at, 1, 1, false, &tangent[k]);
+    }
+    SetThreadCount(threads);
+    EXPECT_EQ(force[0], force[1]);
+    const int values = 9 * large.body.pattern->BlockCount();
+    EXPECT_TRUE(std::equal(tangent[0].values(), tangent[0].values() + values, tangent[1].values()))
+        << "the same tangent on one thread and on two";
+  }
+
+  Effect& effect_;
+  const CheckEffectOptions options_;
+  const int order_;
+  const MovingBody moving_;
+  const Eigen::Index size_;
+};
+
+void CheckCard(const EffectCard& card) {
+  EXPECT_FALSE(card.type.empty());
+  for (const std::string* text : {&card.title, &card.equation, &card.citation,
+                                  &card.residual_when_missing, &card.separating_experiment}) {
+    EXPECT_GT(text->size(), 5u) << card.type << ": a field of the card is missing";
+  }
+  for (const ParameterCard& parameter : card.parameters) {
+    EXPECT_FALSE(parameter.name.empty()) << card.type;
+    EXPECT_GT(parameter.meaning.size(), 5u) << card.type << '.' << parameter.name;
+    EXPECT_LT(parameter.plausible_min, parameter.plausible_max) << card.type;
+    EXPECT_GE(parameter.plausible_min, parameter.bounds.min) << card.type;
+    EXPECT_LE(parameter.plausible_max, parameter.bounds.max) << card.type;
+  }
+}
+
+}  // namespace
+
+void CheckEffect(Effect* effect, const CheckEffectOptions& options) {
+  CheckCard(effect->Card());
+  for (const int order : {1, 2}) {
+    SCOPED_TRACE(effect->Card().type + " on elements of order " + std::to_string(order));
+    Checker(effect, order, options).Run();
+  }
+}
+
+}  // namespace lacuna

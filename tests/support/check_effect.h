@@ -1,0 +1,37 @@
+// What every physical effect must satisfy, checked with one call.
+#ifndef LACUNA_SUPPORT_CHECK_EFFECT_H_
+#define LACUNA_SUPPORT_CHECK_EFFECT_H_
+
+#include <Eigen/Core>
+
+#include "fem/effect.h"
+
+namespace lacuna {
+
+struct CheckEffectOptions {
+  double strain = 0.2;      // size of the random deformation; the body is rotated by 1 rad as well
+  double strain_rate = 3;   // 1/s, of the random velocity
+  double time = 0.3;        // s
+  double time_step = 0.01;  // s
+  // Relative error of a derivative against central differences at the best of several step sizes.
+  double tolerance = 1e-6;
+  bool depends_on_position = true;  // ∂f/∂x must differ from 0; else it must be 0
+  bool depends_on_velocity = false;
+  unsigned seed = 7;
+};
+
+// At a random deformed and moving state, for linear and quadratic elements:
+//  - the card is complete and its parameters agree with Parameters() and SetParameters();
+//  - f = −∂E/∂x where the effect has an energy;
+//  - AddTangents (the symmetric part) and AddParameterDerivative agree with central differences,
+//  for
+//    both weights, and are not simply zero; they add into what is there, in proportion to the
+//    weight;
+//  - the stand-in of `convexify` is symmetric and definite;
+//  - forces and torques sum to zero where the card says so, and then do no work in a rigid motion;
+//  - forces and tangents are bit-identical for one and for two threads.
+void CheckEffect(Effect* effect, const CheckEffectOptions& options = {});
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SUPPORT_CHECK_EFFECT_H_
