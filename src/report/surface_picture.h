@@ -1,0 +1,56 @@
+// A picture of a surface, drawn without a screen.
+//
+// VTK draws through EGL without a window system: on a machine with neither screen nor graphics
+// processor Mesa's software renderer does it.
+#ifndef LACUNA_REPORT_SURFACE_PICTURE_H_
+#define LACUNA_REPORT_SURFACE_PICTURE_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "geometry/tri_mesh.h"
+
+namespace lacuna {
+
+// What to draw. Lengths in m.
+struct SurfaceScene {
+  TriMesh mesh;
+  Eigen::VectorXd vertex_values;  // colours the mesh; empty: plain; NaN is drawn grey
+  std::string value_name;         // above the colour bar, with the unit
+  Eigen::Matrix3Xd points;        // drawn as dots over the mesh; may be empty
+  std::string caption;            // at the bottom; may be empty
+};
+
+struct PictureOptions {
+  int width = 1200;  // pixels; raise for print
+  int height = 900;
+  // The colours' ends; empty: smallest and largest value. Fix it to compare frames.
+  std::optional<std::pair<double, double>> range;
+  // What the picture takes in; empty: the mesh and the points. Fix it to compare frames.
+  Eigen::AlignedBox3d framing;
+  Eigen::Vector3d view_direction{-1, 2, -0.7};  // from the eye to the object
+  Eigen::Vector3d up{0, 0, 1};
+  bool show_edges = false;
+  double point_size = 4;  // pixels
+};
+
+struct PictureResult {
+  enum class Status { kNotRun, kWritten, kNoRenderer };
+  Status status = Status::kNotRun;
+  std::string message;
+  bool IsUsable() const { return status == Status::kWritten; }
+};
+
+// Writes the picture as PNG, atomically. kNoRenderer when the machine offers no OpenGL through EGL.
+// Throws InputError when the file cannot be written. Values of another length than the vertices are
+// a mistake of the program (CHECK).
+PictureResult RenderSurfacePng(const std::filesystem::path& file, const SurfaceScene& scene,
+                               const PictureOptions& options = {});
+
+}  // namespace lacuna
+
+#endif  // LACUNA_REPORT_SURFACE_PICTURE_H_
