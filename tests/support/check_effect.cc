@@ -27,11 +27,12 @@ Eigen::VectorXd Random(Eigen::Index size, std::mt19937* random) {
   return Eigen::VectorXd::NullaryExpr(size, [&] { return uniform(*random); });
 }
 
-MovingBody MakeMovingBody(const Effect& effect, int order, const CheckEffectOptions& options) {
+MovingBody MakeMovingBody(const Effect& effect, int order, const std::array<int, 3>& cells,
+                          const CheckEffectOptions& options) {
   constexpr double kCell = 0.02;  // m
   std::mt19937 random(options.seed);
-  TetMesh mesh =
-      BoxMesh({0.01, -0.03, 0.02}, {0.01 + 2 * kCell, -0.03 + kCell, 0.02 + 2 * kCell}, {2, 1, 2});
+  const Eigen::Vector3d low(0.01, -0.03, 0.02);
+  TetMesh mesh = BoxMesh(low, low + kCell * Eigen::Vector3d(cells[0], cells[1], cells[2]), cells);
   mesh = Jittered(mesh, kCell, 0.15, options.seed);
   MovingBody moving{.body = MakeBody(order == 1 ? mesh : ToQuadratic(mesh), 1100)};
   const Eigen::Index size = 3 * moving.body.NodeCount();
