@@ -19,7 +19,7 @@ struct StepOptions {
   // ‖r‖ over the free nodes, relative to the forces at work (the sum of the norms of inertia, each
   // effect and the external force); smaller: more iterations, one or two where they are quadratic.
   double relative_tolerance = 1e-8;
-  LinearSolverOptions linear;
+  LinearSolverOptions linear = {};
 };
 
 struct StepSummary {
