@@ -1,0 +1,151 @@
+#include "geometry/tet_soup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+[[noreturn]] void Fail(const std::filesystem::path& file, int line, const std::string& message) {
+  throw InputError({file.string(), line}, message);
+}
+
+Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& file) {
+  if (soup.tets.empty()) Fail(file, 0, "has no tetrahedra");
+  const int size = soup.sizes.front();
+  Eigen::MatrixXi tets(size, soup.tets.size());
+  for (size_t e = 0; e < soup.tets.size(); ++e) {
+    if (soup.sizes[e] != size) {
+      Fail(file, soup.lines[e], "tetrahedra of 4 and of 10 nodes in one file");
+    }
+    for (int k = 0; k < size; ++k) {
+      tets(k, e) = soup.tets[e][k];
+      for (int other = 0; other < k; ++other) {
+        if (tets(k, e) == tets(other, e)) {
+          Fail(file, soup.lines[e], "a tetrahedron names one node twice");
+        }
+      }
+    }
+  }
+  return tets;
+}
+
+// Turns the negative tetrahedra over and says how many; refuses flat ones.
+Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
+  // Volumes below this are rounding of the nodes' coordinates, not shape.
+  constexpr double kFlat = 1e-14;
+  const Eigen::VectorXd volumes = TetVolumes(mesh);
+  Eigen::Index turned = 0;
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    double longest = 0;
+    for (int k = 1; k < 4; ++k) {
+      longest = std::max(
+          longest, (mesh.nodes.col(mesh.tets(k, e)) - mesh.nodes.col(mesh.tets(0, e))).norm());
+    }
+    if (std::abs(volumes(e)) <= kFlat * std::pow(longest, 3)) {
+      Fail(file, soup.lines[e], fmt::format("tetrahedron {} has no volume", e + 1));
+    }
+    if (volumes(e) > 0) continue;
+    ++turned;
+    auto tet = mesh.tets.col(e);
+    std::swap(tet(0), tet(1));
+    if (mesh.Order() == 2) {
+      std::swap(tet(5), tet(6));  // (1,2) and (0,2)
+      std::swap(tet(7), tet(8));  // (0,3) and (1,3)
+    }
+  }
+  return turned;
+}
+
+// A face with its corners ascending, and whether that order turns outward.
+struct Face {
+  std::array<int, 3> corners;
+  bool outward;
+  Eigen::Index tet;
+  bool operator<(const Face& other) const {
+    return std::tie(corners, tet) < std::tie(other.corners, other.tet);
+  }
+};
+
+Face MakeFace(int a, int b, int c, Eigen::Index tet) {
+  Face face{{a, b, c}, ((a < b) + (b < c) + (c < a)) == 2, tet};
+  std::sort(face.corners.begin(), face.corners.end());
+  return face;
+}
+
+// Of two positive tetrahedra at a face, one must lie on either side.
+void RefuseOverlaps(const TetSoup& soup, const std::filesystem::path& file, const TetMesh& mesh) {
+  std::vector<Face> faces;
+  faces.reserve(4 * mesh.TetCount());
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    const auto t = mesh.tets.col(e);
+    faces.push_back(MakeFace(t(1), t(2), t(3), e));
+    faces.push_back(MakeFace(t(0), t(3), t(2), e));
+    faces.push_back(MakeFace(t(0), t(1), t(3), e));
+    faces.push_back(MakeFace(t(0), t(2), t(1), e));
+  }
+  std::sort(faces.begin(), faces.end());
+  for (size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].corners != faces[i - 1].corners) continue;
+    const auto complain = [&](const char* what) {
+      Fail(file, soup.lines[faces[i].tet],
+           fmt::format("tetrahedra {} and {} {}", faces[i - 1].tet + 1, faces[i].tet + 1, what));
+    };
+    if (i >= 2 && faces[i - 2].corners == faces[i].corners) {
+      complain("share a face with a third");
+    }
+    if (faces[i].outward == faces[i - 1].outward)
+      complain("overlap: they lie on one side of a face");
+  }
+}
+
+void DropUnusedNodes(TetMeshFile& result) {
+  TetMesh& mesh = result.mesh;
+  std::vector<int> number(mesh.NodeCount(), -1);
+  for (const int node : mesh.tets.reshaped()) number[node] = 0;
+  std::vector<int> kept;
+  for (int node = 0; node < mesh.NodeCount(); ++node) {
+    if (number[node] < 0) continue;
+    number[node] = static_cast<int>(kept.size());
+    kept.push_back(node);
+  }
+  const Eigen::Index dropped = mesh.NodeCount() - static_cast<Eigen::Index>(kept.size());
+  result.node_in_file = Eigen::Map<const Eigen::VectorXi>(kept.data(), kept.size());
+  if (dropped == 0) return;
+  result.notes.push_back(fmt::format("dropped {} nodes that no tetrahedron uses", dropped));
+  mesh.nodes = mesh.nodes(Eigen::all, kept).eval();
+  for (int& node : mesh.tets.reshaped()) node = number[node];
+}
+
+}  // namespace
+
+void TetSoup::Add(std::span<const int> tet, int line) {
+  tets.emplace_back();
+  std::copy(tet.begin(), tet.end(), tets.back().begin());
+  sizes.push_back(static_cast<int>(tet.size()));
+  lines.push_back(line);
+}
+
+TetMeshFile FinishTetMesh(const TetSoup& soup, const std::filesystem::path& file) {
+  TetMeshFile result;
+  TetMesh& mesh = result.mesh;
+  mesh.tets = UniformTets(soup, file);
+  mesh.nodes.resize(3, soup.nodes.size());
+  for (size_t n = 0; n < soup.nodes.size(); ++n) mesh.nodes.col(n) = soup.nodes[n];
+
+  const Eigen::Index turned = TurnPositive(soup, file, mesh);
+  if (turned > 0) {
+    result.notes.push_back(fmt::format("turned over {} of {} tetrahedra that had a negative volume",
+                                       turned, mesh.TetCount()));
+  }
+  RefuseOverlaps(soup, file, mesh);
+  DropUnusedNodes(result);
+  return result;
+}
+
+}  // namespace lacuna

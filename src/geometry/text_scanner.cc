@@ -1,0 +1,100 @@
+#include "geometry/text_scanner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\v\f";
+
+template <typename T>
+bool Parse(std::string_view word, T& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+}  // namespace
+
+std::string LowerExtension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+TextScanner::TextScanner(const std::filesystem::path& file, char comment)
+    : file_(file), comment_(comment) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file.string()}, "cannot be opened");
+  content_.assign(std::istreambuf_iterator<char>(stream), {});
+  if (stream.bad()) throw InputError({file.string()}, "cannot be read");
+}
+
+bool TextScanner::NextLine() {
+  while (next_line_ < content_.size()) {
+    const size_t end = std::min(content_.find('\n', next_line_), content_.size());
+    rest_ = std::string_view(content_).substr(next_line_, end - next_line_);
+    next_line_ = end + 1;
+    ++line_number_;
+    if (comment_ != '\0') rest_ = rest_.substr(0, rest_.find(comment_));
+    if (!AtLineEnd()) return true;
+  }
+  rest_ = {};
+  return false;
+}
+
+void TextScanner::ExpectLine(const std::string& what) {
+  if (!NextLine()) Fail("the file ends where " + what + " should follow");
+}
+
+bool TextScanner::AtLineEnd() { return rest_.find_first_not_of(kBlank) == std::string_view::npos; }
+
+std::string_view TextScanner::Word(const char* what) {
+  if (AtLineEnd()) Fail(fmt::format("the line ends where {} should follow", what));
+  rest_.remove_prefix(rest_.find_first_not_of(kBlank));
+  const std::string_view word = rest_.substr(0, rest_.find_first_of(kBlank));
+  rest_.remove_prefix(word.size());
+  return word;
+}
+
+std::string_view TextScanner::WordAnywhere(const char* what) {
+  if (AtLineEnd()) ExpectLine(what);
+  return Word(what);
+}
+
+double TextScanner::Number(const char* what) {
+  const std::string_view word = Word(what);
+  double value = 0;
+  if (!Parse(word, value)) Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  if (!std::isfinite(value)) Fail(fmt::format("{} is not finite: {}", what, word));
+  return value;
+}
+
+long long TextScanner::Integer(const char* what) {
+  const std::string_view word = Word(what);
+  long long value = 0;
+  if (!Parse(word, value)) Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  return value;
+}
+
+Eigen::Vector3d TextScanner::Point(const char* what) {
+  const double x = Number(what), y = Number(what), z = Number(what);
+  return {x, y, z};
+}
+
+void TextScanner::Fail(const std::string& message) const {
+  throw InputError({file_.string(), line_number_}, message);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,316 @@
+#include "geometry/mesh_io.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/error.h"
+#include "geometry/surface_check.h"
+#include "support/box_mesh.h"
+#include "support/shapes.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::filesystem::path Write(const std::filesystem::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
+  return file;
+}
+
+template <typename Read>
+std::string FailureOf(const Read& read, const std::filesystem::path& file) {
+  try {
+    read(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "read without complaint";
+}
+std::string TriFailure(const std::filesystem::path& file) { return FailureOf(ReadTriMesh, file); }
+std::string TetFailure(const std::filesystem::path& file) { return FailureOf(ReadTetMesh, file); }
+
+// The same square with one corner lifted, in each text format.
+constexpr char kOff[] = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+constexpr char kObj[] = "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+constexpr char kPly[] =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+constexpr char kStl[] =
+    "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0.5\n"
+    "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 1 0.5\n"
+    "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+
+class TriFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(All, TriFormat,
+                         ::testing::Values(std::pair("a.off", kOff), std::pair("a.obj", kObj),
+                                           std::pair("a.ply", kPly), std::pair("a.STL", kStl)));
+
+TEST_P(TriFormat, GivesTheSameSquare) {
+  const TemporaryFolder folder;
+  const auto& [name, content] = GetParam();
+  const TriMesh mesh = ReadTriMesh(Write(folder / name, content)).mesh;
+  const SurfaceReport report = CheckSurface(mesh);
+  EXPECT_EQ(report.vertices, 4);  // STL: merged
+  EXPECT_EQ(report.triangles, 2);
+  EXPECT_EQ(report.components, 1);
+  EXPECT_TRUE(report.IsOriented());
+  EXPECT_EQ(Eigen::Vector3d(BoundingBox(mesh.vertices).max()), Eigen::Vector3d(1, 1, 0.5));
+}
+
+TEST_P(TriFormat, RefusesATruncatedFile) {
+  const TemporaryFolder folder;
+  const auto& [name, content] = GetParam();
+  const std::string whole(content);
+  // Cut within the last face (of an OBJ, which ends anywhere, within its number).
+  const size_t cut = whole.find_last_not_of('\n') + 1 - (whole.starts_with("solid") ? 40 : 2);
+  const auto file = Write(folder / name, whole.substr(0, cut));
+  EXPECT_THAT(TriFailure(file), HasSubstr(file.string() + ":"));
+}
+
+TEST_P(TriFormat, RefusesNumbersThatAreNotFinite) {
+  const TemporaryFolder folder;
+  const auto& [name, content] = GetParam();
+  for (const char* bad : {"nan", "inf", "1e999"}) {
+    std::string text(content);
+    text.replace(text.find("0.5"), 3, bad);
+    const auto file = Write(folder / name, text);
+    EXPECT_THAT(TriFailure(file), HasSubstr(file.string() + ":")) << bad;
+  }
+}
+
+TEST(ReadTriMesh, RefusesIndicesOutOfRange) {
+  const TemporaryFolder folder;
+  for (const auto& [name, content, bad, worse] :
+       {std::tuple("a.off", kOff, "3 0 2 3", "3 0 2 4"),
+        std::tuple("a.obj", kObj, "f 1 3 4", "f 1 3 5"),
+        std::tuple("b.obj", kObj, "f 1 3 4", "f 1 3 0"),
+        std::tuple("c.obj", kObj, "f 1 3 4", "f 1 3 -9"),
+        std::tuple("a.ply", kPly, "3 0 2 3", "3 0 2 4"),
+        std::tuple("b.ply", kPly, "3 0 2 3", "3 0 2 -1")}) {
+    std::string text(content);
+    text.replace(text.find(bad), std::string(bad).size(), worse);
+    const auto file = Write(folder / name, text);
+    EXPECT_THAT(TriFailure(file), HasSubstr(file.string() + ":")) << worse;
+  }
+}
+
+TEST(ReadTriMesh, NamesTheFileThatIsAbsentEmptyOrOfNoKnownFormat) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(TriFailure(folder / "none.ply"), HasSubstr("none.ply: cannot be opened"));
+  EXPECT_THAT(TriFailure(Write(folder / "a.xyz", "0 0 0")),
+              AllOf(HasSubstr("a.xyz"), HasSubstr("expected .ply, .obj, .stl or .off")));
+  for (const char* name : {"e.ply", "e.obj", "e.stl", "e.off"}) {
+    EXPECT_THAT(TriFailure(Write(folder / name, "")), HasSubstr(name));
+  }
+  EXPECT_THAT(TriFailure(Write(folder / "points.obj", "v 0 0 0\nv 1 0 0\n")),
+              HasSubstr("2 vertices and 0 faces"));
+}
+
+TEST(ReadTriMesh, CutsPolygonsIntoTrianglesAndSaysSo) {
+  const TemporaryFolder folder;
+  const auto file =
+      Write(folder / "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/2 3/3 4/4\n");
+  const TriMeshFile result = ReadTriMesh(file);
+  EXPECT_EQ(result.mesh.triangles.cols(), 2);
+  EXPECT_DOUBLE_EQ(TriangleAreas(result.mesh).sum(), 1);
+  EXPECT_THAT(result.notes, ElementsAre(HasSubstr("1 polygons")));
+}
+
+TEST(WriteTriMesh, RoundTripsBitByBit) {
+  const TemporaryFolder folder;
+  const TriMesh mesh = OrganicSurface(3);
+  WriteTriMesh(folder / "a.ply", mesh);
+  const TriMeshFile read = ReadTriMesh(folder / "a.ply");
+  EXPECT_EQ(read.mesh.vertices, mesh.vertices);
+  EXPECT_EQ(read.mesh.triangles, mesh.triangles);
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST(WriteTriMesh, LeavesATruncatedCopyUnreadable) {
+  const TemporaryFolder folder;
+  WriteTriMesh(folder / "a.ply", Icosphere(1, 2));
+  const std::string whole = FileContent(folder / "a.ply");
+  for (const double part : {0.1, 0.5, 0.9, 0.999}) {
+    const auto file =
+        Write(folder / "b.ply", whole.substr(0, static_cast<size_t>(part * whole.size())));
+    EXPECT_THAT(TriFailure(file), HasSubstr(file.string() + ":")) << part;
+  }
+}
+
+class TetOrder : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Both, TetOrder, ::testing::Values(1, 2));
+
+TEST_P(TetOrder, RoundTripsThroughGmsh) {
+  const TemporaryFolder folder;
+  const TetMesh mesh = BoxMesh({0, 0, 0}, {0.1, 0.2, 0.3}, {2, 2, 3}, GetParam());
+  ASSERT_EQ(mesh.Order(), GetParam());
+  WriteTetMesh(folder / "a.msh", mesh);
+  const TetMeshFile read = ReadTetMesh(folder / "a.msh");
+  EXPECT_EQ(read.mesh.nodes, mesh.nodes);
+  EXPECT_EQ(read.mesh.tets, mesh.tets);
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+// Two tetrahedra on either side of a face, in each text format.
+constexpr char kMsh[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"body\"\n$EndPhysicalNames\n"
+    "$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n50 1 1 1\n$EndNodes\n"
+    "$Elements\n3\n1 2 2 0 1 10 20 30\n2 4 2 0 1 10 20 30 40\n3 4 2 0 1 20 30 40 50\n"
+    "$EndElements\n";
+constexpr char kTet[] = "t 0 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nt 1 2 3 4\n";
+constexpr char kTxt[] = "5 2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n0 1 2 3\n1 2 3 4\n";
+constexpr char kMedit[] =
+    "MeshVersionFormatted 2\nDimension\n3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+    "1 1 1 0\nTriangles\n1\n1 2 3 7\nTetrahedra\n2\n1 2 3 4 0\n2 3 4 5 0\nEnd\n";
+constexpr char kNode[] = "# nodes\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
+constexpr char kEle[] = "2 4 0\n1 1 2 3 4\n2 2 3 4 5 # the other\n";
+
+class TetFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(All, TetFormat,
+                         ::testing::Values(std::pair("a.msh", kMsh), std::pair("a.tet", kTet),
+                                           std::pair("a.txt", kTxt), std::pair("a.mesh", kMedit),
+                                           std::pair("a.ele", kEle)));
+
+TEST_P(TetFormat, GivesTheSameTwoTetrahedra) {
+  const TemporaryFolder folder;
+  Write(folder / "a.node", kNode);
+  const TetMeshFile read = ReadTetMesh(Write(folder / GetParam().first, GetParam().second));
+  EXPECT_EQ(read.mesh.NodeCount(), 5);
+  ASSERT_EQ(read.mesh.TetCount(), 2);
+  EXPECT_DOUBLE_EQ(TetVolumes(read.mesh)(0), 1.0 / 6);
+  EXPECT_DOUBLE_EQ(TetVolumes(read.mesh)(1), 1.0 / 3);
+  EXPECT_EQ(read.mesh.tets.col(0), Eigen::Vector4i(0, 1, 2, 3));
+  EXPECT_THAT(read.notes, IsEmpty());
+}
+
+TEST_P(TetFormat, RefusesEveryTruncation) {
+  const TemporaryFolder folder;
+  Write(folder / "a.node", kNode);
+  const auto& [name, content] = GetParam();
+  const std::string whole(content);
+  // A comment at the end of the .ele file may go; the .tet format cannot tell its own end, but a
+  // line cut in the middle shows.
+  const std::string needed = whole.substr(0, whole.find(" # the other"));
+  for (size_t cut = 0; cut + 1 < needed.size(); ++cut) {
+    if (std::string(name) == "a.tet" && (needed[cut] == '\n' || needed[cut - 1] == '\n')) continue;
+    if (std::string(name) == "a.mesh" && cut + 1 >= needed.find_last_of('E') + 3) continue;
+    const auto file = Write(folder / name, needed.substr(0, cut));
+    EXPECT_THAT(TetFailure(file), HasSubstr(file.string())) << needed.substr(0, cut);
+  }
+}
+
+TEST_P(TetFormat, NamesTheLineOfABadIndex) {
+  const TemporaryFolder folder;
+  Write(folder / "a.node", kNode);
+  const auto& [name, content] = GetParam();
+  std::string text(content);
+  // The last node of the last tetrahedron becomes 99.
+  const std::string last = std::string(name) == "a.msh"              ? "40 50"
+                           : text.find("3 4 5") != std::string::npos ? "4 5"
+                                                                     : "3 4\n";
+  const size_t place = text.rfind(last);
+  const auto line = 1 + std::count(text.begin(), text.begin() + place, '\n');
+  text.replace(place, last.size(),
+               last.substr(0, last.find(' ')) + " 99" + (last.back() == '\n' ? "\n" : ""));
+  const auto file = Write(folder / name, text);
+  EXPECT_THAT(TetFailure(file),
+              HasSubstr(fmt::format("{}:{}: there is no node 99", file.string(), line)));
+}
+
+TEST_P(TetFormat, NamesTheLineOfANumberThatIsNotFinite) {
+  const TemporaryFolder folder;
+  const auto& [name, content] = GetParam();
+  if (std::string(name) == "a.ele") GTEST_SKIP() << "coordinates stand in the .node file";
+  std::string text(content);
+  text.replace(text.find("1 1 1"), 5, "1 nan 1");
+  const auto file = Write(folder / name, text);
+  const auto line = 1 + std::count(text.begin(), text.begin() + text.find("nan"), '\n');
+  EXPECT_THAT(TetFailure(file), AllOf(HasSubstr(fmt::format("{}:{}:", file.string(), line)),
+                                      HasSubstr("not finite")));
+}
+
+TEST(ReadTetMesh, TurnsNegativeTetrahedraOverAndSaysSo) {
+  const TemporaryFolder folder;
+  for (const int order : {1, 2}) {
+    const TetMesh box = BoxMesh({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, order);
+    TetMesh mirrored = box;
+    mirrored.nodes.row(0) *= -1;
+    WriteTetMesh(folder / "a.msh", mirrored);
+    const TetMeshFile read = ReadTetMesh(folder / "a.msh");
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("turned over 48 of 48")));
+    EXPECT_GT(TetVolumes(read.mesh).minCoeff(), 0);
+    // Edge nodes still stand on the middle of their edges: the boundary stays whole and flat.
+    const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
+    EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
+    EXPECT_NEAR(report.area, 6, 1e-12);
+  }
+}
+
+TEST(ReadTetMesh, DropsUnusedNodesAndSaysWhichRemain) {
+  const TemporaryFolder folder;
+  const TetMeshFile read = ReadTetMesh(
+      Write(folder / "a.tet", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 0 0 1\nt 1 2 4 5\n"));
+  EXPECT_EQ(read.mesh.NodeCount(), 4);
+  EXPECT_EQ(read.node_in_file, Eigen::Vector4i(1, 2, 4, 5));
+  EXPECT_DOUBLE_EQ(TetVolumes(read.mesh)(0), 1.0 / 6);
+  EXPECT_THAT(read.notes, ElementsAre(HasSubstr("dropped 2 nodes")));
+}
+
+TEST(ReadTetMesh, RefusesTetrahedraThatMakeNoMesh) {
+  const TemporaryFolder folder;
+  const std::string nodes = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.2 0.2 3\nv 1 1 0\nv 0 0 -1\n";
+  const auto failure = [&](const std::string& tets) {
+    return TetFailure(Write(folder / "a.tet", nodes + tets));
+  };
+  EXPECT_THAT(failure(""), HasSubstr("has no tetrahedra"));
+  EXPECT_THAT(failure("t 0 1 2 2\n"), HasSubstr("a.tet:8: a tetrahedron names one node twice"));
+  EXPECT_THAT(failure("t 0 1 2 5\n"), HasSubstr("a.tet:8: tetrahedron 1 has no volume"));
+  EXPECT_THAT(failure("t 0 1 2 3\nt 0 1 2 4\n"), HasSubstr("tetrahedra 1 and 2 overlap"));
+  EXPECT_THAT(failure("t 0 1 2 3\nt 0 1 2 6\nt 0 1 2 4\n"), HasSubstr("share a face with a third"));
+}
+
+TEST(ReadTetMesh, RefusesOtherVersionsOfGmsh) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(TetFailure(Write(folder / "a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")),
+              AllOf(HasSubstr("a.msh:2: Gmsh version 4.1"), HasSubstr("msh2")));
+  EXPECT_THAT(TetFailure(Write(folder / "a.msh", "$MeshFormat\n2.2 1 8\n\1\n$EndMeshFormat\n")),
+              HasSubstr("binary"));
+}
+
+TEST(ReadTetMesh, NamesTheFileThatIsAbsentOrOfNoKnownFormat) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(TetFailure(folder / "none.msh"), HasSubstr("none.msh: cannot be opened"));
+  EXPECT_THAT(TetFailure(folder / "a.vtu"), HasSubstr("expected .msh"));
+  EXPECT_THAT(TetFailure(Write(folder / "lonely.ele", kEle)), HasSubstr("lonely.node"));
+}
+
+class PublishedMesh : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(All, PublishedMesh,
+                         ::testing::Values("liver_sequence/mesh-default/liver.msh",
+                                           "liver_sequence/mesh-remeshed/liver.msh",
+                                           "silicone_lidar/cad/cantilever_f1494_v749.tet"));
+
+TEST_P(PublishedMesh, IsReadAndHasAClosedBoundary) {
+  const char* data = std::getenv("LACUNA_DATA");
+  const std::filesystem::path folder =
+      data ? std::filesystem::path(data)
+           : std::filesystem::path(LACUNA_SOURCE_DIR) / "../shared/data";
+  if (!std::filesystem::exists(folder / GetParam())) GTEST_SKIP() << "skipped, data absent";
+  const TetMeshFile read = ReadTetMesh(folder / GetParam());
+  const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
+  EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
+  EXPECT_NEAR(report.volume, TetVolumes(read.mesh).sum(), 1e-12 * report.volume);
+}
+
+}  // namespace
+}  // namespace lacuna
