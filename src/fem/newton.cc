@@ -24,33 +24,16 @@ class Newton {
 
   NewtonSummary Run(const Eigen::VectorXd& target, Eigen::VectorXd* position) {
     Iterate at = Evaluate(*position);
-    if (!MoveFixedNodes(target, &at)) {
-      *position = at.position;
-      return Finish(at);
-    }
-    Iterate trial;
-    Eigen::VectorXd step;
-    while (!IsConverged(at)) {
-      if (summary_.iterations >= problem_.max_iterations) {
-        Fail(NewtonSummary::Status::kNoConvergence,
-             fmt::format("no convergence in {} iterations", summary_.iterations));
-        break;
-      }
-      ++summary_.iterations;
-      if (!NewtonStep(at, &step)) break;
-      double length = 0;
-      if (!SearchLine(at, step, &trial, &length)) {
-        if (!convexify_) {
-          convexify_ = true;
-          continue;
+    if (MoveFixedNodes(target, &at)) {
+      while (!IsConverged(at)) {
+        if (summary_.iterations >= problem_.max_iterations) {
+          Fail(NewtonSummary::Status::kNoConvergence,
+               fmt::format("no convergence in {} iterations", summary_.iterations));
+          break;
         }
-        if (at.residual.norm() <= 100 * rounding_) break;
-        Fail(NewtonSummary::Status::kNoConvergence, "no smaller residual along Newton's direction");
-        break;
+        ++summary_.iterations;
+        if (!Advance(&at)) break;
       }
-      std::swap(at, trial);
-      // Near the solution the exact tangent is definite again and converges quadratically.
-      if (length == 1) convexify_ = false;
     }
     *position = at.position;
     return Finish(at);
@@ -76,19 +59,21 @@ class Newton {
 
   bool IsConverged(const Iterate& at) const {
     const double norm = at.residual.norm();
-    return norm <= problem_.relative_tolerance * at.force_scale || norm <= rounding_;
+    return norm <= problem_.relative_tolerance * at.force_scale ||
+           (std::isfinite(rounding_) && norm <= rounding_);
   }
 
   void AssembleTangent(const Iterate& at) {
     problem_.equation.Tangent(at.position, convexify_, &tangent_);
-    // Positions are known to ε |x|, so forces to about ε |x| times the stiffest spring.
+    // Positions are known to ε |x|, so forces to about ε |x| times the stiffest spring. Of all the
+    // places visited the tamest counts.
     double stiffest = 0;
     for (const int k : tangent_.pattern().diagonal) {
       stiffest = std::max(stiffest, tangent_.Block(k).diagonal().maxCoeff());
     }
-    rounding_ = 4 * std::numeric_limits<double>::epsilon() * stiffest *
-                at.position.lpNorm<Eigen::Infinity>() *
-                std::sqrt(static_cast<double>(at.position.size()));
+    rounding_ = std::min(rounding_, 4 * std::numeric_limits<double>::epsilon() * stiffest *
+                                        at.position.lpNorm<Eigen::Infinity>() *
+                                        std::sqrt(static_cast<double>(at.position.size())));
   }
 
   // Solves tangent · step = right-hand side with the exact tangent or, if that is not definite,
@@ -145,33 +130,92 @@ class Newton {
     return true;
   }
 
-  // Shortens the step until the potential falls (Armijo 1966). Without a potential, the work of the
-  // residual along the step, by the trapezoidal rule, stands in for its change.
-  bool SearchLine(const Iterate& at, const Eigen::VectorXd& step, Iterate* trial,
-                  double* length) const {
-    constexpr int kMaxTrials = 30;
-    constexpr double kSufficientDecrease = 1e-4;
-    const double slope = at.residual.dot(step);
-    double alpha = 1;
-    for (int k = 0; k < kMaxTrials; ++k) {
-      *trial = Evaluate(at.position + alpha * step);
-      const double slope_there = trial->residual.dot(step);
-      if (trial->residual.allFinite()) {
-        const double work = 0.5 * alpha * (slope + slope_there);
-        const double change = trial->potential - at.potential;
-        // Below the rounding of the potential's own value its change says nothing.
-        const double digits = 1e-11 * (std::abs(at.potential) + std::abs(trial->potential));
-        const bool blind = std::isnan(change) || std::abs(alpha * slope) <= digits;
-        const bool falls = (blind ? work : change) <= kSufficientDecrease * alpha * slope;
-        if (falls || (blind && trial->residual.norm() < 0.5 * at.residual.norm())) {
-          *length = alpha;
-          return true;
-        }
-      }
-      // The zero of the slope by the secant rule, kept within sensible bounds.
-      const double secant = slope / (slope - slope_there);
-      alpha *= slope_there > 0 ? std::clamp(secant, 0.1, 0.7) : 0.5;
+  // One iteration. Nearly incompressible and turning bodies lie at the bottom of a narrow curved
+  // valley of the potential: a full step along its tangent climbs the wall, and the next falls back
+  // far ahead, where a line search would creep along the bottom. So a climb is forgiven when the
+  // step after it ends below where it began (the watchdog technique, Chamberlain et al. 1982).
+  bool Advance(Iterate* at) {
+    Eigen::VectorXd step;
+    if (!NewtonStep(*at, &step)) return false;
+    Iterate full = Evaluate(at->position + step);
+    const double slope = at->residual.dot(step);
+    const double work = Work(*at, full, step);
+    if (Falls(*at, full, slope, work)) {
+      *at = std::move(full);
+      // Near the solution the exact tangent is definite and converges quadratically.
+      convexify_ = false;
+      may_climb_ = true;
+      return true;
     }
+    if (may_climb_ && ReturnsBelow(*at, slope, work, full)) {
+      *at = std::move(beyond_);
+      convexify_ = false;
+      return true;
+    }
+    may_climb_ = false;
+    return SearchLine(at, step, full);
+  }
+
+  // Takes another full step from `full`, where the potential is above that of `start`, to
+  // `beyond_`; true if it is below there. `work`: of the residual from start to full.
+  bool ReturnsBelow(const Iterate& start, double slope, double work, const Iterate& full) {
+    if (!full.residual.allFinite() || summary_.iterations >= problem_.max_iterations) return false;
+    ++summary_.iterations;
+    Eigen::VectorXd step;
+    if (!NewtonStep(full, &step)) {
+      summary_.status = NewtonSummary::Status::kNotRun;
+      return false;
+    }
+    beyond_ = Evaluate(full.position + step);
+    return Falls(start, beyond_, slope, work + Work(full, beyond_, step));
+  }
+
+  // The work of the residual along a step, by the trapezoidal rule, J: to second order the change
+  // of the potential, and its stand-in where there is none.
+  static double Work(const Iterate& from, const Iterate& to, const Eigen::VectorXd& step) {
+    return 0.5 * (from.residual.dot(step) + to.residual.dot(step));
+  }
+
+  // Sufficient decrease (Armijo 1966) of the potential from one iterate to another.
+  // `expected`: its change to first order, J.
+  static bool Falls(const Iterate& from, const Iterate& to, double expected, double work) {
+    constexpr double kSufficient = 1e-4;
+    if (!to.residual.allFinite()) return false;
+    const double change = to.potential - from.potential;
+    // Below the rounding of the potential's own value its change says nothing.
+    const double digits = 1e-11 * (std::abs(from.potential) + std::abs(to.potential));
+    if (std::isnan(change) || std::abs(expected) <= digits) {
+      return work <= kSufficient * expected || to.residual.norm() < 0.5 * from.residual.norm();
+    }
+    return change <= kSufficient * expected;
+  }
+
+  // Shortens a step whose full length, to `full`, is too far.
+  bool SearchLine(Iterate* at, const Eigen::VectorXd& step, const Iterate& full) {
+    constexpr int kMaxTrials = 30;
+    const double slope = at->residual.dot(step);
+    double length = 1;
+    double slope_there = full.residual.dot(step);
+    for (int k = 0; k < kMaxTrials; ++k) {
+      // The zero of the slope by the secant rule, kept within sensible bounds.
+      length *= slope_there > 0 ? std::clamp(slope / (slope - slope_there), 0.1, 0.7) : 0.5;
+      Iterate trial = Evaluate(at->position + length * step);
+      slope_there = trial.residual.dot(step);
+      if (Falls(*at, trial, length * slope, length * Work(*at, trial, step))) {
+        *at = std::move(trial);
+        return true;
+      }
+    }
+    if (!convexify_) {
+      convexify_ = true;
+      return true;
+    }
+    // So near the solution that rounding hides the way down.
+    if (at->residual.norm() <= 100 * rounding_) {
+      rounding_ = at->residual.norm();
+      return true;
+    }
+    Fail(NewtonSummary::Status::kNoConvergence, "no way down along Newton's direction");
     return false;
   }
 
@@ -197,7 +241,10 @@ class Newton {
   BlockMatrix& tangent_;
   NewtonSummary summary_;
   bool convexify_ = false;
-  double rounding_ = 0;  // N: residuals below this are rounding errors
+  bool may_climb_ = true;
+  Iterate beyond_;
+  // N: residuals below this are rounding errors; known once there is a tangent
+  double rounding_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
