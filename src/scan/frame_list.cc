@@ -1,0 +1,144 @@
+#include "scan/frame_list.h"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <regex>
+#include <stdexcept>
+
+namespace lacuna {
+namespace {
+
+bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+// Texts and runs of digits in turn: "a12.b" → "a", "12", ".b".
+std::vector<std::string> SplitDigits(const std::string& text) {
+  std::vector<std::string> parts;
+  for (size_t at = 0; at < text.size();) {
+    size_t end = at;
+    while (end < text.size() && IsDigit(text[end]) == IsDigit(text[at])) ++end;
+    parts.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return parts;
+}
+
+std::string WithoutLeadingZeros(const std::string& digits) {
+  return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+}
+
+std::vector<std::string> ExpandWildcards(const std::string& pattern) {
+  glob_t found{};
+  std::vector<std::string> names;
+  if (glob(pattern.c_str(), 0, nullptr, &found) == 0) {
+    names.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  globfree(&found);
+  std::sort(names.begin(), names.end(), NaturalLess);
+  return names;
+}
+
+}  // namespace
+
+std::string FillPattern(const std::string& pattern, int number) {
+  static const std::regex placeholder("%(0?)([0-9]?)d");
+  std::smatch match;
+  if (!std::regex_search(pattern, match, placeholder) ||
+      std::count(pattern.begin(), pattern.end(), '%') != 1) {
+    throw std::invalid_argument(fmt::format(
+        "got \"{}\"; expected one place for the number, e.g. frames/points_%02d.ply", pattern));
+  }
+  const int width = match[2].length() > 0 ? std::stoi(match[2]) : 0;
+  const std::string digits =
+      match[1].length() > 0 ? fmt::format("{:0{}d}", number, width) : fmt::format("{:d}", number);
+  return match.prefix().str() + digits + match.suffix().str();
+}
+
+bool NaturalLess(const std::string& a, const std::string& b) {
+  const std::vector<std::string> left = SplitDigits(a), right = SplitDigits(b);
+  for (size_t i = 0; i < std::min(left.size(), right.size()); ++i) {
+    if (left[i] == right[i]) continue;
+    if (IsDigit(left[i][0]) && IsDigit(right[i][0])) {
+      const std::string x = WithoutLeadingZeros(left[i]), y = WithoutLeadingZeros(right[i]);
+      if (x.size() != y.size()) return x.size() < y.size();
+      if (x != y) return x < y;
+    }
+    return left[i] < right[i];
+  }
+  return left.size() < right.size();
+}
+
+std::optional<long> FindMissingNumber(const std::vector<std::string>& sorted_names) {
+  if (sorted_names.size() < 3) return std::nullopt;
+  const std::vector<std::string> first = SplitDigits(sorted_names[0]);
+  std::optional<size_t> varying;
+  for (const std::string& name : sorted_names) {
+    const std::vector<std::string> parts = SplitDigits(name);
+    if (parts.size() != first.size()) return std::nullopt;
+    for (size_t i = 0; i < parts.size(); ++i) {
+      if (parts[i] == first[i]) continue;
+      if (!IsDigit(parts[i][0]) || (varying && *varying != i)) return std::nullopt;
+      varying = i;
+    }
+  }
+  if (!varying) return std::nullopt;
+  std::vector<long> numbers;
+  for (const std::string& name : sorted_names) {
+    const std::string digits = SplitDigits(name)[*varying];
+    if (digits.size() > 9) return std::nullopt;
+    numbers.push_back(std::stol(digits));
+  }
+  long step = numbers[1] - numbers[0];
+  for (size_t i = 1; i < numbers.size(); ++i) step = std::min(step, numbers[i] - numbers[i - 1]);
+  for (size_t i = 1; i < numbers.size() && step > 0; ++i) {
+    if (numbers[i] - numbers[i - 1] != step) return numbers[i - 1] + step;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
+                                                  const std::filesystem::path& data_folder) {
+  const std::vector<std::string> given = config.Texts("files");
+  const std::string pattern = config.Text("pattern", "");
+  if (given.empty() == pattern.empty()) {
+    config.Fail("", "expected either files (a list, or a text with * and ?) or pattern with count");
+  }
+  std::vector<std::filesystem::path> files;
+  if (!pattern.empty()) {
+    const int first = config.Integer("first", 0, 1'000'000'000, 0);
+    const int count = config.Integer("count", 1, 1'000'000);
+    for (int i = 0; i < count; ++i) {
+      try {
+        files.push_back(data_folder / FillPattern(pattern, first + i));
+      } catch (const std::invalid_argument& problem) {
+        config.Fail("pattern", problem.what());
+      }
+    }
+  } else if (given.size() == 1 && given[0].find_first_of("*?") != std::string::npos) {
+    const std::vector<std::string> names = ExpandWildcards((data_folder / given[0]).string());
+    if (names.empty()) {
+      config.Fail("files",
+                  fmt::format("no file is named like {}", (data_folder / given[0]).string()));
+    }
+    if (const std::optional<long> missing = FindMissingNumber(names)) {
+      config.Fail("files", fmt::format("the frame numbered {} is missing among {} … {}; list the "
+                                       "files one by one if that is meant",
+                                       *missing, names.front(), names.back()));
+    }
+    files.assign(names.begin(), names.end());
+  } else {
+    for (const std::string& name : given) files.push_back(data_folder / name);
+  }
+  for (size_t i = 0; i < files.size(); ++i) {
+    if (!std::filesystem::is_regular_file(files[i])) {
+      config.Fail(pattern.empty() ? "files" : "pattern",
+                  fmt::format("frame {}: there is no file {}", i, files[i].string()));
+    }
+  }
+  return files;
+}
+
+}  // namespace lacuna

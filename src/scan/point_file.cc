@@ -1,0 +1,221 @@
+#include "scan/point_file.h"
+
+#include <fmt/format.h>
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
+
+#include <cmath>
+#include <cstring>
+#include <string_view>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+// PCL prints what goes wrong; here the exception tells it instead.
+class SilentPcl {
+ public:
+  SilentPcl() : level_(pcl::console::getVerbosityLevel()) {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  }
+  ~SilentPcl() { pcl::console::setVerbosityLevel(level_); }
+
+ private:
+  pcl::console::VERBOSITY_LEVEL level_;
+};
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const std::string& message) {
+  throw InputError({file.string()}, message);
+}
+
+// PCL reads a word in a text body as 0 or NaN; we refuse it.
+void RefuseWords(const std::filesystem::path& file, std::string_view content, size_t body) {
+  int line_number = 1 + static_cast<int>(std::count(content.begin(), content.begin() + body, '\n'));
+  for (size_t at = body; at < content.size(); ++line_number) {
+    const size_t end = std::min(content.find('\n', at), content.size());
+    const std::string_view line = content.substr(at, end - at);
+    for (const std::string_view field : SplitFields(line, ' ')) {
+      if (!ParseNumber(field)) {
+        throw InputError(
+            {file.string(), line_number, static_cast<int>(field.data() - line.data()) + 1},
+            fmt::format("got \"{}\"; expected a number", field));
+      }
+    }
+    at = end + 1;
+  }
+}
+
+// Where the body begins behind the line that starts with `last_line`, and that line; npos without.
+size_t FindBody(std::string_view content, std::string_view last_line, std::string_view* line) {
+  for (size_t at = 0; at < content.size();) {
+    const size_t end = content.find('\n', at);
+    if (end == std::string_view::npos) break;
+    if (content.substr(at, last_line.size()) == last_line) {
+      *line = content.substr(at, end - at);
+      return end + 1;
+    }
+    at = end + 1;
+  }
+  return std::string_view::npos;
+}
+
+// The number behind `key` in a header, 0 without.
+double AnnouncedCount(std::string_view header, std::string_view key) {
+  const size_t at = header.find(key);
+  if (at == std::string_view::npos) return 0;
+  const std::string_view rest = header.substr(at + key.size());
+  const auto fields = SplitFields(rest.substr(0, rest.find('\n')), ' ');
+  return fields.empty() ? 0 : ParseNumber(fields[0]).value_or(0);
+}
+
+// What PCL would pass over in silence or allocate without need.
+void CheckHeader(const std::filesystem::path& file, bool is_ply) {
+  const std::string content = ReadWholeFile(file);
+  std::string_view line;
+  const size_t body = FindBody(content, is_ply ? "end_header" : "DATA ", &line);
+  const bool has_magic = is_ply ? content.rfind("ply", 0) == 0
+                                : content.find("FIELDS") < body && content.find("WIDTH") < body;
+  if (!has_magic || body == std::string::npos) {
+    Fail(file, fmt::format("is not a {} file or ends within its header", is_ply ? "PLY" : "PCD"));
+  }
+  const std::string_view header = std::string_view(content).substr(0, body);
+  const double count = AnnouncedCount(header, is_ply ? "element vertex" : "POINTS");
+  const bool is_compressed = line.find("compressed") != std::string_view::npos;
+  constexpr double kPointsPerByte = 300;  // no LZF stream packs more
+  if (count > (is_compressed ? kPointsPerByte : 1) * static_cast<double>(content.size() - body)) {
+    Fail(file, fmt::format("is truncated or malformed: its header announces {:.0f} points", count));
+  }
+  const bool is_text = is_ply ? header.find("format ascii") != std::string_view::npos
+                              : line.find("ascii") != std::string_view::npos;
+  if (is_text) RefuseWords(file, content, body);
+}
+
+// One coordinate of all points.
+Eigen::VectorXd FieldValues(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud,
+                            const pcl::PCLPointField& field) {
+  const Eigen::Index count = static_cast<Eigen::Index>(cloud.width) * cloud.height;
+  Eigen::VectorXd values(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const uint8_t* at = cloud.data.data() + i * cloud.point_step + field.offset;
+    if (field.datatype == pcl::PCLPointField::FLOAT64) {
+      std::memcpy(&values[i], at, sizeof(double));
+    } else if (field.datatype == pcl::PCLPointField::FLOAT32) {
+      float value;
+      std::memcpy(&value, at, sizeof(float));
+      values[i] = value;
+    } else {
+      Fail(file,
+           fmt::format("holds \"{}\" as integers; expected floating-point numbers", field.name));
+    }
+  }
+  return values;
+}
+
+Eigen::Matrix3Xd Fields(const std::filesystem::path& file, const pcl::PCLPointCloud2& cloud,
+                        const std::array<const char*, 3>& names, bool required) {
+  Eigen::Matrix3Xd values(3, static_cast<Eigen::Index>(cloud.width) * cloud.height);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
+                                    [&](const auto& f) { return f.name == names[axis]; });
+    if (field == cloud.fields.end()) {
+      if (required) Fail(file, fmt::format("has no field \"{}\"", names[axis]));
+      return Eigen::Matrix3Xd(3, 0);
+    }
+    values.row(axis) = FieldValues(file, cloud, *field);
+  }
+  return values;
+}
+
+PointCloud ReadWithPcl(const std::filesystem::path& file, bool is_ply) {
+  CheckHeader(file, is_ply);
+  pcl::PCLPointCloud2 cloud;
+  int status = -1;
+  try {
+    const SilentPcl silent;
+    status = is_ply ? pcl::PLYReader().read(file.string(), cloud)
+                    : pcl::PCDReader().read(file.string(), cloud);
+  } catch (const std::exception& problem) {
+    Fail(file, fmt::format("cannot be read: {}", problem.what()));
+  }
+  const size_t expected = static_cast<size_t>(cloud.width) * cloud.height * cloud.point_step;
+  if (status < 0 || cloud.data.size() < expected) {
+    Fail(file, fmt::format("is truncated or malformed: its header announces {} points",
+                           static_cast<size_t>(cloud.width) * cloud.height));
+  }
+  return {Fields(file, cloud, {"x", "y", "z"}, true),
+          Fields(file, cloud, {"normal_x", "normal_y", "normal_z"}, false)};
+}
+
+Eigen::Matrix3Xd Columns(const DelimitedTable& table, const std::array<std::string, 3>& names) {
+  Eigen::Matrix3Xd values(3, table.values.rows());
+  for (int axis = 0; axis < 3; ++axis) {
+    values.row(axis) = table.values.col(RequireColumn(table, names[axis])).transpose();
+  }
+  return values;
+}
+
+bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
+  constexpr double kRounding = 1e-2;  // of normals written with two or three digits
+  return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
+}
+
+PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& columns) {
+  const DelimitedTable table = ReadDelimitedTable(file);
+  PointCloud cloud;
+  cloud.normals.resize(3, 0);
+  if (!columns.position[0].empty()) {
+    cloud.points = Columns(table, columns.position);
+    if (!columns.normal[0].empty()) cloud.normals = Columns(table, columns.normal);
+    return cloud;
+  }
+  if (!table.header.empty()) {
+    cloud.points = Columns(table, {"x", "y", "z"});
+    if (FindColumn(table, "nx")) cloud.normals = Columns(table, {"nx", "ny", "nz"});
+    return cloud;
+  }
+  const Eigen::Matrix3Xd last = table.values.cols() == 6
+                                    ? Eigen::Matrix3Xd(table.values.rightCols(3).transpose())
+                                    : Eigen::Matrix3Xd(3, 0);
+  if (table.values.cols() != 3 && (last.cols() == 0 || !AreUnitVectors(last))) {
+    Fail(file, fmt::format("has {} columns and no header; say with `columns` which are x, y, z",
+                           table.values.cols()));
+  }
+  cloud.points = table.values.leftCols(3).transpose();
+  cloud.normals = last;
+  return cloud;
+}
+
+std::string LowerCaseExtension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+}  // namespace
+
+PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns) {
+  const std::string extension = LowerCaseExtension(file);
+  if (extension == ".ply" || extension == ".pcd") return ReadWithPcl(file, extension == ".ply");
+  return ReadTable(file, columns);
+}
+
+void WritePointFile(const std::filesystem::path& file, const PointCloud& cloud) {
+  std::string header = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+      "property double x\nproperty double y\nproperty double z\n",
+      cloud.Size());
+  if (cloud.HasNormals()) header += "property double nx\nproperty double ny\nproperty double nz\n";
+  header += "end_header\n";
+  Eigen::MatrixXd rows(cloud.HasNormals() ? 6 : 3, cloud.Size());
+  rows.topRows(3) = cloud.points;
+  if (cloud.HasNormals()) rows.bottomRows(3) = cloud.normals;
+  header.append(reinterpret_cast<const char*>(rows.data()), rows.size() * sizeof(double));
+  WriteFileAtomically(file, header);
+}
+
+}  // namespace lacuna

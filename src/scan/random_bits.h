@@ -1,0 +1,34 @@
+// Random numbers without a state: each is a function of a few whole numbers alone.
+#ifndef LACUNA_SCAN_RANDOM_BITS_H_
+#define LACUNA_SCAN_RANDOM_BITS_H_
+
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
+
+namespace lacuna {
+
+// The finaliser of SplitMix64 (Steele, Lea & Flood 2014) over each key in turn.
+inline uint64_t RandomBits(std::initializer_list<uint64_t> keys) {
+  uint64_t state = 0;
+  for (const uint64_t key : keys) {
+    state += key + 0x9e3779b97f4a7c15u;
+    state = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9u;
+    state = (state ^ (state >> 27)) * 0x94d049bb133111ebu;
+    state ^= state >> 31;
+  }
+  return state;
+}
+
+// Uniform in (0, 1).
+inline double Uniform(uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
+
+// Normal with mean 0 and deviation 1 (Box & Muller 1958).
+inline double Normal(uint64_t bits) {
+  const double radius = std::sqrt(-2 * std::log(Uniform(bits)));
+  return radius * std::cos(2 * M_PI * Uniform(RandomBits({bits, 1})));
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_RANDOM_BITS_H_

@@ -1,0 +1,170 @@
+#include "scan/region.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/npy.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+// Rounding must not decide whether a node on the border of a region belongs to it.
+constexpr double kBorder = 1e-9;  // m
+
+std::vector<int> AscendingOnce(std::vector<int> nodes) {
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+std::vector<int> ReadNodeFile(const std::filesystem::path& file) {
+  Eigen::MatrixXd numbers =
+      file.extension() == ".npy" ? ReadNpyMatrix(file) : ReadDelimitedTable(file).values;
+  std::vector<int> nodes;
+  for (const double number : numbers.reshaped()) {
+    if (!(number >= 0 && number < 1e9 && number == std::floor(number))) {
+      throw InputError({file.string()},
+                       fmt::format("got {} as a node number; expected a whole number ≥ 0", number));
+    }
+    nodes.push_back(static_cast<int>(number));
+  }
+  if (nodes.empty()) throw InputError({file.string()}, "lists no node");
+  return AscendingOnce(std::move(nodes));
+}
+
+BoxRegion ReadBox(const Config& config) {
+  const Eigen::Vector3d min = config.Vector("min", kLength);
+  const Eigen::Vector3d max = config.Vector("max", kLength);
+  if ((min.array() > max.array()).any()) config.Fail("max", "lies below min");
+  return {Eigen::AlignedBox3d(min, max)};
+}
+
+HalfSpaceRegion ReadHalfSpace(const Config& config) {
+  HalfSpaceRegion region;
+  region.point = config.Vector("point", kLength);
+  region.normal = config.Vector("normal", kDimensionless);
+  if (region.normal.norm() == 0) config.Fail("normal", "has no direction");
+  region.normal.normalize();
+  return region;
+}
+
+struct Contains {
+  Eigen::Vector3d x;
+  bool operator()(const BoxRegion& region) const {
+    return region.box.squaredExteriorDistance(x) <= kBorder * kBorder;
+  }
+  bool operator()(const SphereRegion& region) const {
+    return (x - region.center).norm() <= region.radius + kBorder;
+  }
+  bool operator()(const HalfSpaceRegion& region) const {
+    return (x - region.point).dot(region.normal) >= -kBorder;
+  }
+  bool operator()(const NodeRegion&) const { return false; }
+};
+
+std::string Triple(const Eigen::Vector3d& v) {
+  return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
+}
+std::string Lengths(const Eigen::Vector3d& v) {
+  return fmt::format("[{} m, {} m, {} m]", v.x(), v.y(), v.z());
+}
+
+}  // namespace
+
+Region ReadRegion(const Config& config, const std::filesystem::path& data_folder,
+                  const std::string& default_name) {
+  Region region;
+  region.name = config.Text("name", default_name);
+  int shapes = 0;
+  if (const auto box = config.OptionalChild("box")) {
+    region.shape = ReadBox(*box);
+    ++shapes;
+  }
+  if (const auto sphere = config.OptionalChild("sphere")) {
+    region.shape = SphereRegion{sphere->Vector("center", kLength),
+                                sphere->Quantity("radius", kLength, kPositive)};
+    ++shapes;
+  }
+  if (const auto half_space = config.OptionalChild("half_space")) {
+    region.shape = ReadHalfSpace(*half_space);
+    ++shapes;
+  }
+  if (config.Has("nodes")) {
+    region.shape = NodeRegion{AscendingOnce(config.Integers("nodes", 0)), {}};
+    ++shapes;
+  }
+  if (config.Has("nodes_file")) {
+    const std::filesystem::path file = data_folder / config.Text("nodes_file");
+    region.shape = NodeRegion{ReadNodeFile(file), file};
+    ++shapes;
+  }
+  if (shapes != 1) {
+    config.Fail("", fmt::format("describes {} shapes; expected exactly one of box, sphere, "
+                                "half_space, nodes, nodes_file",
+                                shapes));
+  }
+  return region;
+}
+
+std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes) {
+  std::vector<int> selected;
+  if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) {
+    selected = listed->nodes;
+    if (!selected.empty() && selected.back() >= nodes.cols()) {
+      throw InputError(fmt::format("region \"{}\" lists node {}; the reference shape has {} nodes",
+                                   region.name, selected.back(), nodes.cols()));
+    }
+  } else {
+    for (int i = 0; i < nodes.cols(); ++i) {
+      if (std::visit(Contains{nodes.col(i)}, region.shape)) selected.push_back(i);
+    }
+  }
+  if (selected.empty()) {
+    throw InputError(fmt::format("region \"{}\" ({}) holds no node of the reference shape",
+                                 region.name, DescribeRegion(region)));
+  }
+  return selected;
+}
+
+std::string DescribeRegion(const Region& region) {
+  struct Describe {
+    std::string operator()(const BoxRegion& r) const {
+      return fmt::format("box from {} to {} m", Triple(r.box.min()), Triple(r.box.max()));
+    }
+    std::string operator()(const SphereRegion& r) const {
+      return fmt::format("sphere around {} m of radius {:g} m", Triple(r.center), r.radius);
+    }
+    std::string operator()(const HalfSpaceRegion& r) const {
+      return fmt::format("half-space beyond {} m along {}", Triple(r.point), Triple(r.normal));
+    }
+    std::string operator()(const NodeRegion& r) const {
+      return fmt::format("{} nodes of the reference mesh", r.nodes.size());
+    }
+  };
+  return std::visit(Describe{}, region.shape);
+}
+
+std::string FormatRegion(const Region& region) {
+  struct Format {
+    std::string operator()(const BoxRegion& r) const {
+      return fmt::format("box: {{min: {}, max: {}}}", Lengths(r.box.min()), Lengths(r.box.max()));
+    }
+    std::string operator()(const SphereRegion& r) const {
+      return fmt::format("sphere: {{center: {}, radius: {} m}}", Lengths(r.center), r.radius);
+    }
+    std::string operator()(const HalfSpaceRegion& r) const {
+      return fmt::format("half_space: {{point: {}, normal: [{}, {}, {}]}}", Lengths(r.point),
+                         r.normal.x(), r.normal.y(), r.normal.z());
+    }
+    std::string operator()(const NodeRegion& r) const {
+      return fmt::format("nodes: [{}]", fmt::join(r.nodes, ", "));
+    }
+  };
+  return fmt::format("{{name: \"{}\", {}}}", region.name, std::visit(Format{}, region.shape));
+}
+
+}  // namespace lacuna

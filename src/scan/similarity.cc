@@ -1,0 +1,44 @@
+#include "scan/similarity.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+namespace lacuna {
+
+std::optional<Eigen::Matrix3d> NearestRotation(const Eigen::Matrix3d& matrix) {
+  constexpr double kRounding = 1e-4;  // of matrices written with five or more digits
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  if (!((rotation - matrix).norm() <= kRounding) || rotation.determinant() < 0) return std::nullopt;
+  return rotation;
+}
+
+Similarity ReadSimilarity(const Config& config, double length_unit) {
+  Similarity similarity;
+  similarity.scale = length_unit * config.Number("scale", kPositive, 1.0);
+  similarity.translation = config.Vector("translation", kLength, Eigen::Vector3d::Zero());
+  if (config.Has("matrix")) {
+    const std::vector<double> numbers = config.Quantities("matrix", kDimensionless, kAnyValue);
+    if (numbers.size() != 9) {
+      config.Fail("matrix",
+                  fmt::format("got {} numbers; expected nine, row by row", numbers.size()));
+    }
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    const auto rotation = NearestRotation(Eigen::Map<const RowMajor>(numbers.data()));
+    if (!rotation) config.Fail("matrix", "is not a rotation (orthonormal rows, determinant 1)");
+    similarity.rotation = *rotation;
+    if (config.Has("axis") || config.Has("angle")) {
+      config.Fail("axis", "the rotation is given twice: as a matrix and as axis and angle");
+    }
+  } else if (config.Has("axis") || config.Has("angle")) {
+    const Eigen::Vector3d axis = config.Vector("axis", kDimensionless);
+    if (axis.norm() == 0) config.Fail("axis", "has no direction");
+    const double angle = config.Quantity("angle", kAngle, kAnyValue);
+    similarity.rotation = Eigen::AngleAxisd(angle, axis.normalized()).matrix();
+  }
+  return similarity;
+}
+
+}  // namespace lacuna

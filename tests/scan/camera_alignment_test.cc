@@ -1,0 +1,133 @@
+#include "scan/camera_alignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/nearest.h"
+#include "scan/scan_writer.h"
+#include "scan/test_files.h"
+#include "support/shapes.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Views {
+  std::vector<Eigen::Matrix3Xd> clouds;
+  Eigen::Matrix3Xd positions;
+};
+
+TriMesh Body() {
+  TriMesh mesh = OrganicSurface(4);
+  mesh.vertices *= 0.05;
+  return mesh;
+}
+
+std::vector<VirtualCamera> Cameras(int count) {
+  CameraRing ring;
+  ring.count = count;
+  ring.width = 160, ring.height = 120;
+  ring.center = Body().vertices.rowwise().mean();
+  return PlaceCameras(ring);
+}
+
+ScannerOptions Noise() {
+  ScannerOptions options;
+  options.flying_fraction = 0;
+  options.noise = 1e-4;
+  return options;
+}
+
+Views Scanned(int count) {
+  const ScanResult scan = Scan(Body(), Cameras(count), Noise(), 0);
+  Views views{std::vector<Eigen::Matrix3Xd>(count), scan.sensors.positions};
+  for (int c = 0; c < count; ++c) {
+    std::vector<Eigen::Index> own;
+    for (Eigen::Index i = 0; i < scan.cloud.Size(); ++i) {
+      if (scan.sensors.seen_by[i] == c) own.push_back(i);
+    }
+    views.clouds[c] = scan.cloud.points(Eigen::all, own);
+  }
+  return views;
+}
+
+Eigen::Isometry3d Disturbance(int i) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1, -i, 0.5 * i).normalized();
+  return Eigen::Translation3d(1e-3 * i, -1e-3, 0.5e-3) * Eigen::AngleAxisd(0.01 * i, axis);
+}
+
+TEST(CameraAlignment, TakesOutTheDisturbanceOfThePoses) {
+  Views views = Scanned(4);
+  const Views exact = views;
+  for (int i = 1; i < 4; ++i) {
+    views.clouds[i] = (Disturbance(i) * views.clouds[i]).eval();
+    views.positions.col(i) = Disturbance(i) * views.positions.col(i);
+  }
+  const auto corrections = AlignCameras(views.clouds, views.positions, {});
+  const SurfaceSearch surface(Body());
+  for (int i = 1; i < 4; ++i) {
+    ASSERT_TRUE(corrections[i].applied) << corrections[i].message;
+    const Eigen::Matrix3Xd aligned = corrections[i].correction * views.clouds[i];
+    const double before = (views.clouds[i] - exact.clouds[i]).colwise().norm().mean();
+    const double after = (aligned - exact.clouds[i]).colwise().norm().mean();
+    ASSERT_GT(before, 1e-3);
+    // The overlap is seen obliquely with 0.1 mm noise; point-to-plane leaves a few hundredths.
+    EXPECT_LT(after, 1.5e-4) << "camera " << i;
+    EXPECT_LT(corrections[i].rms_after, 0.6 * corrections[i].rms_before);
+    EXPECT_GT(corrections[i].angle, 0.005);
+  }
+}
+
+TEST(CameraAlignment, LeavesGoodPosesNearlyAsTheyAre) {
+  const Views views = Scanned(4);
+  const auto corrections = AlignCameras(views.clouds, views.positions, {});
+  for (int i = 1; i < 4; ++i) {
+    const Eigen::Matrix3Xd moved = corrections[i].correction * views.clouds[i];
+    EXPECT_LT((moved - views.clouds[i]).colwise().norm().mean(), 1.5e-4);
+  }
+}
+
+TEST(CameraAlignment, SaysWhyItDidNothing) {
+  Views views = Scanned(2);
+  views.clouds[1].colwise() += Eigen::Vector3d(1, 0, 0);
+  const auto apart = AlignCameras(views.clouds, views.positions, {});
+  EXPECT_FALSE(apart[1].applied);
+  EXPECT_THAT(apart[1].message, HasSubstr("not applied: 0 pairs overlap"));
+  EXPECT_TRUE(apart[1].correction.isApprox(Eigen::Isometry3d::Identity()));
+  EXPECT_EQ(apart[1].rms_before, -1);
+  views.clouds[1].resize(3, 2);
+  EXPECT_THAT(AlignCameras(views.clouds, views.positions, {})[1].message,
+              HasSubstr("sees too few points"));
+}
+
+TEST(CameraAlignment, OfADepthRecordingIsAppliedAndReported) {
+  const TestFolder folder;
+  std::vector<VirtualCamera> cameras = Cameras(4);
+  ScannedObject object;
+  object.name = "body";
+  const std::filesystem::path exact_folder = folder / "exact", wrong_folder = folder / "wrong";
+  WriteScan(exact_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
+  // The images are those of the true poses; the recording tells wrong ones.
+  for (int i = 1; i < 4; ++i) {
+    Eigen::Isometry3d& pose = cameras[i].camera.world_from_camera;
+    pose = Disturbance(i) * pose;
+  }
+  WriteScan(wrong_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
+  std::filesystem::remove_all(wrong_folder / "frames");
+  std::filesystem::copy(exact_folder / "frames", wrong_folder / "frames");
+  const auto error = [](const Recording& recording) {
+    return SurfaceSearch(Body()).Nearest(LoadFrame(recording, 0).cloud.points).distance.mean();
+  };
+  const double exact = error(LoadRecording(exact_folder));
+  const double wrong = error(LoadRecording(wrong_folder));
+  std::string yaml = FileContent(wrong_folder / "recording.yaml");
+  yaml.insert(yaml.find("  kind: depth"), "  refine_alignment: {max_distance: 1 cm}\n");
+  const Recording refined = LoadRecording(folder.Write("wrong/recording.yaml", yaml));
+  ASSERT_GT(wrong, 4 * exact);
+  EXPECT_LT(error(refined), 1.3 * exact);
+  EXPECT_THAT(DescribeRecording(refined), HasSubstr("pose corrected by"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,260 @@
+#include "scan/marker_tracks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "scan/test_files.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+enum Processor { kIntel = 84, kDec = 85, kMips = 86 };
+
+// Writes C3D files as the processors of the format's three kinds would have.
+class C3dWriter {
+ public:
+  explicit C3dWriter(Processor processor) : processor_(processor) {}
+
+  void Byte(int value) { bytes_.push_back(static_cast<char>(value)); }
+  void Word(int value) {
+    const int low = value & 0xff, high = (value >> 8) & 0xff;
+    Byte(processor_ == kMips ? high : low);
+    Byte(processor_ == kMips ? low : high);
+  }
+  void Real(float value) {
+    const uint32_t bits = std::bit_cast<uint32_t>(processor_ == kDec ? value * 4 : value);
+    const int low = bits & 0xffff, high = bits >> 16;
+    Word(processor_ == kIntel ? low : high);
+    Word(processor_ == kIntel ? high : low);
+  }
+  void Text(const std::string& text) { bytes_ += text; }
+  void PadTo(size_t size) { bytes_.resize(size, '\0'); }
+
+  void Group(const std::string& name, int number) {
+    Byte(static_cast<int>(name.size()));
+    Byte(-number);
+    Text(name);
+    Word(3);
+    Byte(0);
+  }
+  void Parameter(const std::string& name, int group, const std::string& body) {
+    Byte(static_cast<int>(name.size()));
+    Byte(group);
+    Text(name);
+    Word(static_cast<int>(body.size()) + 3);
+    Text(body);
+    Byte(0);
+  }
+  std::string Content() const { return bytes_; }
+
+ private:
+  Processor processor_;
+  std::string bytes_;
+};
+
+// Two markers, three frames; the second marker is hidden in frame 1. Coordinates k·0.25.
+std::string MakeC3d(Processor processor, bool integers) {
+  constexpr float kScale = 0.25f;
+  C3dWriter c3d(processor);
+  c3d.Byte(2);  // parameters begin in block 2
+  c3d.Byte(0x50);
+  c3d.Word(2);  // points
+  c3d.Word(1);  // analog values per frame
+  c3d.Word(1);  // first frame
+  c3d.Word(3);  // last
+  c3d.Word(0);
+  c3d.Real(integers ? kScale : -kScale);
+  c3d.Word(3);  // data begin in block 3
+  c3d.Word(1);
+  c3d.Real(50.0f);
+  c3d.PadTo(512);
+  c3d.Byte(0), c3d.Byte(0), c3d.Byte(1), c3d.Byte(processor);
+  c3d.Group("POINT", 1);
+  const std::string labels = std::string("\xff\x02\x05\x02", 4) + "LEFT RIGHT";
+  c3d.Parameter("LABELS", 1, labels);
+  c3d.Parameter("UNITS", 1, std::string("\xff\x01\x02", 3) + "mm");
+  c3d.PadTo(1024);
+  for (int frame = 0; frame < 3; ++frame) {
+    for (int marker = 0; marker < 2; ++marker) {
+      const bool hidden = frame == 1 && marker == 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        const int count = 100 * frame - 10 * marker + axis - 7;
+        if (integers) {
+          c3d.Word(count);
+        } else {
+          c3d.Real(kScale * count);
+        }
+      }
+      if (integers) {
+        c3d.Word(hidden ? -1 : 0);
+      } else {
+        c3d.Real(hidden ? -1.0f : 0.0f);
+      }
+    }
+    if (integers) {
+      c3d.Word(77);
+    } else {
+      c3d.Real(77.0f);  // the analog value
+    }
+  }
+  c3d.PadTo(1536);
+  return c3d.Content();
+}
+
+TEST(C3d, ReadsIntegersAndRealsOfEveryProcessor) {
+  const TestFolder folder;
+  for (const Processor processor : {kIntel, kDec, kMips}) {
+    for (const bool integers : {true, false}) {
+      const auto file = folder.Write("a.c3d", MakeC3d(processor, integers));
+      const MarkerTracks tracks = ReadC3d(file);
+      SCOPED_TRACE(testing::Message() << "processor " << processor << " integers " << integers);
+      EXPECT_THAT(tracks.names, ElementsAre("LEFT", "RIGHT"));
+      EXPECT_EQ(tracks.length_unit, "mm");
+      ASSERT_EQ(tracks.positions.size(), 3u);
+      EXPECT_DOUBLE_EQ(tracks.times[2], 0.04);
+      for (int frame = 0; frame < 3; ++frame) {
+        for (int marker = 0; marker < 2; ++marker) {
+          const Eigen::Vector3d place = tracks.positions[frame].col(marker);
+          if (frame == 1 && marker == 1) {
+            EXPECT_TRUE(place.array().isNaN().all());
+            continue;
+          }
+          const double first = 100 * frame - 10 * marker - 7;
+          // Multiples of 1/4 are exact in every one of the formats.
+          EXPECT_EQ(place, 0.25 * Eigen::Vector3d(first, first + 1, first + 2));
+        }
+      }
+    }
+  }
+}
+
+TEST(C3d, TellsOfTruncatedAndForeignFiles) {
+  const TestFolder folder;
+  const std::string whole = MakeC3d(kIntel, false);
+  const auto message = [&](const std::string& content) {
+    const auto file = folder.Write("bad.c3d", content);
+    return ErrorOf([&] { ReadC3d(file); });
+  };
+  EXPECT_THAT(message(whole.substr(0, 1024 + 40)), HasSubstr("bad.c3d: is truncated: it announces "
+                                                             "3 frames and ends within frame 1"));
+  EXPECT_THAT(message(whole.substr(0, 700)), HasSubstr("is truncated"));
+  EXPECT_THAT(message(whole.substr(0, 100)), HasSubstr("is not a C3D file"));
+  EXPECT_THAT(message(std::string(2000, 'x')), HasSubstr("is not a C3D file"));
+  std::string foreign = whole;
+  foreign[512 + 3] = 90;
+  EXPECT_THAT(message(foreign), HasSubstr("unknown processor (90)"));
+  // No byte of the header or the parameters may lead outside the file.
+  for (size_t at = 0; at < 640; ++at) {
+    if (at == 24) at = 512;
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(0xff);
+    message(damaged);
+  }
+}
+
+TEST(MarkerCsv, FindsMarkersByTheirColumns) {
+  const TestFolder folder;
+  const auto file = folder.Write("a.csv",
+                                 "t_s,tip_x,tip_y,tip_z,base_x,base_y,base_z,force\n"
+                                 "0.0,1,2,3,4,5,6,9\n0.1,1,2,3,,nan,,9\n");
+  MarkerColumns columns;
+  columns.time = "t_s";
+  const MarkerTracks tracks = ReadMarkerTracks(file, columns);
+  EXPECT_THAT(tracks.names, ElementsAre("tip", "base"));
+  EXPECT_EQ(tracks.positions[0].col(1), Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(tracks.positions[1].col(1).array().isNaN().all());
+  EXPECT_DOUBLE_EQ(tracks.times[1], 0.1);
+  const MarkerTracks selected = SelectMarkers(tracks, {"base"}, file);
+  EXPECT_EQ(selected.positions[0].col(0), Eigen::Vector3d(4, 5, 6));
+  EXPECT_THAT(ErrorOf([&] { SelectMarkers(tracks, {"tap"}, file); }),
+              HasSubstr("has no marker \"tap\"; its markers are tip, base"));
+}
+
+TEST(MarkerCsv, RefusesMissingColumnsAndTimesThatRunBack) {
+  const TestFolder folder;
+  MarkerColumns columns;
+  const auto half = folder.Write("half.csv", "tip_x,tip_y\n1,2\n");
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(half, columns); }), HasSubstr("no column \"tip_z\""));
+  const auto none = folder.Write("none.csv", "a,b,c\n1,2,3\n");
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(none, columns); }),
+              HasSubstr("no column is named like \"*_x\"; its columns are a, b, c"));
+  const auto back = folder.Write("back.csv", "t,a_x,a_y,a_z\n0,1,2,3\n0,1,2,3\n");
+  columns.time = "t";
+  EXPECT_THAT(ErrorOf([&] { ReadMarkerCsv(back, columns); }), HasSubstr("frame 1: the time 0 s"));
+}
+
+std::string MakeTrc(const std::string& frames, const std::string& markers) {
+  return "PathFileType\t4\t(X/Y/Z)\twalk.trc\n"
+         "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n100\t100\t" +
+         frames + "\t" + markers +
+         "\tmm\nFrame#\tTime\tLeft\t\t\tRight\t\t\n\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n\n"
+         "1\t0.00\t1\t2\t3\t4\t5\t6\r\n2\t0.01\t1.5\t2\t3\t\t\t\r\n3\t0.02\t1.5\t2\t3\n";
+}
+
+TEST(Trc, ReadsMarkersTimesAndGaps) {
+  const TestFolder folder;
+  const MarkerTracks tracks = ReadMarkerTracks(folder.Write("a.trc", MakeTrc("3", "2")), {});
+  EXPECT_THAT(tracks.names, ElementsAre("Left", "Right"));
+  EXPECT_EQ(tracks.length_unit, "mm");
+  ASSERT_EQ(tracks.positions.size(), 3u);
+  EXPECT_EQ(tracks.positions[0].col(1), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(tracks.positions[1].col(0), Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_TRUE(tracks.positions[1].col(1).array().isNaN().all());
+  EXPECT_TRUE(tracks.positions[2].col(1).array().isNaN().all());
+  EXPECT_DOUBLE_EQ(tracks.times[2], 0.02);
+}
+
+TEST(Trc, TellsOfCountsThatContradict) {
+  const TestFolder folder;
+  const auto message = [&](const std::string& content) {
+    const auto file = folder.Write("bad.trc", content);
+    return ErrorOf([&] { ReadTrc(file); });
+  };
+  EXPECT_THAT(message(MakeTrc("4", "2")),
+              HasSubstr("bad.trc: holds 3 frames where NumFrames says 4"));
+  EXPECT_THAT(message(MakeTrc("3", "3")), HasSubstr("bad.trc:4:1: names 2 markers"));
+  EXPECT_THAT(message(MakeTrc("x", "2")), HasSubstr("NumFrames: got \"x\""));
+  EXPECT_THAT(message("hello\n"), HasSubstr("is not a TRC file"));
+  EXPECT_THAT(message(MakeTrc("3", "2") + "4\t0.03\tq\n"), HasSubstr("bad.trc:10:8: got \"q\""));
+}
+
+TEST(C3d, ReadsTheRecordingOfTheSiliconeBeamLikeItsCsv) {
+  const auto folder = SharedData() / "silicone_beam";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped, data absent";
+  const MarkerTracks lab = ReadC3d(folder / "beam_gravity_V2_a.c3d");
+  MarkerColumns columns;
+  columns.time = "t_s";
+  const MarkerTracks beam = ReadMarkerCsv(folder / "beam_gravity_V2_a.csv", columns);
+  ASSERT_EQ(lab.names.size(), 6u);
+  ASSERT_EQ(lab.positions.size(), 500u);
+  ASSERT_EQ(beam.positions.size(), 500u);
+  EXPECT_EQ(lab.length_unit, "m");
+  EXPECT_NEAR(lab.times[499], beam.times[499], 1e-6);
+  // The frames differ by a rigid motion, so the distances between markers agree; the CSV is
+  // rounded to a micrometre in each coordinate.
+  double largest = 0;
+  for (size_t frame = 0; frame < 500; ++frame) {
+    std::vector<double> left, right;
+    for (int a = 0; a < 6; ++a) {
+      for (int b = 0; b < a; ++b) {
+        left.push_back((lab.positions[frame].col(a) - lab.positions[frame].col(b)).norm());
+        right.push_back((beam.positions[frame].col(a) - beam.positions[frame].col(b)).norm());
+      }
+    }
+    std::sort(left.begin(), left.end()), std::sort(right.begin(), right.end());
+    for (size_t i = 0; i < left.size(); ++i) {
+      largest = std::max(largest, std::abs(left[i] - right[i]));
+    }
+  }
+  EXPECT_LT(largest, 2e-6);
+}
+
+}  // namespace
+}  // namespace lacuna

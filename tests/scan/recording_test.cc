@@ -1,0 +1,358 @@
+#include "scan/recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/npy.h"
+#include "geometry/mesh_io.h"
+#include "scan/test_files.h"
+#include "support/shapes.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// A cloud of `rows` points of a 100 × 50 × 20 (units of the file) body, one per line.
+std::string Cloud(int rows, double shift = 0) {
+  std::ostringstream text;
+  for (int i = 0; i < rows; ++i) {
+    text << i * 100.0 / (rows - 1) + shift << ',' << (i * 7 % 11) * 5 << ',' << (i * 5 % 3) * 10
+         << '\n';
+  }
+  return text.str();
+}
+
+std::string Yaml(const std::string& frames, const std::string& rest = "",
+                 const std::string& unit = "mm") {
+  return "schema_version: 1\nname: bar\nlength_unit: " + unit + "\n" + rest + "frames:\n" + frames;
+}
+
+class RecordingTest : public testing::Test {
+ protected:
+  // A recording of `count` clouds and whatever else the YAML tells.
+  void WriteClouds(int count, int rows = 12) const {
+    for (int i = 0; i < count; ++i) {
+      folder_.Write("f/p" + std::to_string(i) + ".csv", "x,y,z\n" + Cloud(rows, i));
+    }
+  }
+  Recording Load(const std::string& yaml) const {
+    return LoadRecording(folder_.Write("recording.yaml", yaml));
+  }
+  std::string LoadError(const std::string& yaml) const {
+    return ErrorOf([&] { Load(yaml); });
+  }
+
+  TestFolder folder_;
+};
+
+TEST_F(RecordingTest, TellsWhatIsKnownInSi) {
+  WriteClouds(3);
+  folder_.Write("load.csv", "t_ms,fx,fy,fz\n0,0,0,-100\n100,0,0,-300\n");
+  folder_.Write("grip.csv", "x,y,z\n100,0,0\n100,0,5\n100,0,10\n");
+  const Recording recording = Load(
+      Yaml("  kind: points\n  files: f/*.csv\n  rate: 20 Hz\n",
+           "density: 1.07 g/cm^3\ngravity: [0, 0, -9.81 m/s^2]\n"
+           "fixed: [{name: clamp, half_space: {point: [1 mm, 0, 0], normal: [-1, 0, 0]}}]\n"
+           "gripped: [{name: hand, sphere: {center: [100 mm, 0, 0], radius: 5 mm},\n"
+           "           path: {file: grip.csv, x: x, y: y, z: z}},\n"
+           "          {name: rest, nodes: [1, 2]}]\n"
+           "forces: [{name: pull, file: load.csv, time: t_ms, time_unit: ms, x: fx, y: fy, z: fz,\n"
+           "          unit: mN, region: {nodes: [7]}}, {constant: [0, 0, -0.51 N]}]\n"
+           "reference: {from: first_frame, sheet: {thickness: 2 mm, face: front}}\n"));
+  EXPECT_DOUBLE_EQ(*recording.density, 1070);
+  EXPECT_EQ(*recording.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_THAT(recording.times, ElementsAre(0, 0.05, 0.1));
+  ASSERT_EQ(recording.grips.size(), 2u);
+  // The path follows the frames' times; its unit is the recording's.
+  EXPECT_LT((DisplacementAt(recording.grips[0], 0.075) - Eigen::Vector3d(0, 0, 0.0075)).norm(),
+            1e-15);
+  EXPECT_EQ(recording.grips[1].motion, GripMotion::kFollowsScan);
+  ASSERT_EQ(recording.forces.size(), 2u);
+  EXPECT_NEAR(ForceAt(recording.forces[0], 0.025).z(), -0.15, 1e-15);
+  EXPECT_NEAR(ForceAt(recording.forces[0], 9).z(), -0.3, 1e-15);
+  EXPECT_NEAR(ForceAt(recording.forces[0], -9).z(), -0.1, 1e-15);
+  EXPECT_EQ(ForceAt(recording.forces[1], 0.1), Eigen::Vector3d(0, 0, -0.51));
+  EXPECT_FALSE(recording.forces[1].region.has_value());
+  EXPECT_DOUBLE_EQ(recording.reference.sheet_thickness, 2e-3);
+  EXPECT_THAT(recording.warnings, IsEmpty());
+  const Frame frame = LoadFrame(recording, 2);
+  EXPECT_EQ(frame.cloud.Size(), 12);
+  EXPECT_DOUBLE_EQ(frame.cloud.points(0, 11), 0.102);
+  EXPECT_EQ(RecordingFiles(recording).size(), 6u);
+  const std::string text = DescribeRecording(recording);
+  for (const char* part : {"3 point clouds, 0 s to 0.1 s", "12 points, 100 mm × 50 mm × 20 mm",
+                           "1070 kg/m³", "clamp: half-space", "hand: sphere", "given path",
+                           "pull: 2 values, at most 0.3 N", "an open sheet 2 mm thick"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+TEST_F(RecordingTest, MayLieElsewhereThanItsData) {
+  WriteClouds(2);
+  setenv("LACUNA_TEST_FOLDER", folder_.Path().c_str(), 1);
+  const auto yaml = folder_.Write("experiments/bar.yaml",
+                                  Yaml("  kind: points\n  files: p*.csv\n  times: [0 s, 10 ms]\n",
+                                       "data_folder: ${LACUNA_TEST_FOLDER}/f\n"));
+  EXPECT_EQ(LoadRecording(yaml).FrameCount(), 2);
+  unsetenv("LACUNA_TEST_FOLDER");
+  EXPECT_THAT(ErrorOf([&] { LoadRecording(yaml); }),
+              HasSubstr("data_folder: the environment variable LACUNA_TEST_FOLDER is not set"));
+}
+
+TEST_F(RecordingTest, ChoosesFramesByTimeAndStride) {
+  WriteClouds(10);
+  folder_.Write("f.csv", "0,0,0\n1,0,0\n2,0,0\n3,0,0\n4,0,0\n5,0,0\n6,0,0\n7,0,0\n8,0,0\n9,0,0\n");
+  const Recording recording =
+      Load(Yaml("  {kind: points, pattern: f/p%d.csv, count: 10, rate: 10 Hz, from: 0.2 s, to: 0.7 "
+                "s, every: 2}\n",
+                "forces: [{file: f.csv}]\n"));
+  EXPECT_THAT(recording.times, ElementsAre(0.2, 0.4, 0.6));
+  EXPECT_DOUBLE_EQ(LoadFrame(recording, 1).cloud.points(0, 0), 0.004);
+  // One row per frame of the files, not per frame chosen.
+  EXPECT_DOUBLE_EQ(ForceAt(recording.forces[0], recording.times[2]).x(), 6);
+}
+
+TEST_F(RecordingTest, DropsNanRowsAndTheirTrianglesAndCountsThem) {
+  folder_.Write("f/p0.csv", "x,y,z\n0,0,0\n10,0,0\n0,10,0\n0,0,10\n9,9,9\n");
+  folder_.Write("f/p1.csv", "x,y,z\n0,0,0\nnan,nan,nan\n0,10,0\n0,0,10\n9,9,9\n");
+  folder_.Write("triangles.csv", "i,j,k\n0,1,2\n0,2,3\n2,3,4\n");
+  const Recording recording =
+      Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, triangles: triangles.csv}\n"));
+  const Frame frame = LoadFrame(recording, 1);
+  EXPECT_EQ(frame.row_count, 5);
+  EXPECT_EQ(frame.dropped_count, 1);
+  EXPECT_EQ(frame.cloud.Size(), 4);
+  EXPECT_EQ(frame.source_row, Eigen::Vector4i(0, 2, 3, 4));
+  ASSERT_EQ(frame.triangles.cols(), 2);
+  EXPECT_EQ(frame.triangles.col(1), Eigen::Vector3i(1, 2, 3));
+  EXPECT_THAT(DescribeRecording(recording), HasSubstr("1 of 5 dropped"));
+}
+
+TEST_F(RecordingTest, TellsFileAndFrameOfUnusableFrames) {
+  WriteClouds(3);
+  const std::string yaml = Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n");
+  const auto message = [&](const std::string& content) {
+    folder_.Write("f/p1.csv", content);
+    const Recording recording = Load(yaml);
+    return ErrorOf([&] { LoadFrame(recording, 1); });
+  };
+  const std::string file = (folder_.Path() / "f/p1.csv").string();
+  EXPECT_EQ(message(""), "frame 1 of \"bar\": " + file + ": is empty");
+  EXPECT_EQ(message("x,y,z\n1,2,3\n"),
+            "frame 1 of \"bar\": " + file + ": holds 1 usable point; expected at least 4");
+  EXPECT_EQ(message("x,y,z\nnan,1,2\n1,nan,2\n3,3,\n1,,1\n2,,2\n"),
+            "frame 1 of \"bar\": " + file + ": none of its 5 points is finite");
+  EXPECT_THAT(message("x,y,z\n1,2\n"), HasSubstr("p1.csv:2:1: has 2 entries"));
+  const Recording recording = Load(yaml);
+  std::filesystem::remove(file);
+  EXPECT_EQ(ErrorOf([&] { LoadFrame(recording, 1); }),
+            "frame 1 of \"bar\": " + file + ": cannot be opened for reading");
+  WriteClouds(4);
+  std::filesystem::remove(folder_.Path() / "f/p2.csv");
+  EXPECT_THAT(LoadError(yaml), HasSubstr("frames.files: the frame numbered 2 is missing"));
+  folder_.Write("f/p2.csv", "");
+  folder_.Write("f/p0.csv", "x,y,z\n1,2,3\n");
+  folder_.Write("f/p1.csv", "x,y,z\n1,2,3\n");
+  EXPECT_THAT(LoadError(yaml), HasSubstr("frame 0 of \"bar\""));
+}
+
+TEST_F(RecordingTest, TellsOfCountsThatContradict) {
+  WriteClouds(3);
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s]}\n")),
+              HasSubstr("frames.times: 2 times for 3 frames"));
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s, 1 s]}\n")),
+              HasSubstr("frames.times: frame 2: the time 1 s does not follow"));
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv}\n")), HasSubstr("tells no times"));
+  EXPECT_THAT(
+      LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, times: [0 s, 1 s, 2 s]}\n")),
+      HasSubstr("given more than once"));
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, pattern: f/p%d.csv, count: 4, rate: 1 Hz}\n")),
+              HasSubstr("frame 3: there is no file"));
+  folder_.Write("load.csv", "0,0,1\n0,0,2\n");
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n",
+                             "forces: [{file: load.csv}]\n")),
+              HasSubstr("has 2 rows for 3 frames"));
+  folder_.Write("f/p2.csv", "x,y,z\n" + Cloud(11));
+  const Recording tracked =
+      Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, tracked: true}\n"));
+  EXPECT_THAT(ErrorOf([&] { LoadFrame(tracked, 2); }),
+              HasSubstr("p2.csv: holds 11 points where frame 0 holds 12"));
+  folder_.Write("t.csv", "0,1,12\n");
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, triangles: t.csv}\n")),
+              HasSubstr("triangle 0 has the corner 12; the frame has 12 rows"));
+}
+
+TEST_F(RecordingTest, TellsFileLineAndColumnOfMistakesInTheYaml) {
+  WriteClouds(2);
+  const std::string frames = "  {kind: points, files: f/*.csv, rate: 1 Hz}\n";
+  EXPECT_THAT(LoadError(Yaml(frames, "dencity: 1 kg/m^3\n")),
+              HasSubstr("recording.yaml:4:1: dencity: unknown key; did you mean \"density\"?"));
+  EXPECT_THAT(
+      LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, trakced: true}\n")),
+      HasSubstr("recording.yaml:5:46: frames.trakced: unknown key; did you mean \"tracked\"?"));
+  EXPECT_THAT(LoadError(Yaml(frames, "density: 3 kg\n")),
+              HasSubstr("recording.yaml:4:10: density"));
+  EXPECT_THAT(LoadError(Yaml(frames, "", "inch")), HasSubstr("length_unit: got \"inch\""));
+  EXPECT_THAT(LoadError(Yaml("  {kind: cloud, files: f/*.csv}\n")), HasSubstr("frames.kind"));
+  EXPECT_THAT(LoadError(Yaml(frames, "data_folder: nowhere\n")), HasSubstr("there is no folder"));
+  EXPECT_THAT(LoadError(Yaml(frames, "reference: {from: mesh, file: no.ply}\n")),
+              HasSubstr("reference.file: there is no file"));
+  EXPECT_THAT(ErrorOf([&] { LoadRecording(folder_.Path() / "absent"); }), HasSubstr("absent"));
+}
+
+TEST_F(RecordingTest, WarnsOfSizesThatSuggestAnotherUnit) {
+  WriteClouds(1);  // 100 × 50 × 20 in the units of the file
+  const std::string frames = "  {kind: points, files: f/*.csv}\n";
+  EXPECT_THAT(Load(Yaml(frames, "", "mm")).warnings, IsEmpty());
+  EXPECT_THAT(Load(Yaml(frames, "", "m")).warnings,
+              ElementsAre(HasSubstr("frame 0 is 114 m across with length_unit: m; it would be 1.14 "
+                                    "m with length_unit: cm or 0.114 m with length_unit: mm")));
+  folder_.Write("f/p0.csv", "x,y,z\n0,0,0\n0.1,0,0\n0,0.05,0\n0,0,0.02\n");
+  EXPECT_THAT(Load(Yaml(frames, "", "m")).warnings, IsEmpty());
+  EXPECT_THAT(
+      Load(Yaml(frames, "", "mm")).warnings,
+      ElementsAre(HasSubstr("frame 0 is 0.000114 m across with length_unit: mm; it would be "
+                            "0.114 m with length_unit: m")));
+  // Also when only the reference has the wrong unit.
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const std::string reference = "reference: {from: mesh, file: box.ply";
+  EXPECT_THAT(Load(Yaml(frames, reference + "}\n", "m")).warnings, IsEmpty());
+  EXPECT_THAT(Load(Yaml(frames, reference + ", length_unit: mm}\n", "m")).warnings,
+              ElementsAre(HasSubstr("the reference shape is 0.000114 m across, frame 0 0.114 m")));
+}
+
+TEST_F(RecordingTest, LoadsMeshesWithTheirTrianglesAndNormals) {
+  const TriMesh box = BoxSurface({100, 50, 20}, {2, 2, 2});
+  WriteTriMesh(folder_.Path() / "s0.ply", box);
+  const Recording recording =
+      Load(Yaml("  {kind: mesh, files: [s0.ply], transform: {translation: [1 m, 0, 0]}}\n"));
+  const Frame frame = LoadFrame(recording, 0);
+  EXPECT_EQ(frame.triangles, box.triangles);
+  EXPECT_NEAR(frame.cloud.points.row(0).maxCoeff(), 1.1, 1e-12);
+  ASSERT_TRUE(frame.cloud.HasNormals());
+  const Eigen::Vector3d center(1.05, 0.025, 0.01);
+  EXPECT_GT((frame.cloud.points.colwise() - center)
+                .cwiseProduct(frame.cloud.normals)
+                .colwise()
+                .sum()
+                .minCoeff(),
+            0);
+}
+
+TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
+  folder_.Write("m.csv",
+                "t,a_x,a_y,a_z,b_x,b_y,b_z,c_x,c_y,c_z\n0.5,0,0,0,50,0,0,90,9,9\n"
+                "0.6,0,0,0,nan,nan,nan,90,9,9\n0.7,,,,,,,,,\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const std::string frames =
+      "  {kind: markers, file: m.csv, columns: {time: t}, markers: [b, a],\n"
+      "   marker_places: [{name: a, position: [0, 0, 1 mm]}]}\n";
+  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
+  const Recording recording =
+      Load(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [a]}]\n"));
+  EXPECT_THAT(recording.times, ElementsAre(0.5, 0.6, 0.7));
+  EXPECT_DOUBLE_EQ(LoadFrame(recording, 0).cloud.points(0, 0), 0.05);
+  const Frame second = LoadFrame(recording, 1);
+  EXPECT_EQ(second.source_row, Eigen::VectorXi::Constant(1, 1));
+  EXPECT_EQ(second.dropped_count, 1);
+  EXPECT_EQ(recording.marker_places.col(1), Eigen::Vector3d(0, 0, 1e-3));
+  EXPECT_TRUE(std::isnan(recording.marker_places(0, 0)));
+  EXPECT_THAT(ErrorOf([&] { LoadFrame(recording, 2); }),
+              HasSubstr("m.csv: none of its 2 points is finite"));
+  EXPECT_THAT(LoadError(Yaml(frames)), HasSubstr("markers do not tell the shape"));
+  EXPECT_THAT(
+      LoadError(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [d]}]\n")),
+      HasSubstr("has no marker \"d\""));
+}
+
+TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
+  folder_.Write("m.trc",
+                "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n"
+                "100\t1\t1\tm\nFrame#\tTime\tA\n\t\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const Recording recording =
+      Load(Yaml("  {kind: markers, file: m.trc}\n", "reference: {from: mesh, file: box.ply}\n"));
+  EXPECT_THAT(recording.warnings,
+              ElementsAre(HasSubstr("says that its lengths are in m; recording.yaml says mm")));
+}
+
+// The published data sets as a user would describe them, from a folder of their own.
+class PublishedData : public RecordingTest {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(SharedData())) GTEST_SKIP() << "skipped, data absent";
+  }
+  static std::string Folder(const std::string& name) {
+    return "data_folder: " + (SharedData() / name).string() + "\n";
+  }
+};
+
+TEST_F(PublishedData, RubberStripIsATrackedSheet) {
+  const Recording recording = Load(
+      Yaml("  kind: points\n  pattern: frames/points_%02d.csv\n  count: 20\n  rate: 1 Hz\n"
+           "  columns: {x: x_mm, y: y_mm, z: z_mm}\n  triangles: triangles.csv\n",
+           Folder("rubber_strip") + "reference: {from: first_frame, sheet: {thickness: 1 mm}}\n"));
+  EXPECT_EQ(recording.FrameCount(), 20);
+  EXPECT_THAT(recording.warnings, IsEmpty());
+  for (int i = 0; i < 20; ++i) {
+    const Frame frame = LoadFrame(recording, i);
+    EXPECT_EQ(frame.row_count, 435);
+    EXPECT_EQ(frame.dropped_count > 0, i == 11 || i == 17) << "frame " << i;
+  }
+  EXPECT_EQ(LoadFrame(recording, 0).triangles.cols(), 722);
+}
+
+TEST_F(PublishedData, LiverTellsForcesNodesAndTetMesh) {
+  const Recording recording = Load(Yaml(
+      "  {kind: points, files: sequences/linear/s1/pointclouds/*.txt, rate: 1 Hz}\n",
+      Folder("liver_sequence") +
+          "fixed: [{nodes_file: mesh-remeshed/dirichlet-vertices.npy}]\n"
+          "forces: [{file: sequences/linear/s1/true-forces.npy,\n"
+          "          region: {nodes_file: sequences/linear/s1/forces-vertices-remeshed.npy}}]\n"
+          "reference: {from: tet_mesh, file: mesh-remeshed/liver.msh}\n",
+      "m"));
+  EXPECT_EQ(recording.FrameCount(), 50);
+  EXPECT_THAT(recording.warnings, IsEmpty());
+  EXPECT_EQ(LoadFrame(recording, 49).cloud.Size(), 500);
+  const Eigen::MatrixXd forces =
+      ReadNpyMatrix(SharedData() / "liver_sequence/sequences/linear/s1/true-forces.npy");
+  EXPECT_EQ(ForceAt(recording.forces[0], 30), Eigen::Vector3d(forces.row(30)));
+  const TetMesh mesh = ReadTetMesh(recording.reference.file).mesh;
+  EXPECT_EQ(SelectNodes(recording.fixed[0], mesh.nodes).size(), 106u);
+  EXPECT_EQ(SelectNodes(*recording.forces[0].region, mesh.nodes).size(), 18u);
+}
+
+TEST_F(PublishedData, LidarScanHasItsCadShapeInCentimetres) {
+  const Recording recording = Load(
+      Yaml("  {kind: points, files: [h_m_c_beam.ply], sensors: [{position: [0, 0, 1 m]}]}\n",
+           Folder("silicone_lidar") +
+               "density: 1080 kg/m^3\ngravity: [0, -9.81 m/s^2, 0]\n"
+               "reference: {from: mesh, file: cad/cantilever_f1494_v749.obj, length_unit: cm}\n",
+           "m"));
+  EXPECT_EQ(LoadFrame(recording, 0).cloud.Size(), 15091);
+  EXPECT_THAT(recording.warnings, IsEmpty());
+}
+
+TEST_F(PublishedData, SiliconeBeamHasItsMarkersFromCsvAndC3d) {
+  const std::string rest =
+      Folder("silicone_beam") +
+      "density: 1070 kg/m^3\nreference: {from: mesh, file: beam.stl, length_unit: mm}\n";
+  const Recording csv =
+      Load(Yaml("  {kind: markers, file: beam_gravity_V2_a.csv, columns: {time: t_s}, every: 10}\n",
+                rest, "m"));
+  EXPECT_EQ(csv.FrameCount(), 50);
+  EXPECT_THAT(csv.markers.names, ElementsAre("tip1", "tip2", "tip3", "base1", "base2", "base3"));
+  const Recording c3d =
+      Load(Yaml("  {kind: markers, file: beam_gravity_V2_a.c3d, every: 10}\n", rest, "m"));
+  EXPECT_EQ(c3d.FrameCount(), 50);
+  EXPECT_EQ(LoadFrame(c3d, 49).cloud.Size(), 6);
+  EXPECT_THAT(c3d.warnings, IsEmpty());
+}
+
+}  // namespace
+}  // namespace lacuna
