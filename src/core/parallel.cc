@@ -1,21 +1,131 @@
 #include "core/parallel.h"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <mutex>
+#include <thread>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace lacuna {
 namespace {
 
 std::atomic<int> thread_count{0};
+thread_local bool inside_loop = false;
+
+// Looks for the next loop so often before it goes to sleep: some 50 µs, the pause between two loops
+// of one computation.
+constexpr int kSpins = 1000;
+
+void Pause() {
+#if defined(__x86_64__)
+  _mm_pause();
+#endif
+}
+
+// One loop at work: its blocks are handed out one by one.
+struct Loop {
+  Loop(int64_t count, int64_t block, const std::function<void(int64_t, int64_t)>& body, int helpers)
+      : count(count),
+        block(block),
+        blocks((count + block - 1) / block),
+        body(body),
+        helpers_wanted(helpers) {}
+
+  const int64_t count, block, blocks;
+  const std::function<void(int64_t, int64_t)>& body;
+  const int helpers_wanted;
+  std::atomic<int64_t> next = 0;
+  std::atomic<int> helpers_inside = 0;
+  std::mutex failure_mutex;
+  std::exception_ptr failure;
+
+  void Work() {
+    inside_loop = true;
+    try {
+      for (int64_t k = next++; k < blocks; k = next++) {
+        body(k * block, std::min(count, (k + 1) * block));
+      }
+    } catch (...) {
+      next = blocks;
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+    inside_loop = false;
+  }
+};
+
+// Threads that help where they can. The caller of a loop never waits for a helper to arrive, only
+// for one in the middle of a block: where other programs keep the cores busy, a loop is then hardly
+// slower than on one thread. (A barrier for all, as OpenMP's, costs a scheduler's time slice for
+// each loop there, which made small loops a hundred times slower.)
+class Helpers {
+ public:
+  // Lives until the end of the process, so that helpers need not be stopped.
+  static Helpers& Get() {
+    static Helpers& helpers = *new Helpers;
+    return helpers;
+  }
+
+  // False when another thread's loop has the helpers: then the caller is on its own.
+  bool Run(Loop* loop) {
+    const std::unique_lock mine(in_use_, std::try_to_lock);
+    if (!mine) return false;
+    for (; threads_ < loop->helpers_wanted; ++threads_) std::thread([this] { Help(); }).detach();
+    {
+      const std::lock_guard lock(mutex_);
+      current_ = loop;
+    }
+    ++loops_;
+    loops_.notify_all();
+    loop->Work();
+    {
+      const std::lock_guard lock(mutex_);
+      current_ = nullptr;
+    }
+    for (int inside = loop->helpers_inside; inside > 0; inside = loop->helpers_inside) {
+      for (int k = 0; k < kSpins && loop->helpers_inside > 0; ++k) Pause();
+      if (loop->helpers_inside > 0) std::this_thread::yield();
+    }
+    return true;
+  }
+
+ private:
+  void Help() {
+    int64_t seen = 0;
+    while (true) {
+      for (int k = 0; k < kSpins && loops_ == seen; ++k) Pause();
+      loops_.wait(seen);
+      seen = loops_;
+      Loop* loop = Enter();
+      if (loop == nullptr) continue;
+      loop->Work();
+      --loop->helpers_inside;
+    }
+  }
+
+  Loop* Enter() {
+    const std::lock_guard lock(mutex_);
+    if (current_ == nullptr || current_->helpers_inside >= current_->helpers_wanted) return nullptr;
+    ++current_->helpers_inside;
+    return current_;
+  }
+
+  std::mutex in_use_;
+  int threads_ = 0;
+  std::mutex mutex_;  // of current_ and of entering it
+  Loop* current_ = nullptr;
+  std::atomic<int64_t> loops_ = 0;
+};
 
 }  // namespace
 
 int ThreadCount() {
   const int count = thread_count.load();
-  return count > 0 ? count : omp_get_num_procs();
+  return count > 0 ? count : std::max(1u, std::thread::hardware_concurrency());
 }
 
 void SetThreadCount(int count) { thread_count.store(std::max(1, count)); }
@@ -23,22 +133,15 @@ void SetThreadCount(int count) { thread_count.store(std::max(1, count)); }
 void ParallelBlocks(int64_t count, int64_t block,
                     const std::function<void(int64_t begin, int64_t end)>& body) {
   const int64_t blocks = (count + block - 1) / block;
-  if (blocks <= 1 || ThreadCount() == 1 || omp_in_parallel()) {
-    for (int64_t k = 0; k < blocks; ++k) body(k * block, std::min(count, (k + 1) * block));
-    return;
-  }
-  // An exception must not leave an OpenMP region: the first one is carried out by hand.
-  std::exception_ptr failure;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(ThreadCount())
-  for (int64_t k = 0; k < blocks; ++k) {
-    try {
-      body(k * block, std::min(count, (k + 1) * block));
-    } catch (...) {
-#pragma omp critical(lacuna_parallel_failure)
-      if (!failure) failure = std::current_exception();
+  const int threads = static_cast<int>(std::min<int64_t>(blocks, ThreadCount()));
+  if (threads > 1 && !inside_loop) {
+    Loop loop(count, block, body, threads - 1);
+    if (Helpers::Get().Run(&loop)) {
+      if (loop.failure) std::rethrow_exception(loop.failure);
+      return;
     }
   }
-  if (failure) std::rethrow_exception(failure);
+  for (int64_t k = 0; k < blocks; ++k) body(k * block, std::min(count, (k + 1) * block));
 }
 
 }  // namespace lacuna

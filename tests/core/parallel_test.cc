@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace lacuna {
@@ -43,6 +44,34 @@ TEST(Parallel, CarriesAnExceptionToTheCaller) {
                              if (i == 57) throw std::runtime_error("57");
                            }),
                std::runtime_error);
+}
+
+TEST(Parallel, RunsALoopInsideALoop) {
+  ThreadCountGuard guard;
+  SetThreadCount(3);
+  std::vector<int> visits(40 * 50, 0);
+  ParallelFor(40, 1,
+              [&](int64_t i) { ParallelFor(50, 1, [&](int64_t j) { ++visits[50 * i + j]; }); });
+  for (const int count : visits) EXPECT_EQ(count, 1);
+}
+
+TEST(Parallel, ServesLoopsOfSeveralCallersAtTheSameTime) {
+  ThreadCountGuard guard;
+  SetThreadCount(2);
+  constexpr int kCallers = 4, kLoops = 500;
+  std::vector<int64_t> sums(kCallers, 0);
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < kCallers; ++caller) {
+    callers.emplace_back([&sums, caller] {
+      for (int loop = 0; loop < kLoops; ++loop) {
+        std::vector<int64_t> values(64, 0);
+        ParallelFor(64, 8, [&](int64_t i) { values[i] = i; });
+        for (const int64_t value : values) sums[caller] += value;
+      }
+    });
+  }
+  for (std::thread& caller : callers) caller.join();
+  EXPECT_EQ(sums, std::vector<int64_t>(kCallers, kLoops * 64 * 63 / 2));
 }
 
 TEST(Parallel, DoesNothingForAnEmptyRange) {
