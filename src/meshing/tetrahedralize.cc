@@ -82,6 +82,30 @@ TetMesh FromTetGen(const tetgenio& output, const UnitFrame& frame) {
   return mesh;
 }
 
+// A few tetrahedra in a thousand above a bound are what TetGen's last smoothing leaves.
+constexpr double kWorthANote = 0.005;
+
+void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
+  const TetQuality& quality = result.quality;
+  const auto many = [&](Eigen::Index count) {
+    return static_cast<double>(count) > kWorthANote * static_cast<double>(quality.tets);
+  };
+  const char* why = options.preserve_surface ? "the surface is kept and too coarse or uneven for it"
+                                             : "the surface's edges meet at sharp angles";
+  if (many(quality.above_volume)) {
+    result.notes.push_back(fmt::format(
+        "{} of {} tetrahedra are larger than {:.4g} m^3, the largest by {:.3g} times: {}",
+        quality.above_volume, quality.tets, options.max_volume,
+        quality.volume.max / options.max_volume, why));
+  }
+  if (many(quality.above_ratio)) {
+    result.notes.push_back(
+        fmt::format("{} of {} tetrahedra have a radius-edge ratio above {:.4g}, at most {:.3g}: {}",
+                    quality.above_ratio, quality.tets, options.radius_edge_ratio,
+                    quality.radius_edge_ratio.max, why));
+  }
+}
+
 void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
   result.status = status;
   result.message = message;
@@ -144,6 +168,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
          fmt::format("{} tetrahedra have no volume", result.quality.inverted), result);
     return result;
   }
+  NoteUnmetBounds(options, result);
   if (options.order == 2) result.mesh = ToQuadratic(result.mesh);
   result.quality.nodes = result.mesh.NodeCount();
   result.status = MeshStatus::kUsable;
