@@ -1,0 +1,203 @@
+#include "fit/coefficient_fit.h"
+
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+#include <glog/logging.h>
+
+#include <cmath>
+#include <vector>
+
+#include "fem/linear_solver.h"
+#include "fem/newton.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kBalanceTolerance = 1e-10;  // of Newton's method, relative to the forces at work
+constexpr double kSensitivityTolerance = 1e-7;  // of ∂x/∂c; only the search direction depends on it
+constexpr int kNewtonIterations = 30;
+constexpr int kMaxLoadParts = 8;
+
+LinearSolverOptions Solving(double tolerance) {
+  LinearSolverOptions options;
+  options.relative_tolerance = tolerance;
+  return options;
+}
+
+// x(c) and ∂x/∂c at the coefficients that Ceres is about to ask for.
+class BalancedMotion : public ceres::EvaluationCallback {
+ public:
+  BalancedMotion(const Model& model, const StepEquation& equation, const ForceModel& force_model,
+                 const Eigen::VectorXd& start, const Eigen::VectorXd* coefficients)
+      : equation_(equation),
+        basis_(force_model.basis),
+        coefficients_(coefficients),
+        fixed_(GrippedNodes(model)),
+        gripped_place_(start),
+        newton_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
+        sensitivity_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
+        tangent_(model.body->pattern),
+        balanced_position_(start),
+        position_(start) {}
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    if (new_evaluation_point) is_balanced_ = Balance();
+    if (evaluate_jacobians && is_balanced_) is_balanced_ = Differentiate();
+  }
+
+  bool is_balanced() const { return is_balanced_; }
+  const Eigen::VectorXd& position() const { return position_; }
+  const Eigen::MatrixXd& sensitivity() const { return sensitivity_; }
+  int factorisations() const {
+    return newton_solver_.factorisations() + sensitivity_solver_.factorisations();
+  }
+
+ private:
+  // From the last balanced place along the tangent; where that fails, in ever smaller parts.
+  bool Balance() {
+    for (int parts = 1; parts <= kMaxLoadParts; parts *= 2) {
+      position_ = balanced_position_;
+      if (sensitivity_.size() > 0 && parts == 1)
+        position_ += sensitivity_ * (*coefficients_ - balanced_coefficients_);
+      const Eigen::VectorXd from = balanced_coefficients_.size() > 0
+                                       ? balanced_coefficients_
+                                       : Eigen::VectorXd::Zero(coefficients_->size());
+      bool solved = true;
+      for (int part = 1; part <= parts && solved; ++part) {
+        const double share = static_cast<double>(part) / parts;
+        const Eigen::VectorXd force = basis_ * (from + share * (*coefficients_ - from));
+        const NewtonProblem problem{equation_, force, fixed_, kBalanceTolerance, kNewtonIterations};
+        solved = SolveByNewton(problem, gripped_place_, &newton_solver_, &tangent_, &position_)
+                     .IsUsable();
+      }
+      if (solved) return true;
+    }
+    return false;
+  }
+
+  bool Differentiate() {
+    equation_.Tangent(position_, /*convexify=*/false, &tangent_);
+    sensitivity_solver_.DropFactor();
+    sensitivity_.resize(position_.size(), coefficients_->size());
+    Eigen::VectorXd column;
+    for (Eigen::Index k = 0; k < coefficients_->size(); ++k) {
+      const Eigen::VectorXd load = basis_.col(k);
+      if (!sensitivity_solver_.Solve(tangent_, load, &column).IsUsable()) return false;
+      sensitivity_.col(k) = column;
+    }
+    balanced_position_ = position_;
+    balanced_coefficients_ = *coefficients_;
+    return true;
+  }
+
+  const StepEquation& equation_;
+  const Eigen::SparseMatrix<double> basis_;  // column-major: a load is a column
+  const Eigen::VectorXd* coefficients_;
+  std::vector<char> fixed_;
+  Eigen::VectorXd gripped_place_;
+  LinearSolver newton_solver_;
+  LinearSolver sensitivity_solver_;
+  BlockMatrix tangent_;
+  Eigen::VectorXd balanced_position_, balanced_coefficients_;  // where ∂x/∂c was last taken
+  Eigen::VectorXd position_;
+  Eigen::MatrixXd sensitivity_;  // 3n × K
+  bool is_balanced_ = false;
+};
+
+// W (N x(c) − y), as a function of the coefficients.
+class ReducedObservationCost : public ceres::CostFunction {
+ public:
+  ReducedObservationCost(const BalancedMotion& motion, const Observations& observations,
+                         Eigen::Index j, Eigen::Index coefficients)
+      : motion_(motion),
+        node_(observations.node.col(j)),
+        weight_(observations.weight.col(j)),
+        target_(observations.target.col(j)),
+        rows_(WhitenedDirections(observations, j)) {
+    set_num_residuals(static_cast<int>(rows_.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(coefficients));
+  }
+
+  bool Evaluate(double const* const* /*parameters*/, double* residuals,
+                double** jacobians) const override {
+    if (!motion_.is_balanced()) return false;
+    Eigen::Vector3d deviation = -target_;
+    for (int a = 0; a < 3; ++a)
+      deviation += weight_[a] * motion_.position().segment<3>(3 * node_[a]);
+    Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * deviation;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    const Eigen::Index coefficients = motion_.sensitivity().cols();
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(3, coefficients);
+    for (int a = 0; a < 3; ++a) {
+      if (weight_[a] != 0) moved += weight_[a] * motion_.sensitivity().middleRows(3 * node_[a], 3);
+    }
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        jacobians[0], rows_.rows(), coefficients) = rows_ * moved;
+    return true;
+  }
+
+ private:
+  const BalancedMotion& motion_;
+  Eigen::Vector3i node_;
+  Eigen::Vector3d weight_, target_;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
+};
+
+}  // namespace
+
+ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
+                         const ForceModel& force_model, const Observations& observations,
+                         const ForceFitStart& start, const ForceFitPrior& prior,
+                         const ForceFitOptions& options) {
+  for (const char free : force_model.free) CHECK(!free);
+  ForceFit fit;
+  fit.coefficients = start.coefficients;
+  fit.multiplier = Eigen::VectorXd::Zero(start.position.size());
+  BalancedMotion motion(model, equation, force_model, start.position, &fit.coefficients);
+
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &motion;
+  ceres::Problem problem(problem_options);
+  std::vector<ceres::ResidualBlockId> observed;
+  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+    ceres::LossFunction* loss =
+        options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
+    observed.push_back(problem.AddResidualBlock(
+        new ReducedObservationCost(motion, observations, j, fit.coefficients.size()), loss,
+        fit.coefficients.data()));
+  }
+  const Eigen::Index count = fit.coefficients.size();
+  problem.AddResidualBlock(
+      new ceres::NormalPrior(Eigen::MatrixXd::Identity(count, count), prior.coefficients), nullptr,
+      fit.coefficients.data());
+
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.num_threads = 1;  // Ceres sums over threads in no fixed order
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  fit.factorisations = motion.factorisations();
+  fit.initial_cost = summary.initial_cost;
+  fit.final_cost = summary.final_cost;
+  fit.message = summary.message;
+  fit.status = ForceFit::Status::kNoConvergence;
+  if (!summary.IsSolutionUsable()) return fit;
+
+  ceres::Problem::EvaluateOptions observed_only;
+  observed_only.residual_blocks = observed;
+  observed_only.apply_loss_function = false;
+  std::vector<double> residuals;
+  // Also brings the motion back to the best coefficients, which need not be the last ones tried.
+  if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
+  fit.weighted_rms = RootMeanSquare(residuals);
+  fit.position = motion.position();
+  fit.force = force_model.basis * fit.coefficients;
+  if (summary.termination_type == ceres::CONVERGENCE) fit.status = ForceFit::Status::kConverged;
+  return fit;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,146 @@
+#include "fit/observations.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <vector>
+
+namespace lacuna {
+namespace {
+
+constexpr double kMinNormalAgreement = 0.5;  // cos 60°: a point that turns more is another side's
+constexpr double kSmoothAgreement = 0.985;   // cos 10°: vertex normals that turn more see an edge
+
+Observations Allocate(Eigen::Index count) {
+  Observations observations;
+  observations.node.resize(3, count);
+  observations.weight.resize(3, count);
+  observations.target.resize(3, count);
+  observations.normal.resize(3, count);
+  observations.normal_sigma.resize(count);
+  observations.tangent_sigma.resize(count);
+  return observations;
+}
+
+Observations Keep(const Observations& all, const std::vector<Eigen::Index>& kept) {
+  Observations observations = Allocate(static_cast<Eigen::Index>(kept.size()));
+  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+    observations.node.col(j) = all.node.col(kept[j]);
+    observations.weight.col(j) = all.weight.col(kept[j]);
+    observations.target.col(j) = all.target.col(kept[j]);
+    observations.normal.col(j) = all.normal.col(kept[j]);
+    observations.normal_sigma[j] = all.normal_sigma[kept[j]];
+    observations.tangent_sigma[j] = all.tangent_sigma[kept[j]];
+  }
+  return observations;
+}
+
+// The mesh nodes and weights of points given on the boundary's triangles.
+void AttachToTriangles(const BoundarySurface& boundary, const SurfaceHits& hits,
+                       Observations* observations) {
+  for (Eigen::Index j = 0; j < hits.triangle.size(); ++j) {
+    const Eigen::Vector3i triangle = boundary.surface.triangles.col(hits.triangle[j]);
+    for (int a = 0; a < 3; ++a) observations->node(a, j) = boundary.node[triangle[a]];
+    observations->weight.col(j) = hits.barycentric.col(j);
+  }
+}
+
+}  // namespace
+
+Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedDirections(const Observations& observations,
+                                                            Eigen::Index j) {
+  const Eigen::Vector3d normal = observations.normal.col(j);
+  const bool normal_seen = std::isfinite(observations.normal_sigma[j]);
+  const bool tangent_seen = std::isfinite(observations.tangent_sigma[j]);
+  Eigen::Matrix<double, Eigen::Dynamic, 3> rows((normal_seen ? 1 : 0) + (tangent_seen ? 2 : 0), 3);
+  int row = 0;
+  if (normal_seen) rows.row(row++) = normal.transpose() / observations.normal_sigma[j];
+  if (tangent_seen) {
+    const Eigen::Vector3d first = normal.unitOrthogonal();
+    rows.row(row++) = first.transpose() / observations.tangent_sigma[j];
+    rows.row(row++) = normal.cross(first).transpose() / observations.tangent_sigma[j];
+  }
+  return rows;
+}
+
+Observations Concatenate(const Observations& first, const Observations& second) {
+  Observations both = Allocate(first.Count() + second.Count());
+  both.node << first.node, second.node;
+  both.weight << first.weight, second.weight;
+  both.target << first.target, second.target;
+  both.normal << first.normal, second.normal;
+  both.normal_sigma << first.normal_sigma, second.normal_sigma;
+  both.tangent_sigma << first.tangent_sigma, second.tangent_sigma;
+  return both;
+}
+
+Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,
+                         const PointCloud& scan, double sigma, double reach) {
+  CHECK_GT(sigma, 0);
+  const TriMesh surface = BoundaryAt(boundary, x);
+  const SurfaceHits hits = SurfaceSearch(surface).Nearest(scan.points);
+  const Eigen::Matrix3Xd face_normals = TriangleNormals(surface);
+  const Eigen::Matrix3Xd vertex_normals = VertexNormals(surface);
+
+  Observations all = Allocate(scan.Size());
+  AttachToTriangles(boundary, hits, &all);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = 0; j < scan.Size(); ++j) {
+    // Interpolated vertex normals turn smoothly, so that the residual does too when a point's
+    // nearest triangle changes; at a sharp edge they can be far from the face's own.
+    const Eigen::Vector3i triangle = surface.triangles.col(hits.triangle[j]);
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    for (int a = 0; a < 3; ++a) normal += hits.barycentric(a, j) * vertex_normals.col(triangle[a]);
+    const Eigen::Vector3d face_normal = face_normals.col(hits.triangle[j]);
+    if (normal.norm() < 0.5 || normal.normalized().dot(face_normal) < kSmoothAgreement) {
+      normal = face_normal;
+    }
+    normal.normalize();
+
+    all.target.col(j) = scan.points.col(j);
+    all.normal.col(j) = normal;
+    all.normal_sigma[j] = sigma;
+    all.tangent_sigma[j] = kUnobserved;
+    const bool faces_away =
+        scan.HasNormals() && scan.normals.col(j).dot(normal) < kMinNormalAgreement;
+    if (hits.distance[j] <= reach && !faces_away && normal.allFinite()) kept.push_back(j);
+  }
+  return Keep(all, kept);
+}
+
+Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,
+                             const Eigen::Matrix3Xd& target, const Eigen::VectorXd& normal_sigma,
+                             const Eigen::VectorXd& tangent_sigma) {
+  CHECK_EQ(target.cols(), boundary.node.size());
+  Observations all = Allocate(target.cols());
+  all.normal = VertexNormals(BoundaryAt(boundary, x));
+  all.target = target;
+  all.normal_sigma = normal_sigma;
+  all.tangent_sigma = tangent_sigma;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = 0; j < target.cols(); ++j) {
+    all.node.col(j).setConstant(boundary.node[j]);
+    all.weight.col(j) = Eigen::Vector3d::UnitX();
+    const bool says_something = std::isfinite(normal_sigma[j]) || std::isfinite(tangent_sigma[j]);
+    if (says_something && all.normal.col(j).norm() > 0.5) kept.push_back(j);
+  }
+  return Keep(all, kept);
+}
+
+Observations ObserveMarkers(const BoundarySurface& boundary, const SurfaceHits& at_rest,
+                            const Eigen::Matrix3Xd& target, double sigma) {
+  CHECK_EQ(target.cols(), at_rest.triangle.size());
+  Observations all = Allocate(target.cols());
+  AttachToTriangles(boundary, at_rest, &all);
+  all.target = target;
+  all.normal = Eigen::Vector3d::UnitX().replicate(1, target.cols());
+  all.normal_sigma.setConstant(sigma);
+  all.tangent_sigma.setConstant(sigma);
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = 0; j < target.cols(); ++j) {
+    if (target.col(j).allFinite()) kept.push_back(j);
+  }
+  return Keep(all, kept);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,250 @@
+#include "fit/position_fit.h"
+
+#include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
+#include <glog/logging.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace lacuna {
+namespace {
+
+// r(x) and ∂r/∂x at the point that Ceres is about to ask for: assembled once for all residuals.
+class AssembledStep : public ceres::EvaluationCallback {
+ public:
+  AssembledStep(const Model& model, const StepEquation& equation, const Eigen::VectorXd* position)
+      : equation_(equation), position_(position), tangent_(model.body->pattern) {}
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    if (new_evaluation_point) {
+      equation_.Residual(*position_, &residual_);
+      tangent_is_current_ = false;
+    }
+    if (evaluate_jacobians && !tangent_is_current_) {
+      equation_.Tangent(*position_, /*convexify=*/false, &tangent_);
+      tangent_is_current_ = true;
+    }
+  }
+
+  const Eigen::VectorXd& residual() const { return residual_; }
+  const BlockMatrix& tangent() const { return tangent_; }
+
+ private:
+  const StepEquation& equation_;
+  const Eigen::VectorXd* position_;
+  Eigen::VectorXd residual_;
+  BlockMatrix tangent_;
+  bool tangent_is_current_ = false;
+};
+
+// W (N x − y), as a function of the observation's nodes.
+class ObservationCost : public ceres::CostFunction {
+ public:
+  // `nodes`: how many of the observation's three nodes carry weight.
+  ObservationCost(const Observations& observations, Eigen::Index j, int nodes)
+      : target_(observations.target.col(j)),
+        weights_(observations.weight.col(j)),
+        rows_(WhitenedDirections(observations, j)) {
+    set_num_residuals(static_cast<int>(rows_.rows()));
+    mutable_parameter_block_sizes()->assign(nodes, 3);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    Eigen::Vector3d deviation = -target_;
+    const int nodes = static_cast<int>(parameter_block_sizes().size());
+    for (int a = 0; a < nodes; ++a)
+      deviation += weights_[a] * Eigen::Map<const Eigen::Vector3d>(parameters[a]);
+    Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * deviation;
+    if (jacobians == nullptr) return true;
+    for (int a = 0; a < nodes; ++a) {
+      if (jacobians[a] == nullptr) continue;
+      Eigen::Map<Rows>(jacobians[a], rows_.rows(), 3) = weights_[a] * rows_;
+    }
+    return true;
+  }
+
+ private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+  Eigen::Vector3d target_;
+  Eigen::Vector3d weights_;
+  Rows rows_;
+};
+
+// (r_i(x) − g_i − B_i c)/s_i, as a function of the nodes around node i and of the coefficients.
+class BalanceCost : public ceres::CostFunction {
+ public:
+  using Row = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  using DenseRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
+  BalanceCost(const AssembledStep& step, int node, const Eigen::Vector3d& expected_force,
+              const DenseRows& basis, double scale)
+      : step_(step), node_(node), expected_(expected_force), basis_(basis), scale_(scale) {
+    const BlockPattern& pattern = step.tangent().pattern();
+    set_num_residuals(3);
+    mutable_parameter_block_sizes()->assign(pattern.row_begin[node + 1] - pattern.row_begin[node],
+                                            3);
+    if (basis_.cols() > 0)
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(basis_.cols()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    Eigen::Vector3d force = step_.residual().segment<3>(3 * node_) - expected_;
+    if (!force.allFinite()) return false;
+    const BlockPattern& pattern = step_.tangent().pattern();
+    const int neighbours = pattern.row_begin[node_ + 1] - pattern.row_begin[node_];
+    if (basis_.cols() > 0) {
+      force -= basis_ * Eigen::Map<const Eigen::VectorXd>(parameters[neighbours], basis_.cols());
+    }
+    Eigen::Map<Eigen::Vector3d> balance(residuals);
+    balance = force / scale_;
+    if (jacobians == nullptr) return true;
+    for (int k = 0; k < neighbours; ++k) {
+      if (jacobians[k] == nullptr) continue;
+      Eigen::Map<Row> jacobian(jacobians[k]);
+      jacobian = step_.tangent().Block(pattern.row_begin[node_] + k) / scale_;
+    }
+    if (basis_.cols() > 0 && jacobians[neighbours] != nullptr) {
+      Eigen::Map<DenseRows>(jacobians[neighbours], 3, basis_.cols()) = -basis_ / scale_;
+    }
+    return true;
+  }
+
+ private:
+  const AssembledStep& step_;
+  int node_;
+  Eigen::Vector3d expected_;
+  DenseRows basis_;
+  double scale_;
+};
+
+// The stiffness that each node feels alone, N/m: a third of the trace of its diagonal block.
+Eigen::VectorXd NodeStiffness(const StepEquation& equation, const Body& body,
+                              const Eigen::VectorXd& position) {
+  BlockMatrix tangent(body.pattern);
+  equation.Tangent(position, /*convexify=*/true, &tangent);
+  Eigen::VectorXd stiffness(body.NodeCount());
+  for (int i = 0; i < body.NodeCount(); ++i)
+    stiffness[i] = std::max(tangent.Block(body.pattern->diagonal[i]).trace() / 3, 1e-300);
+  return stiffness;
+}
+
+// How many nodes of an observation carry weight; they come first.
+int WeightedNodes(const Observations& observations, Eigen::Index j) {
+  return observations.node(1, j) == observations.node(0, j) ? 1 : 3;
+}
+
+}  // namespace
+
+ForceFit FitPositions(const Model& model, const StepEquation& equation,
+                      const ForceModel& force_model, const Observations& observations,
+                      const ForceFitStart& start, const ForceFitPrior& prior,
+                      const ForceFitOptions& options) {
+  const Body& body = *model.body;
+  const int nodes = body.NodeCount();
+  const Eigen::Index coefficient_count = force_model.CoefficientCount();
+  ForceFit fit;
+  fit.position = start.position;
+  fit.force = Eigen::VectorXd::Zero(3 * nodes);
+  fit.coefficients = start.coefficients;
+  fit.multiplier = start.multiplier;
+  const std::vector<char> gripped = GrippedNodes(model);
+  const Eigen::VectorXd stiffness = NodeStiffness(equation, body, start.position);
+  const auto node_at = [&fit](int node) { return fit.position.data() + 3 * node; };
+  AssembledStep assembled(model, equation, &fit.position);
+
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &assembled;
+  ceres::Problem problem(problem_options);
+  for (int i = 0; i < nodes; ++i) {
+    problem.AddParameterBlock(node_at(i), 3);
+    if (gripped[i]) problem.SetParameterBlockConstant(node_at(i));
+  }
+
+  std::vector<ceres::ResidualBlockId> observed;
+  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+    const int weighted = WeightedNodes(observations, j);
+    std::vector<double*> blocks;
+    for (int a = 0; a < weighted; ++a) blocks.push_back(node_at(observations.node(a, j)));
+    ceres::LossFunction* loss =
+        options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
+    observed.push_back(
+        problem.AddResidualBlock(new ObservationCost(observations, j, weighted), loss, blocks));
+  }
+
+  for (int i = 0; i < nodes; ++i) {
+    if (gripped[i]) continue;
+    std::vector<double*> blocks;
+    for (int k = body.pattern->row_begin[i]; k < body.pattern->row_begin[i + 1]; ++k)
+      blocks.push_back(node_at(body.pattern->column[k]));
+    BalanceCost::DenseRows basis(3, 0);
+    const bool spanned = force_model.basis.middleRows(3 * i, 3).nonZeros() > 0;
+    if (spanned) {
+      basis = BalanceCost::DenseRows(force_model.basis.middleRows(3 * i, 3));
+      blocks.push_back(fit.coefficients.data());
+    }
+    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+    if (force_model.free[i]) {
+      expected = prior.force.segment<3>(3 * i);
+    } else {
+      expected = -start.multiplier.segment<3>(3 * i);
+    }
+    const double length =
+        force_model.free[i] ? options.free_force_scale : options.balance_tolerance;
+    problem.AddResidualBlock(new BalanceCost(assembled, i, expected, basis, stiffness[i] * length),
+                             nullptr, blocks);
+  }
+  if (coefficient_count > 0) {
+    problem.AddResidualBlock(
+        new ceres::NormalPrior(Eigen::MatrixXd::Identity(coefficient_count, coefficient_count),
+                               prior.coefficients),
+        nullptr, fit.coefficients.data());
+  }
+
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.initial_trust_region_radius = 1e16;  // damping is relative to the stiff balance rows
+  solver.num_threads = 1;                     // Ceres sums over threads in no fixed order
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+
+  fit.factorisations = summary.num_linear_solves;
+  fit.initial_cost = summary.initial_cost;
+  fit.final_cost = summary.final_cost;
+  fit.status = summary.termination_type == ceres::CONVERGENCE ? ForceFit::Status::kConverged
+                                                              : ForceFit::Status::kNoConvergence;
+  fit.message = summary.message;
+  if (!summary.IsSolutionUsable()) return fit;
+
+  Eigen::VectorXd outer;
+  equation.Residual(fit.position, &outer);
+  const Eigen::VectorXd spanned_force = force_model.basis * fit.coefficients;
+  double squared_imbalance = 0;
+  for (int i = 0; i < nodes; ++i) {
+    if (gripped[i]) continue;
+    const Eigen::VectorXd& source = force_model.free[i] ? outer : spanned_force;
+    fit.force.segment<3>(3 * i) = source.segment<3>(3 * i);
+    const Eigen::Vector3d imbalance = (outer - fit.force).segment<3>(3 * i);
+    fit.multiplier.segment<3>(3 * i) += imbalance;
+    squared_imbalance += (imbalance / stiffness[i]).squaredNorm() / nodes;
+  }
+  fit.imbalance = std::sqrt(squared_imbalance);
+
+  ceres::Problem::EvaluateOptions observed_only;
+  observed_only.residual_blocks = observed;
+  observed_only.apply_loss_function = false;
+  std::vector<double> residuals;
+  problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr);
+  fit.weighted_rms = Eigen::Map<const Eigen::VectorXd>(residuals.data(), residuals.size()).norm() /
+                     std::sqrt(static_cast<double>(residuals.size()));
+  return fit;
+}
+
+}  // namespace lacuna

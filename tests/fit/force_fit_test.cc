@@ -1,0 +1,161 @@
+#include "fit/force_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/parallel.h"
+#include "effects/catalogue.h"
+#include "fem/simulate.h"
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+// A clamped bar, 100 × 30 × 30 mm, as the truth (quadratic, fine) or the model (another mesh).
+struct Bar {
+  std::shared_ptr<Body> body;
+  Model model;
+  Eigen::VectorXi tip;
+};
+
+Bar MakeBar(const std::array<int, 3>& cells, int order) {
+  Bar bar;
+  bar.body = std::make_shared<Body>(MakeBody(
+      BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d(0.1, 0.03, 0.03), cells, order), 1000));
+  std::vector<int> clamped, tip;
+  for (int i = 0; i < bar.body->NodeCount(); ++i) {
+    if (bar.body->mesh.nodes(0, i) < 1e-9) clamped.push_back(i);
+    if (bar.body->mesh.nodes(0, i) > 0.1 - 1e-9) tip.push_back(i);
+  }
+  const Eigen::VectorXi held = Eigen::Map<Eigen::VectorXi>(clamped.data(), clamped.size());
+  bar.tip = Eigen::Map<Eigen::VectorXi>(tip.data(), tip.size());
+  bar.model = {bar.body,
+               {MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})},
+               {Grip{held, {}}}};
+  return bar;
+}
+
+// What a scanner would see of the truth under a force at its tip: points with range noise.
+struct Truth {
+  PointCloud scan;
+  Eigen::Vector3d force;
+};
+constexpr double kNoise = 1e-4;  // m
+
+Truth ScanLoadedBar(const Eigen::Vector3d& force) {
+  const Bar bar = MakeBar({14, 5, 4}, 2);
+  MotionHistory history = RestHistory(bar.model);
+  StepOptions options;
+  options.scheme = TimeScheme::kQuasiStatic;
+  const Eigen::VectorXd load = FootprintForce(*bar.body, bar.tip, 1.0).basis * force;
+  EXPECT_TRUE(Stepper(bar.model, options).Equilibrium(load, &history).IsUsable());
+  const Eigen::Matrix3Xd nodes =
+      Eigen::Map<Eigen::Matrix3Xd>(history.position.data(), 3, bar.body->NodeCount());
+  const TriMesh surface = BoundaryAt(bar.body->boundary, nodes);
+  Truth truth{EvaluateSamples(surface, SampleSurface(surface, 3000, 5)), force};
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, kNoise);
+  for (Eigen::Index j = 0; j < truth.scan.Size(); ++j)
+    truth.scan.points.col(j) += noise(random) * truth.scan.normals.col(j);
+  return truth;
+}
+
+Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
+}
+
+// Fits to the scan alone, taking correspondence anew eight times, as the reconstruction does.
+ForceFit FitToScan(const Bar& bar, const ForceModel& forces, const PointCloud& scan,
+                   const Eigen::VectorXd& start_position) {
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  ForceFit fit;
+  ForceFitStart start{start_position, {}, {}};
+  for (int round = 0; round < 8; ++round) {
+    const Observations seen =
+        ObserveScan(bar.body->boundary, AsPoints(start.position), scan, kNoise, /*reach=*/0.05);
+    fit = FitStepForces(bar.model, equation, forces, seen, start, {}, {});
+    if (!fit.IsUsable()) return fit;
+    start = {fit.position, fit.coefficients, fit.multiplier};
+  }
+  return fit;
+}
+
+ForceFit FitToScan(const Bar& bar, const ForceModel& forces, const PointCloud& scan) {
+  return FitToScan(bar, forces, scan, RestHistory(bar.model).position);
+}
+
+TEST(ForceFit, RecoversAKnownForceOnAnotherMesh) {
+  const Truth truth = ScanLoadedBar({0.02, 0.06, -0.15});
+  const Bar bar = MakeBar({7, 3, 2}, 2);
+  const ForceFit fit = FitToScan(bar, FootprintForce(*bar.body, bar.tip, 0.3), truth.scan);
+  ASSERT_TRUE(fit.IsUsable()) << fit.message;
+  const NetForce net = NetForceOf(fit.force, fit.position, Eigen::Vector3d::Zero());
+  // The coarser mesh is stiffer by about 1 %; the axial part, which barely shows, is worse known.
+  EXPECT_NEAR(net.force.z(), truth.force.z(), 0.03 * 0.15);
+  EXPECT_NEAR(net.force.y(), truth.force.y(), 0.03 * 0.15);
+  EXPECT_NEAR(net.force.x(), truth.force.x(), 0.3 * 0.15);
+  EXPECT_LT(fit.weighted_rms, 1.3);  // the noise, and the chords of the coarse mesh's faces
+  EXPECT_LE(fit.factorisations, 12);
+}
+
+TEST(ForceFit, TheFittedForcesLeadAnOrdinaryStepToTheFittedPlace) {
+  const Truth truth = ScanLoadedBar({0, 0, -0.1});
+  const Bar bar = MakeBar({6, 2, 2}, 2);
+  const ForceFit fit = FitToScan(bar, FootprintForce(*bar.body, bar.tip, 0.3), truth.scan);
+  ASSERT_TRUE(fit.IsUsable()) << fit.message;
+  MotionHistory history = RestHistory(bar.model);
+  StepOptions options;
+  options.scheme = TimeScheme::kQuasiStatic;
+  ASSERT_TRUE(Stepper(bar.model, options).Equilibrium(fit.force, &history).IsUsable());
+  // Both solve the same equation, to 1e-8 of the forces at work.
+  EXPECT_LT((history.position - fit.position).lpNorm<Eigen::Infinity>(), 1e-7);
+}
+
+TEST(ForceFit, SmoothAndFreeForcesFollowTheScanToItsNoise) {
+  const Truth truth = ScanLoadedBar({0, 0.05, -0.1});
+  const Bar bar = MakeBar({7, 3, 3}, 1);
+  const Eigen::VectorXi& surface = bar.body->boundary.node;
+  const ForceFit smooth = FitToScan(bar, SmoothForces(*bar.body, surface, 0.03, 3e3), truth.scan);
+  ASSERT_TRUE(smooth.IsUsable()) << smooth.message;
+  EXPECT_LT(smooth.weighted_rms, 1.3);
+  // Free forces have far more freedom than a scan without correspondence can pin down, so they
+  // start near, as they do in a sequence.
+  const ForceFit free = FitToScan(bar, FreeForces(*bar.body, surface), truth.scan, smooth.position);
+  ASSERT_TRUE(free.IsUsable()) << free.message;
+  EXPECT_LT(free.weighted_rms, 1.2);
+}
+
+TEST(ForceFit, IsTheSameForOneAndTwoThreads) {
+  const Truth truth = ScanLoadedBar({0, 0, -0.1});
+  const Bar bar = MakeBar({5, 2, 2}, 1);
+  const int threads = ThreadCount();
+  SetThreadCount(1);
+  const ForceFit one = FitToScan(bar, FreeForces(*bar.body, bar.body->boundary.node), truth.scan);
+  SetThreadCount(2);
+  const ForceFit two = FitToScan(bar, FreeForces(*bar.body, bar.body->boundary.node), truth.scan);
+  SetThreadCount(threads);
+  EXPECT_EQ(one.force, two.force);
+}
+
+TEST(ForceFit, SaysWhatIsMissing) {
+  const Bar bar = MakeBar({3, 1, 1}, 1);
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  const Observations nothing = ObserveScan(bar.body->boundary, bar.body->mesh.nodes,
+                                           {Eigen::Matrix3Xd::Constant(3, 5, 9.0), {}}, 1e-4, 0.01);
+  EXPECT_EQ(nothing.Count(), 0);
+  EXPECT_EQ(FitStepForces(bar.model, equation, FreeForces(*bar.body, bar.body->boundary.node),
+                          nothing, {rest.position, {}, {}}, {}, {})
+                .status,
+            ForceFit::Status::kNothingObserved);
+  EXPECT_EQ(FitStepForces(bar.model, equation, NoForces(*bar.body), nothing,
+                          {rest.position, {}, {}}, {}, {})
+                .status,
+            ForceFit::Status::kNoUnknowns);
+}
+
+}  // namespace
+}  // namespace lacuna

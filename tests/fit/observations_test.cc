@@ -1,0 +1,55 @@
+#include "fit/observations.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+struct Cube {
+  TetMesh mesh =
+      BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones(), std::array<int, 3>{2, 2, 2});
+  BoundarySurface boundary = ExtractBoundary(mesh);
+};
+
+TEST(Observations, AScannedPointObservesTheNearestSurfaceAlongItsNormal) {
+  const Cube cube;
+  PointCloud scan;
+  scan.points = Eigen::Vector3d(0.4, 0.3, 1.05);
+  const Observations seen = ObserveScan(cube.boundary, cube.mesh.nodes, scan, 0.01, 0.1);
+  ASSERT_EQ(seen.Count(), 1);
+  EXPECT_LT((seen.normal.col(0) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  EXPECT_TRUE(std::isinf(seen.tangent_sigma[0]));
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  for (int a = 0; a < 3; ++a) place += seen.weight(a, 0) * cube.mesh.nodes.col(seen.node(a, 0));
+  EXPECT_LT((place - Eigen::Vector3d(0.4, 0.3, 1)).norm(), 1e-12);
+}
+
+TEST(Observations, PointsOutOfReachOrFacingAwayObserveNothing) {
+  const Cube cube;
+  PointCloud scan;
+  scan.points = Eigen::Vector3d(0.4, 0.3, 1.05);
+  EXPECT_EQ(ObserveScan(cube.boundary, cube.mesh.nodes, scan, 0.01, 0.04).Count(), 0);
+  scan.normals = -Eigen::Vector3d::UnitZ();
+  EXPECT_EQ(ObserveScan(cube.boundary, cube.mesh.nodes, scan, 0.01, 0.1).Count(), 0);
+}
+
+TEST(Observations, AnUnseenMarkerObservesNothing) {
+  const Cube cube;
+  Eigen::Matrix3Xd places(3, 2);
+  places << 0.2, 0.7, 0.2, 0.1, 1, 1;
+  const SurfaceHits at_rest = SurfaceSearch(cube.boundary.surface).Nearest(places);
+  Eigen::Matrix3Xd target = places;
+  target.col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Observations seen = ObserveMarkers(cube.boundary, at_rest, target, 0.01);
+  ASSERT_EQ(seen.Count(), 1);
+  EXPECT_EQ(seen.target.col(0), places.col(1));
+}
+
+}  // namespace
+}  // namespace lacuna
