@@ -124,8 +124,10 @@ class Helpers {
 }  // namespace
 
 int ThreadCount() {
+  // Asked for once: the answer is read from a file each time.
+  static const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int count = thread_count.load();
-  return count > 0 ? count : std::max(1u, std::thread::hardware_concurrency());
+  return count > 0 ? count : cores;
 }
 
 void SetThreadCount(int count) { thread_count.store(std::max(1, count)); }
