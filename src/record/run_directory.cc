@@ -123,6 +123,11 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
       if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
     }
     if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
+    // Other code or other libraries may give other results; the manifest names one set of both.
+    if (manifest_.program_version != ProgramVersion() ||
+        manifest_.library_versions != LibraryVersions()) {
+      manifest_.stages.clear();
+    }
     manifest_.schema_version = kManifestSchemaVersion;
     manifest_.program_version = ProgramVersion();
     manifest_.library_versions = LibraryVersions();

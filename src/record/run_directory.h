@@ -5,9 +5,9 @@
 //   <run>/.<stage>.partial/    a stage being written; never read
 //
 // A stage is stored under a key made from all that decides its result (StageKey). The same command
-// run again finds the key and skips the stage; a crash, a full disk or an interrupt leaves at worst
-// a folder that no manifest names. A stage's folder belongs to the program: whatever else lies in
-// it goes when the stage is computed anew.
+// run again, by the same version with the same libraries, finds the key and skips the stage; a
+// crash, a full disk or an interrupt leaves at worst a folder that no manifest names. A stage's
+// folder belongs to the program: whatever else lies in it goes when the stage is computed anew.
 #ifndef LACUNA_RECORD_RUN_DIRECTORY_H_
 #define LACUNA_RECORD_RUN_DIRECTORY_H_
 

@@ -45,6 +45,7 @@ struct FrameNumber {
 constexpr FrameNumber kFrameNumbers[] = {
     {"time_s", &FrameRecord::time},
     {"residual_m", &FrameRecord::residual},
+    {"residual_mean_m", &FrameRecord::residual_mean},
     {"relative_residual", &FrameRecord::relative_residual},
     {"surface_distance_mean_m", &FrameRecord::surface_distance_mean},
     {"surface_distance_rms_m", &FrameRecord::surface_distance_rms},

@@ -26,9 +26,11 @@ struct SolverStatus {
 struct FrameRecord {
   int frame = 0;
   double time = kNotMeasured;  // s
-  // |D| (Transue & Choi 2015, Eq. 1) between the simulated surface and the recorded one, found by
-  // CPD alignment, and the same divided by RunRecord::object_size.
-  double residual = kNotMeasured;  // m
+  // |D| (Transue & Choi 2015, Eq. 1): the lengths of the alignment of the simulated surface with
+  // the recorded one, summed over the points; then per point, so that frames with different numbers
+  // of points compare, and that mean divided by RunRecord::object_size.
+  double residual = kNotMeasured;       // m
+  double residual_mean = kNotMeasured;  // m
   double relative_residual = kNotMeasured;
   // Distances of the recorded points from the simulated surface, m.
   double surface_distance_mean = kNotMeasured;
@@ -54,8 +56,8 @@ struct RunRecord {
   std::string recording;              // its name
   double object_size = kNotMeasured;  // m, what relative measures refer to
   std::vector<FrameRecord> frames;
-  double animation_residual = kNotMeasured;  // |D_anim| (Eq. 2), m
-  double relative_animation_residual = kNotMeasured;
+  double animation_residual = kNotMeasured;           // |D_anim| (Eq. 2): Σ |D|, m
+  double relative_animation_residual = kNotMeasured;  // mean of the frames' relative residuals
   MeshRecord mesh;
   std::map<std::string, SolverStatus> stages;  // by stage
   std::map<std::string, double> measures;      // further named numbers, SI; the name says the unit

@@ -199,6 +199,7 @@ vtkNew<vtkScalarBarActor> ColourBar(const std::string& name, vtkColorTransferFun
   vtkNew<vtkScalarBarActor> bar;
   bar->SetLookupTable(colours);
   bar->SetTitle(name.c_str());
+  bar->SetMaximumNumberOfColors(256);
   bar->SetNumberOfLabels(5);
   bar->SetLabelFormat("%.3g");
   bar->SetPosition(0.86, 0.15);

@@ -8,11 +8,11 @@
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
@@ -21,30 +21,18 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-std::string Content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 class AtomicFileTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / (std::string("lacuna_atomic_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   int FileCount() const {
-    return static_cast<int>(std::distance(fs::directory_iterator(folder_), {}));
+    return static_cast<int>(std::distance(fs::directory_iterator(folder_.Path()), {}));
   }
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFileTest, ReplacesTheWholeContentAndLeavesNothingElse) {
   WriteFileAtomically(folder_ / "a", "the first, longer content");
   WriteFileAtomically(folder_ / "a", "second");
-  EXPECT_EQ(Content(folder_ / "a"), "second");
+  EXPECT_EQ(FileContent(folder_ / "a"), "second");
   EXPECT_EQ(FileCount(), 1);
 }
 
@@ -53,9 +41,9 @@ TEST_F(AtomicFileTest, UncommittedContentIsDiscarded) {
   {
     AtomicFile file(folder_ / "a");
     file.Write("new");
-    EXPECT_EQ(Content(folder_ / "a"), "old");
+    EXPECT_EQ(FileContent(folder_ / "a"), "old");
   }
-  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(FileContent(folder_ / "a"), "old");
   EXPECT_EQ(FileCount(), 1);
 }
 
@@ -70,7 +58,7 @@ TEST_F(AtomicFileTest, ProcessKilledWhileWritingLeavesTheOldContent) {
   int status = 0;
   waitpid(child, &status, 0);
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(FileContent(folder_ / "a"), "old");
 }
 
 TEST_F(AtomicFileTest, PiecesAreJoinedInOrder) {
@@ -79,7 +67,7 @@ TEST_F(AtomicFileTest, PiecesAreJoinedInOrder) {
   file.Write("");
   file.Write("two");
   file.Commit();
-  EXPECT_EQ(Content(folder_ / "a"), "one two");
+  EXPECT_EQ(FileContent(folder_ / "a"), "one two");
 }
 
 TEST_F(AtomicFileTest, LinkKeepsPointingToTheFileThatIsReplaced) {
@@ -87,7 +75,7 @@ TEST_F(AtomicFileTest, LinkKeepsPointingToTheFileThatIsReplaced) {
   fs::create_symlink("target", folder_ / "link");
   WriteFileAtomically(folder_ / "link", "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
-  EXPECT_EQ(Content(folder_ / "target"), "new");
+  EXPECT_EQ(FileContent(folder_ / "target"), "new");
 }
 
 TEST_F(AtomicFileTest, UnwritablePlacesAreNamedWithTheirCause) {
@@ -97,9 +85,9 @@ TEST_F(AtomicFileTest, UnwritablePlacesAreNamedWithTheirCause) {
         [&] { WriteFileAtomically(file, "x"); },
         ThrowsMessage<InputError>(::testing::AllOf(HasSubstr(file.string()), HasSubstr(cause))));
   };
-  expect(folder_ / "file" / "below_a_file", "Not a directory");
-  expect(folder_ / "absent" / "a", "No such file or directory");
-  expect(folder_, "not an ordinary file");
+  expect(folder_ / "file/below_a_file", "Not a directory");
+  expect(folder_ / "absent/a", "No such file or directory");
+  expect(folder_.Path(), "not an ordinary file");
   expect("/dev/null", "not an ordinary file");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
@@ -120,7 +108,7 @@ TEST_F(AtomicFileTest, FullDiskIsAnErrorAndKeepsTheOldContent) {
     _exit(0);
   };
   EXPECT_EXIT(write_beyond_the_limit(), ::testing::ExitedWithCode(3), "");
-  EXPECT_EQ(Content(folder_ / "a"), "old");
+  EXPECT_EQ(FileContent(folder_ / "a"), "old");
   EXPECT_EQ(FileCount(), 1);
 }
 

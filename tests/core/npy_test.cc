@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
@@ -22,14 +23,6 @@ using ::testing::ThrowsMessage;
 
 class Npy : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / (std::string("lacuna_npy_") + test->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   // A file as NumPy writes it, with the header and the payload given.
   template <typename Number>
   fs::path WriteByHand(const std::string& dictionary, const std::vector<Number>& numbers,
@@ -46,7 +39,7 @@ class Npy : public ::testing::Test {
     return file;
   }
 
-  fs::path folder_;
+  const TemporaryFolder folder_;
 };
 
 TEST_F(Npy, DoublesComeBackBitForBit) {

@@ -155,6 +155,44 @@ TEST_F(RunDirectoryTest, ProcessKilledWhileWritingLeavesNothingThatIsTrusted) {
   EXPECT_TRUE(run.Has("surface", "key s"));
 }
 
+// The whole of Store under fire: a process stores two results in turn until it is killed at some
+// moment. Whatever the moment, what is found afterwards is whole or not there.
+TEST_F(RunDirectoryTest, KilledAtAnyMomentAStageIsWholeOrAbsent) {
+  int whole = 0;
+  for (int round = 0; round < 25; ++round) {
+    const pid_t child = fork();
+    if (child == 0) {
+      RunDirectory run(folder_);
+      run.Begin({}, {}, 0);
+      for (;;) {
+        run.Store("fit", "key a", WriteResult("a"));
+        run.Store("fit", "key b", WriteResult("b"));
+      }
+    }
+    usleep(static_cast<useconds_t>(15000 + 1700 * round));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    RunDirectory run(folder_);
+    for (const std::string name : {"a", "b"}) {
+      const StageCheck check = run.Check("fit", "key " + name);
+      EXPECT_NE(check.status, Status::kDamaged) << check.message;
+      if (!check.IsUsable()) continue;
+      EXPECT_EQ(FileContent(run.StageFolder("fit") / "result.txt"), name);
+      ++whole;
+    }
+  }
+  EXPECT_GT(whole, 0) << "no child lived long enough to store anything";
+}
+
+TEST_F(RunDirectoryTest, ResultsOfAnotherVersionAreNotResumed) {
+  MakeFinishedRun();
+  Manifest manifest = LoadManifest(folder_ / "manifest.json");
+  manifest.library_versions["CGAL"] = "4.0";
+  SaveManifest(manifest, folder_ / "manifest.json");
+  RunDirectory run(folder_);
+  EXPECT_EQ(run.Check("fit", "key f").status, Status::kAbsent);
+}
+
 TEST_F(RunDirectoryTest, ResultsUnknownToTheManifestAreNotTrusted) {
   MakeFinishedRun();
   // As after a crash between the rename of the folder and the writing of the manifest.

@@ -32,6 +32,7 @@ RunRecord Example() {
     frame.frame = k;
     frame.time = 0.1 * k;
     frame.residual = 0.001 * k;
+    frame.residual_mean = 0.0005 * k;
     frame.relative_residual = 0.008 * k;
     frame.surface_distance_mean = 1e-4;
     frame.surface_distance_rms = 2e-4;
@@ -70,6 +71,7 @@ TEST(RunRecordTest, ComesBackWhole) {
     EXPECT_EQ(a.frame, b.frame);
     EXPECT_EQ(a.time, b.time);
     EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.residual_mean, b.residual_mean);
     EXPECT_EQ(a.relative_residual, b.relative_residual);
     EXPECT_EQ(a.surface_distance_mean, b.surface_distance_mean);
     EXPECT_EQ(a.surface_distance_rms, b.surface_distance_rms);
