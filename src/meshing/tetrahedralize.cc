@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+#include "geometry/nearest.h"
+
 namespace lacuna {
 namespace {
 
@@ -19,6 +21,18 @@ constexpr int kTetGenOutOfMemory = 1;
 constexpr int kTetGenSelfIntersection = 3;
 constexpr int kTetGenSmallFeature = 4;
 constexpr int kTetGenCloseFacets = 5;
+
+// TetGen takes vertices for one where they are closer than its tolerance times the object's size,
+// and can crash on what becomes of the surface then.
+constexpr double kTetGenTolerance = 1e-10;
+constexpr double kClosestVertices = 10 * kTetGenTolerance;
+
+// Facets that meet at more than this angle are one flat facet to TetGen, degrees. Its own 179.9
+// shifts the surface of bodies with many triangles by more than rounding.
+constexpr double kFlatAngle = 179.9999;
+
+// The share of the volume that the tetrahedra may miss before the mesh is refused.
+constexpr double kVolumeTolerance = 1e-7;
 
 // TetGen's tolerances are relative to the bounding box, but its number formats and some of its
 // thresholds are not: it works on the surface moved to the origin and scaled to size 1.
@@ -64,13 +78,18 @@ class Facets {
   tetgenio input_;
 };
 
-std::string Switches(const TetOptions& options, double size) {
+tetgenbehavior Behaviour(const TetOptions& options, double size) {
   std::string switches = fmt::format("pzQq{:.17g}/{:.17g}", options.radius_edge_ratio,
                                      options.min_dihedral_angle * 180 / std::numbers::pi);
-  if (options.max_volume > 0)
+  if (options.max_volume > 0) {
     switches += fmt::format("a{:.17g}", options.max_volume / std::pow(size, 3));
+  }
   if (options.preserve_surface) switches += "Y";
-  return switches + fmt::format("S{}", options.max_added_nodes);
+  switches += fmt::format("T{:.17g}S{}", kTetGenTolerance, options.max_added_nodes);
+  tetgenbehavior behaviour;
+  CHECK(behaviour.parse_commandline(switches.data())) << switches;
+  behaviour.facet_ang_tol = kFlatAngle;
+  return behaviour;
 }
 
 TetMesh FromTetGen(const tetgenio& output, const UnitFrame& frame) {
@@ -111,6 +130,19 @@ void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
   result.message = message;
 }
 
+// Says where two vertices are too close for TetGen; empty when none are.
+std::string TooCloseVertices(const TriMesh& surface, double size) {
+  const Eigen::VectorXd gap =
+      PointSearch(surface.vertices).Nearest(surface.vertices, 2).distance.row(1);
+  Eigen::Index closest;
+  if (gap.minCoeff(&closest) > kClosestVertices * size) return "";
+  const Eigen::Vector3d place = surface.vertices.col(closest);
+  return fmt::format(
+      "two vertices at ({:.4g}, {:.4g}, {:.4g}) are {:.2g} m apart, too close for an "
+      "object of {:.4g} m",
+      place.x(), place.y(), place.z(), gap(closest), size);
+}
+
 void FailByCode(int code, MeshResult& result) {
   switch (code) {
     case kTetGenOutOfMemory:
@@ -142,14 +174,28 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
 
+  if (result.surface_report.unused_vertices > 0) {
+    Fail(MeshStatus::kFaultySurface,
+         fmt::format("{} vertices of the surface belong to no triangle",
+                     result.surface_report.unused_vertices),
+         result);
+    return result;
+  }
+  const UnitFrame frame = FrameOf(surface);
+  const std::string too_close = TooCloseVertices(surface, frame.size);
+  if (!too_close.empty()) {
+    Fail(MeshStatus::kTooSmallFeature, too_close, result);
+    return result;
+  }
+
   // The predicates of TetGen keep their constants in variables of the whole process.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
-  const UnitFrame frame = FrameOf(surface);
   Facets facets(surface, frame);
   tetgenio output;
   try {
-    tetrahedralize(Switches(options, frame.size).data(), facets.Input(), &output);
+    tetgenbehavior behaviour = Behaviour(options, frame.size);
+    tetrahedralize(&behaviour, facets.Input(), &output);
   } catch (int code) {
     FailByCode(code, result);
     return result;
@@ -166,6 +212,14 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   if (result.quality.inverted > 0) {
     Fail(MeshStatus::kInternalError,
          fmt::format("{} tetrahedra have no volume", result.quality.inverted), result);
+    return result;
+  }
+  const double missing = result.quality.total_volume - result.surface_report.volume;
+  if (std::abs(missing) > kVolumeTolerance * result.surface_report.volume) {
+    Fail(MeshStatus::kInternalError,
+         fmt::format("the tetrahedra fill {:.6g} m^3 of a surface of {:.6g} m^3",
+                     result.quality.total_volume, result.surface_report.volume),
+         result);
     return result;
   }
   NoteUnmetBounds(options, result);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "support/shapes.h"
 
@@ -180,6 +181,20 @@ TEST(MeshTetrahedra, NamesTheFaultOfASurfaceThatBoundsNoVolume) {
   ExpectRefused(crossing, "self-intersection");
 }
 
+TEST(MeshTetrahedra, RefusesVerticesOutsideTheSurface) {
+  TriMesh sphere = Icosphere(1, 2);
+  sphere.vertices.conservativeResize(3, sphere.vertices.cols() + 1);
+  sphere.vertices.rightCols(1).setZero();
+  ExpectRefused(sphere, "1 vertices of the surface belong to no triangle");
+}
+
+TEST(MeshTetrahedra, NamesVerticesTooCloseForTetGen) {
+  TriMesh plate = BoxSurface({1, 1, 1e-10}, {2, 2, 1});
+  const MeshResult result = MeshTetrahedra(plate, {});
+  EXPECT_EQ(result.status, MeshStatus::kTooSmallFeature);
+  EXPECT_THAT(result.message, HasSubstr("are 1e-10 m apart"));
+}
+
 TEST(MeshTetrahedra, RefusesCavities) {
   const TriMesh outer = Icosphere(1, 2);
   TriMesh inner = Icosphere(0.5, 2);
@@ -190,6 +205,25 @@ TEST(MeshTetrahedra, RefusesCavities) {
   shell.triangles << outer.triangles,
       inner.triangles.array() + static_cast<int>(outer.vertices.cols());
   ExpectRefused(shell, "inside out");
+}
+
+// Stars with random spikes: sharp, thin and uneven, but without fault.
+TEST(MeshTetrahedra, EndsInOrderOnSpikyBodies) {
+  std::mt19937_64 generator(3);
+  for (int trial = 0; trial < 12; ++trial) {
+    TriMesh star = Icosphere(1, 2);
+    for (auto v : star.vertices.colwise()) {
+      v *= std::exp(2 * static_cast<double>(generator() >> 11) * 0x1p-53);
+    }
+    const MeshResult result =
+        MeshTetrahedra(star, {.preserve_surface = trial % 2 == 0, .max_added_nodes = 20000});
+    if (result.IsUsable()) {
+      const double volume = EnclosedVolume(star);
+      EXPECT_NEAR(result.quality.total_volume, volume, 1e-10 * volume);
+    } else {
+      EXPECT_NE(result.message, "");
+    }
+  }
 }
 
 // Two boxes a hair apart: the surface is without fault, yet at the limits of double precision.
