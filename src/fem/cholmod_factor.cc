@@ -119,7 +119,9 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
   const SerialOpenMp serial;
   cholmod_factorize(&self.matrix, self.factor, &self.common);
   CHECK_GE(self.common.status, CHOLMOD_OK) << "CHOLMOD could not factorise (out of memory?)";
-  return self.common.status == CHOLMOD_OK && self.factor->minor == self.factor->n;
+  // A matrix with a NaN gets through without complaint, but has no condition number.
+  return self.common.status == CHOLMOD_OK && self.factor->minor == self.factor->n &&
+         (self.matrix.nrow == 0 || cholmod_rcond(self.factor, &self.common) > 0);
 }
 
 void CholmodFactor::Solve(const Eigen::VectorXd& b, Eigen::VectorXd* x) {

@@ -16,6 +16,8 @@ extern "C" void spotrf_(const char* uplo, const int* n, float* a, const int* lda
 namespace lacuna {
 namespace {
 
+// Rounding errors of a pivot are at most some thousand times 6e-8.
+constexpr float kCertainlyNegative = -1e-3f;
 constexpr int kEliminationBlock = 192;   // columns eliminated before the rest is updated
 constexpr int kTile = 256;               // columns of an update that one thread does at a time
 constexpr int kSubstitutionBlock = 128;  // columns substituted before the rest is updated
@@ -135,17 +137,19 @@ void BackwardWithinBlock(int m, int begin, int end, const float* panel, float* y
 
 }  // namespace
 
-bool EliminateColumns(int m, int p, float* panel, float* update) {
+Pivots EliminateColumns(int m, int p, float* panel, float* update) {
   for (int begin = 0; begin < p; begin += kEliminationBlock) {
     const int end = std::min(p, begin + kEliminationBlock), width = end - begin;
     float* diagonal = panel + begin + static_cast<int64_t>(begin) * m;
     int info = 0;
     spotrf_("L", &width, diagonal, &m, &info);
-    if (info != 0) return false;
-    for (int j = 0; j < width; ++j) {
+    // LAPACK stops with the pivot that failed in its place.
+    for (int j = 0; j < (info > 0 ? info : width); ++j) {
       const float pivot = diagonal[j + static_cast<int64_t>(j) * m];
-      if (!(pivot > 0) || !std::isfinite(pivot)) return false;
+      if (pivot < kCertainlyNegative) return Pivots::kNegative;
+      if (!(pivot > 0) || !std::isfinite(pivot)) return Pivots::kInDoubt;
     }
+    if (info != 0) return Pivots::kInDoubt;
     if (end == m) break;
     ParallelBlocks(m - end, kRowsPerTask, [&](int64_t first, int64_t last) {
       cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
@@ -165,7 +169,7 @@ bool EliminateColumns(int m, int p, float* panel, float* update) {
     float& pivot = panel[j + static_cast<int64_t>(j) * m];
     pivot = 1 / pivot;
   }
-  return true;
+  return Pivots::kPositive;
 }
 
 void ForwardSubstitute(int m, int p, const float* panel, float* y) {

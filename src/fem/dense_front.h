@@ -8,9 +8,16 @@
 
 namespace lacuna {
 
+// What the pivots of a factorisation say about its matrix, whose entries are at most of order one.
+enum class Pivots {
+  kPositive,
+  kInDoubt,   // one was not positive, but rounding may have made it so (or it is not a number)
+  kNegative,  // one was more negative than rounding can explain: the matrix is not definite
+};
+
 // panel ← [L₁₁; L₂₁] with L₁₁ L₁₁ᵀ = its upper part, update ← update − L₂₁ L₂₁ᵀ. The diagonal of
-// L₁₁ is stored inverted. False: a pivot was not positive (or not a number).
-bool EliminateColumns(int m, int p, float* panel, float* update);
+// L₁₁ is stored inverted. Stops at the first pivot that is not positive.
+Pivots EliminateColumns(int m, int p, float* panel, float* update);
 
 // y ← [z; y₂ − L₂₁ z] with z = L₁₁⁻¹ y₁; y of length m.
 void ForwardSubstitute(int m, int p, const float* panel, float* y);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/node_rotations.h"
+
 namespace lacuna {
 namespace {
 
@@ -81,10 +83,12 @@ class Newton {
   template <typename RightHandSide>
   bool SolveLinearised(const Iterate& at, const RightHandSide& right, Eigen::VectorXd* step) {
     LinearSolveSummary solved;
+    const std::vector<Eigen::Matrix3d> rotations =
+        NodeRotations(problem_.equation.body(), at.position);
     for (int attempt = 0; attempt < 2; ++attempt) {
       AssembleTangent(at);
       const Eigen::VectorXd b = right();
-      solved = solver_.Solve(tangent_, b, step);
+      solved = solver_.Solve(tangent_, b, step, &rotations);
       if (solved.IsUsable() && step->allFinite() && step->dot(b) >= 0) return true;
       if (convexify_) break;
       convexify_ = true;

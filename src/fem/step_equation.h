@@ -59,6 +59,7 @@ class StepEquation {
   // The history after the step ended at `position`.
   MotionHistory Advance(const Eigen::VectorXd& position) const;
 
+  const Body& body() const { return *model_.body; }
   double end_time() const { return end_time_; }
   double rate() const { return rate_; }  // γ, 1/s; 0 in statics
 

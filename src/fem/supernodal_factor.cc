@@ -3,11 +3,9 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/parallel.h"
-#include "fem/dense_front.h"
 
 namespace lacuna {
 namespace {
@@ -165,24 +163,27 @@ void SupernodalFactor::AssembleFront(int s, const BlockMatrix& matrix) {
   }
 }
 
-bool SupernodalFactor::EliminateFront(int s, const BlockMatrix& matrix) {
+Pivots SupernodalFactor::EliminateFront(int s, const BlockMatrix& matrix) {
   AssembleFront(s, matrix);
   return EliminateColumns(3 * tree_.FrontRows(s), 3 * tree_.Columns(s), &factor_[panel_begin_[s]],
                           updates_.data() + update_begin_[s]);
 }
 
-bool SupernodalFactor::Factorise(const BlockMatrix& matrix) {
+Pivots SupernodalFactor::Factorise(const BlockMatrix& matrix) {
   double largest = 0;
   for (const int node : tree_.order.node) {
     largest = std::max(largest, matrix.Block(matrix.pattern().diagonal[node]).trace());
   }
-  if (!(largest > 0) || !std::isfinite(largest)) return false;
+  if (!(largest > 0) || !std::isfinite(largest)) return Pivots::kInDoubt;
   scale_ = std::exp2(-std::ilogb(largest));
-  std::atomic<bool> positive = true;
+  // A front above a failed one is not attempted, any other one is: the verdict must not depend on
+  // which thread failed first.
+  std::vector<Pivots> pivots(tree_.SupernodeCount(), Pivots::kPositive);
   VisitUpwards([&](int s) {
-    if (positive && !EliminateFront(s, matrix)) positive = false;
+    for (const int child : tree_.children[s]) pivots[s] = std::max(pivots[s], pivots[child]);
+    if (pivots[s] == Pivots::kPositive) pivots[s] = EliminateFront(s, matrix);
   });
-  return positive;
+  return pivots.empty() ? Pivots::kPositive : *std::max_element(pivots.begin(), pivots.end());
 }
 
 void SupernodalFactor::SolveForward(int s, const float* b) {

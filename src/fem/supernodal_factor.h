@@ -14,6 +14,7 @@
 
 #include "fem/assembly_tree.h"
 #include "fem/block_matrix.h"
+#include "fem/dense_front.h"
 
 namespace lacuna {
 
@@ -22,9 +23,9 @@ class SupernodalFactor {
   // Symbolic analysis for all matrices of one pattern; `pattern` and `order` are read here only.
   SupernodalFactor(const BlockPattern& pattern, const EliminationOrder& order);
 
-  // False when single precision meets a pivot that is not positive: the matrix is indefinite, or
-  // too ill-conditioned for this factor. There is no factor then.
-  bool Factorise(const BlockMatrix& matrix);
+  // Anything but kPositive: there is no factor. kInDoubt means that the matrix may be too
+  // ill-conditioned for single precision.
+  Pivots Factorise(const BlockMatrix& matrix);
 
   // x = (L Lᵀ)⁻¹ b for a right-hand side of order one; both in *elimination order*
   // (`order().node`), of length 3·(free nodes). `b` and `x` may be the same.
@@ -43,7 +44,7 @@ class SupernodalFactor {
   };
 
   void PlaceInMemory();
-  bool EliminateFront(int s, const BlockMatrix& matrix);
+  Pivots EliminateFront(int s, const BlockMatrix& matrix);
   void AssembleFront(int s, const BlockMatrix& matrix);
   void SolveForward(int s, const float* b);
   void SolveBackward(int s, float* x);

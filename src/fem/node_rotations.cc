@@ -1,0 +1,44 @@
+#include "fem/node_rotations.h"
+
+#include "core/parallel.h"
+#include "fem/element_kinematics.h"
+#include "fem/polar_decomposition.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kNodesPerTask = 512;
+
+// Σ w F over the quadrature points of the elements of each node. (Only its direction counts for
+// the nearest rotation, so it need not be divided by the volume.)
+template <int kNodes>
+void AddDeformationGradients(const Body& body, const Eigen::VectorXd& position,
+                             std::vector<Eigen::Matrix3d>* sums) {
+  ForEachElement(*body.schedule, [&](int element) {
+    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, position);
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+      const int q = element * QuadraturePoints<kNodes>() + p;
+      sum += body.weight[q] * FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q));
+    }
+    for (int a = 0; a < kNodes; ++a) (*sums)[body.mesh.tets(a, element)] += sum;
+  });
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix3d> NodeRotations(const Body& body, const Eigen::VectorXd& position) {
+  std::vector<Eigen::Matrix3d> rotations(body.NodeCount(), Eigen::Matrix3d::Zero());
+  if (body.mesh.Order() == 1) {
+    AddDeformationGradients<4>(body, position, &rotations);
+  } else {
+    AddDeformationGradients<10>(body, position, &rotations);
+  }
+  ParallelFor(body.NodeCount(), kNodesPerTask, [&](int64_t i) {
+    const double size = rotations[i].norm();
+    rotations[i] = PolarRotation(size > 0 ? Eigen::Matrix3d(rotations[i] / size) : rotations[i]);
+  });
+  return rotations;
+}
+
+}  // namespace lacuna
