@@ -128,6 +128,13 @@ void RemoveSelfIntersections(SurfaceMesh& surface, Notes& notes) {
   surface.collect_garbage();
   const auto before = FindSelfIntersections(FromSurfaceMesh(surface));
   if (before.empty()) return;
+  // Where a good part of the surface crosses itself there is none to be saved, and trying takes
+  // minutes.
+  constexpr double kHopeless = 0.05;
+  if (static_cast<double>(before.size()) > kHopeless * surface.number_of_faces()) {
+    notes.push_back(fmt::format("left {} self-intersections: too many to mend", before.size()));
+    return;
+  }
   processing::experimental::remove_self_intersections(surface);
   surface.collect_garbage();
   const auto after = FindSelfIntersections(FromSurfaceMesh(surface));

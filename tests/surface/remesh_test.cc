@@ -1,0 +1,61 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "geometry/nearest.h"
+#include "geometry/surface_check.h"
+#include "support/shapes.h"
+#include "surface/repair.h"
+
+namespace lacuna {
+namespace {
+
+TEST(RemeshIsotropic, MakesEvenTrianglesOnTheSameSurface) {
+  const TriMesh body = OrganicSurface(5);
+  const TriMesh remeshed = RemeshIsotropic(body, {.edge_length = 0.15});
+  const SurfaceReport report = CheckSurface(remeshed);
+  EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
+  EXPECT_NEAR(report.mean_edge, 0.15, 0.02);
+  EXPECT_GT(report.min_angle, 0.5);
+  // New vertices lie on the old triangles, to rounding; the volume changes by the chords.
+  EXPECT_LT(SurfaceSearch(body).Nearest(remeshed.vertices).distance.maxCoeff(), 1e-12);
+  EXPECT_NEAR(report.volume, EnclosedVolume(body), 0.01 * EnclosedVolume(body));
+}
+
+TEST(RemeshIsotropic, KeepsSharpEdgesWhenAskedTo) {
+  const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {4, 1, 1});
+  const TriMesh sharp = RemeshIsotropic(box, {.edge_length = 0.007, .feature_angle = 1});
+  const SurfaceReport report = CheckSurface(sharp);
+  EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
+  // With all edges and corners kept, nothing of the box is lost.
+  EXPECT_NEAR(report.volume, 0.2 * 0.03 * 0.04, 1e-9 * 0.2 * 0.03 * 0.04);
+  EXPECT_NEAR(report.mean_edge, 0.007, 0.0015);
+  EXPECT_LT(CheckSurface(RemeshIsotropic(box, {.edge_length = 0.007})).volume,
+            0.9999 * report.volume);
+}
+
+TEST(RemeshIsotropic, KeepsTheEdgeOfAnOpenSheet) {
+  const TriMesh sheet = FlatSheet(0.3, 0.1, 30, 10);
+  const SurfaceReport report = CheckSurface(RemeshIsotropic(sheet, {.edge_length = 0.02}));
+  EXPECT_EQ(report.boundary_loops.size(), 1u);
+  EXPECT_TRUE(report.IsManifold() && report.IsOriented() && report.IsFreeOfIntersections());
+  EXPECT_NEAR(report.area, 0.03, 0.02 * 0.03);  // corners may be cut by half an edge
+}
+
+TEST(RemeshIsotropic, RepeatsItselfBitByBit) {
+  const TriMesh body = OrganicSurface(4);
+  const TriMesh first = RemeshIsotropic(body, {.edge_length = 0.1});
+  const TriMesh second = RemeshIsotropic(body, {.edge_length = 0.1});
+  EXPECT_EQ(first.vertices, second.vertices);
+  EXPECT_EQ(first.triangles, second.triangles);
+}
+
+TEST(RemeshIsotropic, RefusesWhatIsNotManifold) {
+  const TriMesh book = MeshOf({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
+                              {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
+  EXPECT_THROW(RemeshIsotropic(book, {.edge_length = 0.1}), InputError);
+  EXPECT_THROW(RemeshIsotropic({}, {.edge_length = 0.1}), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
