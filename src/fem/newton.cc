@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "fem/node_rotations.h"
 
@@ -14,9 +16,9 @@ namespace {
 // A point of the iteration with what has been evaluated there.
 struct Iterate {
   Eigen::VectorXd position;
-  Eigen::VectorXd residual;  // r − applied, 0 at fixed nodes
-  double force_scale = 0;    // N
-  double potential = 0;      // J; NaN where there is none
+  Eigen::VectorXd residual;         // r − applied, 0 at fixed nodes
+  double force_scale = 0;           // N
+  std::optional<double> potential;  // J; NaN where there is none; evaluated when first needed
 };
 
 class Newton {
@@ -49,8 +51,15 @@ class Newton {
     at.residual -= problem_.applied_force;
     at.force_scale += problem_.applied_force.norm();
     ClearFixed(&at.residual);
-    at.potential = problem_.equation.Potential(position) - problem_.applied_force.dot(position);
     return at;
+  }
+
+  double Potential(Iterate* at) const {
+    if (!at->potential) {
+      at->potential =
+          problem_.equation.Potential(at->position) - problem_.applied_force.dot(at->position);
+    }
+    return *at->potential;
   }
 
   void ClearFixed(Eigen::VectorXd* vector) const {
@@ -144,14 +153,14 @@ class Newton {
     Iterate full = Evaluate(at->position + step);
     const double slope = at->residual.dot(step);
     const double work = Work(*at, full, step);
-    if (Falls(*at, full, slope, work)) {
+    if (Falls(at, &full, slope, work)) {
       *at = std::move(full);
       // Near the solution the exact tangent is definite and converges quadratically.
       convexify_ = false;
       may_climb_ = true;
       return true;
     }
-    if (may_climb_ && ReturnsBelow(*at, slope, work, full)) {
+    if (may_climb_ && ReturnsBelow(at, slope, work, full)) {
       *at = std::move(beyond_);
       convexify_ = false;
       return true;
@@ -162,7 +171,7 @@ class Newton {
 
   // Takes another full step from `full`, where the potential is above that of `start`, to
   // `beyond_`; true if it is below there. `work`: of the residual from start to full.
-  bool ReturnsBelow(const Iterate& start, double slope, double work, const Iterate& full) {
+  bool ReturnsBelow(Iterate* start, double slope, double work, const Iterate& full) {
     if (!full.residual.allFinite() || summary_.iterations >= problem_.max_iterations) return false;
     ++summary_.iterations;
     Eigen::VectorXd step;
@@ -171,7 +180,7 @@ class Newton {
       return false;
     }
     beyond_ = Evaluate(full.position + step);
-    return Falls(start, beyond_, slope, work + Work(full, beyond_, step));
+    return Falls(start, &beyond_, slope, work + Work(full, beyond_, step));
   }
 
   // The work of the residual along a step, by the trapezoidal rule, J: to second order the change
@@ -182,16 +191,21 @@ class Newton {
 
   // Sufficient decrease (Armijo 1966) of the potential from one iterate to another.
   // `expected`: its change to first order, J.
-  static bool Falls(const Iterate& from, const Iterate& to, double expected, double work) {
+  bool Falls(Iterate* from, Iterate* to, double expected, double work) const {
     constexpr double kSufficient = 1e-4;
-    if (!to.residual.allFinite()) return false;
-    const double change = to.potential - from.potential;
+    // A residual that drops this much, along a step of a definite tangent, needs no other witness.
+    constexpr double kPlainlyBetter = 0.1;
+    if (!to->residual.allFinite()) return false;
+    const double ratio = to->residual.norm() / from->residual.norm();
+    if (ratio <= kPlainlyBetter) return true;
+    const double before = Potential(from);
+    const double after = Potential(to);
     // Below the rounding of the potential's own value its change says nothing.
-    const double digits = 1e-11 * (std::abs(from.potential) + std::abs(to.potential));
-    if (std::isnan(change) || std::abs(expected) <= digits) {
-      return work <= kSufficient * expected || to.residual.norm() < 0.5 * from.residual.norm();
+    const double digits = 1e-11 * (std::abs(before) + std::abs(after));
+    if (std::isnan(after - before) || std::abs(expected) <= digits) {
+      return work <= kSufficient * expected || ratio < 0.5;
     }
-    return change <= kSufficient * expected;
+    return after - before <= kSufficient * expected;
   }
 
   // Shortens a step whose full length, to `full`, is too far.
@@ -205,7 +219,7 @@ class Newton {
       length *= slope_there > 0 ? std::clamp(slope / (slope - slope_there), 0.1, 0.7) : 0.5;
       Iterate trial = Evaluate(at->position + length * step);
       slope_there = trial.residual.dot(step);
-      if (Falls(*at, trial, length * slope, length * Work(*at, trial, step))) {
+      if (Falls(at, &trial, length * slope, length * Work(*at, trial, step))) {
         *at = std::move(trial);
         return true;
       }
