@@ -120,6 +120,7 @@ void ConvertAs(const std::filesystem::path& file, const RawArray& array, std::ve
                        ", too large to be a floating-point number");
       }
     }
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): an int8 is a number here
     (*out)[static_cast<size_t>(i)] = static_cast<Value>(stored);
   }
 }

@@ -26,6 +26,7 @@ struct StageResult {
   std::vector<StoredFile> files;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the JSON value checks itself when moved
 struct Manifest {
   int schema_version = kManifestSchemaVersion;
   std::string program_version;
