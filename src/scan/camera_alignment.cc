@@ -6,9 +6,10 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/correspondence_rejection_surface_normal.h>
 #include <pcl/registration/icp.h>
-#include <pcl/registration/transformation_estimation_point_to_plane_lls.h>
+#include <pcl/registration/transformation_estimation.h>
 #include <pcl/search/kdtree.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,25 +58,28 @@ struct PairDistance {
   double rms = -1;
 };
 
-// The point-to-plane distances of the pairs that ICP would use.
-PairDistance MeasurePairs(const Cloud& source, const Cloud::Ptr& target,
-                          const AlignmentOptions& options) {
-  pcl::search::KdTree<pcl::PointNormal> tree;
-  tree.setInputCloud(target);
+// The distances that ICP minimises: of mutually nearest points of both views, along the sum of
+// their normals.
+PairDistance MeasurePairs(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_distance,
+                          double max_angle) {
+  pcl::search::KdTree<pcl::PointNormal> source_tree, target_tree;
+  source_tree.setInputCloud(source);
+  target_tree.setInputCloud(target);
   PairDistance result;
   double sum = 0;
-  std::vector<int> index(1);
+  std::vector<int> there(1), back(1);
   std::vector<float> squared(1);
-  for (const pcl::PointNormal& point : source) {
-    if (tree.nearestKSearch(point, 1, index, squared) != 1) continue;
-    const pcl::PointNormal& other = (*target)[index[0]];
+  for (size_t i = 0; i < source->size(); ++i) {
+    const pcl::PointNormal& point = (*source)[i];
+    if (target_tree.nearestKSearch(point, 1, there, squared) != 1) continue;
+    const pcl::PointNormal& other = (*target)[there[0]];
     const float cosine = point.getNormalVector3fMap().dot(other.getNormalVector3fMap());
-    if (squared[0] > options.max_distance * options.max_distance ||
-        cosine < std::cos(options.max_angle)) {
-      continue;
-    }
-    const float distance =
-        (point.getVector3fMap() - other.getVector3fMap()).dot(other.getNormalVector3fMap());
+    if (squared[0] > max_distance * max_distance || cosine < std::cos(max_angle)) continue;
+    if (source_tree.nearestKSearch(other, 1, back, squared) != 1) continue;
+    if (back[0] != static_cast<int>(i)) continue;
+    const Eigen::Vector3f normal =
+        (point.getNormalVector3fMap() + other.getNormalVector3fMap()).normalized();
+    const float distance = (point.getVector3fMap() - other.getVector3fMap()).dot(normal);
     sum += distance * distance;
     ++result.pairs;
   }
@@ -83,42 +87,130 @@ PairDistance MeasurePairs(const Cloud& source, const Cloud::Ptr& target,
   return result;
 }
 
+// The step of ICP: minimises Σ ((ω × p + t + p − q)·n)² with n the sum of both normals, but only
+// along the directions of motion that the pairs pin down. Along the others (a plane that slides in
+// itself, a sphere that turns) the step is zero and the pose stays as it was given (the "solution
+// remapping" of Zhang, Kaess & Singh 2016).
+class PinnedDownEstimation
+    : public pcl::registration::TransformationEstimation<pcl::PointNormal, pcl::PointNormal,
+                                                         double> {
+ public:
+  PinnedDownEstimation(double min_stiffness, int* free_directions)
+      : min_stiffness_(min_stiffness), free_directions_(free_directions) {}
+
+  void estimateRigidTransformation(const Cloud& source, const Cloud& target,
+                                   const pcl::Correspondences& pairs,
+                                   Matrix4& matrix) const override {
+    matrix.setIdentity();
+    if (pairs.empty()) return;
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();
+    for (const auto& pair : pairs) center += Position(source[pair.index_query]);
+    center /= static_cast<double>(pairs.size());
+    double squared_radius = 0;
+    for (const auto& pair : pairs) {
+      squared_radius += (Position(source[pair.index_query]) - center).squaredNorm();
+    }
+    // Rotations in units of the motion at this distance, so that all six are lengths.
+    const double radius = std::sqrt(squared_radius / static_cast<double>(pairs.size()));
+    using Matrix6d = Eigen::Matrix<double, 6, 6>;
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    Matrix6d stiffness = Matrix6d::Zero();
+    Vector6d force = Vector6d::Zero();
+    for (const auto& pair : pairs) {
+      const pcl::PointNormal& p = source[pair.index_query];
+      const pcl::PointNormal& q = target[pair.index_match];
+      const Eigen::Vector3d normal =
+          (p.getNormalVector3fMap() + q.getNormalVector3fMap()).cast<double>().normalized();
+      Vector6d row;
+      row << (Position(p) - center).cross(normal) / radius, normal;
+      stiffness += row * row.transpose();
+      force -= row * (Position(p) - Position(q)).dot(normal);
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> modes(stiffness);
+    Vector6d step = Vector6d::Zero();
+    *free_directions_ = 0;
+    for (int i = 0; i < 6; ++i) {
+      const double value = modes.eigenvalues()[i];
+      if (!(value > min_stiffness_ * static_cast<double>(pairs.size()))) {
+        ++*free_directions_;
+        continue;
+      }
+      const Vector6d mode = modes.eigenvectors().col(i);
+      step += mode * (mode.dot(force) / value);
+    }
+    const Eigen::Vector3d turn = step.head<3>() / radius;
+    const double angle = turn.norm();
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    if (angle > 0) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).matrix();
+    motion.translation() = center + step.tail<3>() - motion.linear() * center;
+    matrix = motion.matrix();
+  }
+
+  // PCL's ICP calls the form above only.
+  void estimateRigidTransformation(const Cloud&, const Cloud&, Matrix4&) const override {
+    LOG(FATAL) << "not used";
+  }
+  void estimateRigidTransformation(const Cloud&, const pcl::Indices&, const Cloud&,
+                                   Matrix4&) const override {
+    LOG(FATAL) << "not used";
+  }
+  void estimateRigidTransformation(const Cloud&, const pcl::Indices&, const Cloud&,
+                                   const pcl::Indices&, Matrix4&) const override {
+    LOG(FATAL) << "not used";
+  }
+
+ private:
+  static Eigen::Vector3d Position(const pcl::PointNormal& point) {
+    return point.getVector3fMap().cast<double>();
+  }
+
+  double min_stiffness_;
+  int* free_directions_;  // not owned
+};
+
 struct Fit {
   bool converged = false;
+  int free_directions = 0;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
 };
 
-Fit FitByIcp(const Cloud::Ptr& source, const Cloud::Ptr& target, const AlignmentOptions& options) {
+Fit FitByIcp(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_distance,
+             const AlignmentOptions& options) {
+  Fit fit;
   Icp icp;
   auto rejector = std::make_shared<pcl::registration::CorrespondenceRejectorSurfaceNormal>();
   rejector->setThreshold(std::cos(options.max_angle));
   icp.addCorrespondenceRejector(rejector);
   icp.setTransformationEstimation(
-      std::make_shared<pcl::registration::TransformationEstimationPointToPlaneLLS<
-          pcl::PointNormal, pcl::PointNormal, double>>());
+      std::make_shared<PinnedDownEstimation>(options.min_stiffness, &fit.free_directions));
   icp.setInputSource(source);
   icp.setInputTarget(target);
   // Without this, points beyond the border of the other view would pull towards that border.
   icp.setUseReciprocalCorrespondences(true);
-  icp.setMaxCorrespondenceDistance(options.max_distance);
+  icp.setMaxCorrespondenceDistance(max_distance);
   icp.setMaximumIterations(options.iterations);
+  // A view that slides along the others hardly changes the mean squared distance of the pairs: only
+  // a motion that stands still counts as converged.
+  icp.getConvergeCriteria()->setRelativeMSE(-1);
+  icp.getConvergeCriteria()->setAbsoluteMSE(-1);
+  icp.setTransformationEpsilon(1e-12);
   Cloud aligned;
   icp.align(aligned);
   const Eigen::Matrix4d matrix = icp.getFinalTransformation();
-  Fit fit;
   fit.converged = icp.hasConverged() && matrix.allFinite();
   if (!fit.converged) return fit;
-  // The linearised steps leave a rotation that is one only to rounding.
+  // A product of many rotations is one only to rounding.
   fit.motion.linear() = Eigen::Quaterniond(matrix.topLeftCorner<3, 3>()).normalized().matrix();
   fit.motion.translation() = matrix.topRightCorner<3, 1>();
   return fit;
 }
 
-Cloud::Ptr AllBut(const std::vector<Cloud::Ptr>& clouds,
-                  const std::vector<Eigen::Isometry3d>& motions, size_t left_out) {
+// All views but `left_out`, or of these the first `count` only.
+Cloud::Ptr Others(const std::vector<Cloud::Ptr>& views,
+                  const std::vector<Eigen::Isometry3d>& motions, size_t left_out, size_t count) {
   auto merged = std::make_shared<Cloud>();
-  for (size_t i = 0; i < clouds.size(); ++i) {
-    if (i != left_out) *merged += *Moved(*clouds[i], motions[i]);
+  for (size_t i = 0; i < count; ++i) {
+    if (i != left_out) *merged += *Moved(*views[i], motions[i]);
   }
   return merged;
 }
@@ -151,51 +243,53 @@ std::vector<CameraCorrection> AlignCameras(const std::vector<Eigen::Matrix3Xd>& 
     views.push_back(ToPcl(clouds[i], center, positions.col(i), options.neighbours));
   }
   std::vector<Eigen::Isometry3d> motions(clouds.size(), Eigen::Isometry3d::Identity());
-  std::vector<PairDistance> before(clouds.size());
+  const auto measure = [&](size_t i, size_t count) {
+    return MeasurePairs(Moved(*views[i], motions[i]), Others(views, motions, i, count),
+                        options.max_distance, options.max_angle);
+  };
   for (size_t i = 1; i < clouds.size(); ++i) {
-    before[i] = MeasurePairs(*views[i], AllBut(views, motions, i), options);
-    corrections[i].rms_before = before[i].rms;
+    corrections[i].rms_before = measure(i, clouds.size()).rms;
   }
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
+    const double max_distance =
+        std::max(std::ldexp(options.max_distance, -sweep), 0.25 * options.max_distance);
     for (size_t i = 1; i < clouds.size(); ++i) {
-      if (before[i].pairs < options.min_pairs) {
-        corrections[i].message = fmt::format("not applied: {} pairs overlap, fewer than {}",
-                                             before[i].pairs, options.min_pairs);
+      CameraCorrection& correction = corrections[i];
+      // Views that stand wrongly themselves would pull: at first only those already fitted count,
+      // if they see enough in common.
+      size_t count = sweep == 0 ? i : clouds.size();
+      int pairs = measure(i, count).pairs;
+      if (pairs < options.min_pairs) pairs = measure(i, count = clouds.size()).pairs;
+      if (pairs < options.min_pairs) {
+        correction.message =
+            fmt::format("not applied: {} pairs overlap, fewer than {}", pairs, options.min_pairs);
         continue;
       }
-      const Cloud::Ptr others = AllBut(views, motions, i);
-      const Fit fit = FitByIcp(Moved(*views[i], motions[i]), others, options);
+      const Fit fit = FitByIcp(Moved(*views[i], motions[i]), Others(views, motions, i, count),
+                               max_distance, options);
       if (!fit.converged) {
-        corrections[i].message = "not applied: ICP did not converge";
+        correction.message = "not applied: ICP did not converge";
         continue;
       }
       const Eigen::Isometry3d motion = fit.motion * motions[i];
-      const double moved = (motion * Eigen::Vector3d(clouds[i].rowwise().mean() - center) -
-                            (clouds[i].rowwise().mean() - center))
-                               .norm();
+      const Eigen::Vector3d middle = clouds[i].rowwise().mean() - center;
+      const double moved = (motion * middle - middle).norm();
       if (moved > options.max_distance) {
-        corrections[i].message =
+        correction.message =
             fmt::format("not applied: ICP would move the view by {:g} m, further than {:g} m",
                         moved, options.max_distance);
         continue;
       }
       motions[i] = motion;
-      corrections[i].applied = true;
-      corrections[i].translation = moved;
+      correction.applied = true;
+      correction.translation = moved;
+      correction.free_directions = fit.free_directions;
     }
   }
   for (size_t i = 1; i < clouds.size(); ++i) {
     CameraCorrection& correction = corrections[i];
     if (!correction.applied) continue;
-    const Cloud::Ptr others = AllBut(views, motions, i);
-    correction.rms_after = MeasurePairs(*Moved(*views[i], motions[i]), others, options).rms;
-    if (!(correction.rms_after < correction.rms_before)) {
-      correction.applied = false;
-      correction.translation = 0;
-      correction.message = "not applied: it does not bring the surfaces nearer";
-      motions[i].setIdentity();
-      continue;
-    }
+    correction.rms_after = measure(i, clouds.size()).rms;
     correction.angle = Eigen::AngleAxisd(motions[i].linear()).angle();
     correction.correction =
         Eigen::Translation3d(center) * motions[i] * Eigen::Translation3d(-center);

@@ -89,15 +89,15 @@ Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
   return Interpolate(force.times, force.forces, time);
 }
 
-Eigen::Vector3d DisplacementAt(const Grip& grip, double time) {
+Eigen::Vector3d DisplacementAt(const RecordedGrip& grip, double time) {
   return Interpolate(grip.times, grip.displacements, time);
 }
 
-std::vector<Grip> ReadGrips(const Config& config, const Recording& recording,
-                            const std::vector<double>& file_times) {
-  std::vector<Grip> grips;
+std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recording,
+                                    const std::vector<double>& file_times) {
+  std::vector<RecordedGrip> grips;
   for (const Config& item : config.Items("gripped")) {
-    Grip grip;
+    RecordedGrip grip;
     grip.region = ReadRegion(item, recording.data_folder, fmt::format("grip {}", grips.size() + 1));
     grip.markers = item.Texts("follows_markers");
     const std::optional<Config> path = item.OptionalChild("path");

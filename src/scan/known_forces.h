@@ -13,8 +13,8 @@ namespace lacuna {
 // `follows_markers: [..]`, or `path: {file, time, x, y, z, time_unit, length_unit}` with one row
 // per moment (columns by name or number), the first one at the undeformed place. `file_times` are
 // those of all frames in the files, also of the ones that were not chosen.
-std::vector<Grip> ReadGrips(const Config& config, const Recording& recording,
-                            const std::vector<double>& file_times);
+std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recording,
+                                    const std::vector<double>& file_times);
 
 // The items of `forces`: `constant: [..]`, or `file` (.npy or text) with `unit` and either `time`
 // among its columns or one row per frame, and optionally `region`.

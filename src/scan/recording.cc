@@ -169,7 +169,7 @@ std::string DescribeReference(const ReferenceShape& reference) {
   return text;
 }
 
-std::string DescribeGrip(const Grip& grip) {
+std::string DescribeGrip(const RecordedGrip& grip) {
   std::string text = fmt::format("{}: {}", grip.region.name, DescribeRegion(grip.region));
   if (grip.motion == GripMotion::kFollowsScan) return text + ", follows the scan";
   if (grip.motion == GripMotion::kGiven) return text + ", moves along a given path";
@@ -236,7 +236,7 @@ std::vector<std::filesystem::path> RecordingFiles(const Recording& recording) {
     if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) files.push_back(listed->file);
   };
   for (const Region& region : recording.fixed) add_region(region);
-  for (const Grip& grip : recording.grips) {
+  for (const RecordedGrip& grip : recording.grips) {
     add_region(grip.region);
     files.push_back(grip.file);
   }
@@ -289,7 +289,7 @@ std::string DescribeRecording(const Recording& recording) {
   for (const Region& region : recording.fixed) {
     line("fixed", fmt::format("{}: {}", region.name, DescribeRegion(region)));
   }
-  for (const Grip& grip : recording.grips) line("gripped", DescribeGrip(grip));
+  for (const RecordedGrip& grip : recording.grips) line("gripped", DescribeGrip(grip));
   for (const MeasuredForce& force : recording.forces) {
     line("force", fmt::format("{}: {} values, at most {:.4g} N{}", force.name, force.times.size(),
                               force.forces.colwise().norm().maxCoeff(),

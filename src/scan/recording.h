@@ -30,7 +30,7 @@ enum class GripMotion {
   kFollowsMarkers,  // rigidly with the named markers
   kGiven            // translated along a given path
 };
-struct Grip {
+struct RecordedGrip {
   Region region;
   GripMotion motion = GripMotion::kFollowsScan;
   std::vector<std::string> markers;  // kFollowsMarkers
@@ -50,7 +50,7 @@ struct MeasuredForce {
 
 // Linear between the measured times; before the first and after the last it stays.
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time);
-Eigen::Vector3d DisplacementAt(const Grip& grip, double time);
+Eigen::Vector3d DisplacementAt(const RecordedGrip& grip, double time);
 
 // Where the undeformed shape comes from.
 enum class ReferenceSource { kFirstFrame, kMesh, kTetMesh };
@@ -94,7 +94,7 @@ struct Recording {
   std::optional<double> density;           // kg/m³
   std::optional<Eigen::Vector3d> gravity;  // m/s²
   std::vector<Region> fixed;
-  std::vector<Grip> grips;
+  std::vector<RecordedGrip> grips;
   std::vector<MeasuredForce> forces;
   ReferenceShape reference;
 

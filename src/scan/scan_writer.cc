@@ -98,7 +98,8 @@ std::string FormatDepthFrames(size_t count, const std::vector<VirtualCamera>& ca
 }
 
 // The path of a grip becomes a CSV of its own.
-std::string WriteGrip(const std::filesystem::path& folder, const Grip& grip, size_t number) {
+std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
+                      size_t number) {
   CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
   std::string item = FormatRegion(grip.region);
   if (grip.motion == GripMotion::kFollowsScan) return item;

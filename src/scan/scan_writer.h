@@ -24,7 +24,7 @@ struct ScannedObject {
   std::optional<double> density;           // kg/m³
   std::optional<Eigen::Vector3d> gravity;  // m/s²
   std::vector<Region> fixed;
-  std::vector<Grip> grips;  // following the scan, or along a given path
+  std::vector<RecordedGrip> grips;  // following the scan, or along a given path
 };
 
 // Scans surface i at times[i] (s, ascending) and writes `folder`: recording.yaml, the frames, and

@@ -58,34 +58,53 @@ Eigen::Isometry3d Disturbance(int i) {
 }
 
 TEST(CameraAlignment, TakesOutTheDisturbanceOfThePoses) {
-  Views views = Scanned(4);
+  Views views = Scanned(6);
   const Views exact = views;
-  for (int i = 1; i < 4; ++i) {
+  for (int i = 1; i < 6; ++i) {
     views.clouds[i] = (Disturbance(i) * views.clouds[i]).eval();
     views.positions.col(i) = Disturbance(i) * views.positions.col(i);
   }
   const auto corrections = AlignCameras(views.clouds, views.positions, {});
-  const SurfaceSearch surface(Body());
-  for (int i = 1; i < 4; ++i) {
+  for (int i = 1; i < 6; ++i) {
     ASSERT_TRUE(corrections[i].applied) << corrections[i].message;
     const Eigen::Matrix3Xd aligned = corrections[i].correction * views.clouds[i];
     const double before = (views.clouds[i] - exact.clouds[i]).colwise().norm().mean();
     const double after = (aligned - exact.clouds[i]).colwise().norm().mean();
     ASSERT_GT(before, 1e-3);
-    // The overlap is seen obliquely with 0.1 mm noise; point-to-plane leaves a few hundredths.
-    EXPECT_LT(after, 1.5e-4) << "camera " << i;
-    EXPECT_LT(corrections[i].rms_after, 0.6 * corrections[i].rms_before);
+    // A smooth body slides and turns in itself easily: of 0.1 mm noise some 0.3 mm become.
+    EXPECT_LT(after, 4e-4) << "camera " << i;
+    EXPECT_LT(after, before / 4) << "camera " << i;
+    EXPECT_LT(corrections[i].rms_after, 0.5 * corrections[i].rms_before);
     EXPECT_GT(corrections[i].angle, 0.005);
   }
 }
 
 TEST(CameraAlignment, LeavesGoodPosesNearlyAsTheyAre) {
-  const Views views = Scanned(4);
-  const auto corrections = AlignCameras(views.clouds, views.positions, {});
-  for (int i = 1; i < 4; ++i) {
+  const Views views = Scanned(6);
+  AlignmentOptions options;
+  options.sweeps = 2;
+  const auto corrections = AlignCameras(views.clouds, views.positions, options);
+  for (int i = 1; i < 6; ++i) {
     const Eigen::Matrix3Xd moved = corrections[i].correction * views.clouds[i];
-    EXPECT_LT((moved - views.clouds[i]).colwise().norm().mean(), 1.5e-4);
+    EXPECT_LT((moved - views.clouds[i]).colwise().norm().mean(), 4e-4);  // as above
   }
+}
+
+TEST(CameraAlignment, LeavesAloneWhatAPlaneDoesNotTell) {
+  Views views;
+  views.positions = (Eigen::Matrix3Xd(3, 2) << 0.1, 0.1, 0, 0.1, 1, 1).finished();
+  for (const int seed : {1, 2}) {
+    const TriMesh plane = FlatSheet(0.2, 0.1, 1, 1);
+    views.clouds.push_back(EvaluateSamples(plane, SampleSurface(plane, 3000, seed)).points);
+  }
+  views.clouds[1].colwise() += Eigen::Vector3d(0.002, 0.001, 0.003);
+  const CameraCorrection correction = AlignCameras(views.clouds, views.positions, {})[1];
+  ASSERT_TRUE(correction.applied);
+  EXPECT_EQ(correction.free_directions, 3);  // two to slide, one to turn
+  // The offset across the plane is known exactly, that along it not at all; single precision.
+  EXPECT_NEAR(correction.correction.translation().z(), -0.003, 1e-7);
+  EXPECT_LT(correction.correction.translation().head<2>().norm(), 1e-6);
+  EXPECT_LT(correction.angle, 1e-6);
 }
 
 TEST(CameraAlignment, SaysWhyItDidNothing) {
@@ -103,13 +122,13 @@ TEST(CameraAlignment, SaysWhyItDidNothing) {
 
 TEST(CameraAlignment, OfADepthRecordingIsAppliedAndReported) {
   const TestFolder folder;
-  std::vector<VirtualCamera> cameras = Cameras(4);
+  std::vector<VirtualCamera> cameras = Cameras(6);
   ScannedObject object;
   object.name = "body";
   const std::filesystem::path exact_folder = folder / "exact", wrong_folder = folder / "wrong";
   WriteScan(exact_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
   // The images are those of the true poses; the recording tells wrong ones.
-  for (int i = 1; i < 4; ++i) {
+  for (int i = 1; i < 6; ++i) {
     Eigen::Isometry3d& pose = cameras[i].camera.world_from_camera;
     pose = Disturbance(i) * pose;
   }
@@ -122,10 +141,10 @@ TEST(CameraAlignment, OfADepthRecordingIsAppliedAndReported) {
   const double exact = error(LoadRecording(exact_folder));
   const double wrong = error(LoadRecording(wrong_folder));
   std::string yaml = FileContent(wrong_folder / "recording.yaml");
-  yaml.insert(yaml.find("  kind: depth"), "  refine_alignment: {max_distance: 1 cm}\n");
+  yaml.insert(yaml.find("  kind: depth"), "  refine_alignment: {max_distance: 1 cm, sweeps: 3}\n");
   const Recording refined = LoadRecording(folder.Write("wrong/recording.yaml", yaml));
   ASSERT_GT(wrong, 4 * exact);
-  EXPECT_LT(error(refined), 1.3 * exact);
+  EXPECT_LT(error(refined), 2 * exact);
   EXPECT_THAT(DescribeRecording(refined), HasSubstr("pose corrected by"));
 }
 

@@ -209,7 +209,7 @@ TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
   object.density = 1070;
   object.gravity = Eigen::Vector3d(0, 0, -9.81);
   object.fixed = {{"clamp", HalfSpaceRegion{{0, 0, 0}, {-1, 0, 0}}}};
-  Grip grip;
+  RecordedGrip grip;
   grip.region = {"end", HalfSpaceRegion{{0.1, 0, 0}, {1, 0, 0}}};
   grip.motion = GripMotion::kGiven;
   grip.times = Eigen::Vector2d(0, 0.25);
