@@ -6,6 +6,29 @@
 #include <Eigen/SVD>
 
 namespace lacuna {
+namespace {
+
+const std::vector<std::pair<std::string, double>> kLengthUnits = {
+    {"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"um", 1e-6}, {"in", 0.0254}};
+
+}  // namespace
+
+double LengthOf(const std::string& unit) {
+  for (const auto& [name, length] : kLengthUnits) {
+    if (name == unit) return length;
+  }
+  return 0;
+}
+
+std::string ReadLengthUnit(const Config& config, const std::string& default_unit) {
+  const double length = default_unit.empty()
+                            ? config.Choice("length_unit", kLengthUnits)
+                            : config.Choice("length_unit", kLengthUnits, default_unit);
+  for (const auto& [name, value] : kLengthUnits) {
+    if (value == length) return name;
+  }
+  return "m";
+}
 
 std::optional<Eigen::Matrix3d> NearestRotation(const Eigen::Matrix3d& matrix) {
   constexpr double kRounding = 1e-4;  // of matrices written with five or more digits
@@ -39,6 +62,12 @@ Similarity ReadSimilarity(const Config& config, double length_unit) {
     similarity.rotation = Eigen::AngleAxisd(angle, axis.normalized()).matrix();
   }
   return similarity;
+}
+
+std::optional<Similarity> ReadTransform(const Config& config, double length_unit) {
+  const std::optional<Config> transform = config.OptionalChild("transform");
+  if (!transform) return std::nullopt;
+  return ReadSimilarity(*transform, length_unit);
 }
 
 }  // namespace lacuna

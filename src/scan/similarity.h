@@ -3,6 +3,8 @@
 #define LACUNA_SCAN_SIMILARITY_H_
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
 
 #include "core/config.h"
 
@@ -19,10 +21,19 @@ struct Similarity {
   }
 };
 
+// The metres of one "m", "mm", "cm", "um" or "in".
+double LengthOf(const std::string& unit);
+
+// Reads `length_unit`, one of those; required where `default_unit` is empty.
+std::string ReadLengthUnit(const Config& config, const std::string& default_unit);
+
 // Reads `scale` (a plain number, multiplied by `length_unit`, m), the rotation as `axis` with
 // `angle` or as `matrix` of nine numbers row by row, and `translation`. All are optional. A matrix
 // that is not a rotation to 1e-4 is refused; a smaller rounding is taken out.
 Similarity ReadSimilarity(const Config& config, double length_unit);
+
+// The same for the mapping `transform`, where there is one.
+std::optional<Similarity> ReadTransform(const Config& config, double length_unit);
 
 // The nearest rotation to `matrix`; nothing when it is further than 1e-4 from one or a reflection.
 std::optional<Eigen::Matrix3d> NearestRotation(const Eigen::Matrix3d& matrix);
