@@ -3,12 +3,39 @@
 #include <glog/logging.h>
 #include <pcl/point_types.h>
 #include <pcl/surface/poisson.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <vector>
 
 namespace lacuna {
+namespace {
+
+// PCL complains on standard output, which belongs to our own results: while this lives, what is
+// written there goes to standard error.
+class StandardOutputToError {
+ public:
+  StandardOutputToError() {
+    std::fflush(stdout);
+    saved_ = dup(STDOUT_FILENO);
+    if (saved_ >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
+  }
+  ~StandardOutputToError() {
+    if (saved_ < 0) return;
+    std::fflush(stdout);
+    dup2(saved_, STDOUT_FILENO);
+    close(saved_);
+  }
+  StandardOutputToError(const StandardOutputToError&) = delete;
+  StandardOutputToError& operator=(const StandardOutputToError&) = delete;
+
+ private:
+  int saved_ = -1;
+};
+
+}  // namespace
 
 TriMesh PoissonIsoSurface(const PointCloud& oriented, const PoissonOptions& options) {
   CHECK(oriented.HasNormals());
@@ -39,6 +66,7 @@ TriMesh PoissonIsoSurface(const PointCloud& oriented, const PoissonOptions& opti
   pcl::PointCloud<pcl::PointNormal> vertices;
   std::vector<pcl::Vertices> polygons;
   try {
+    const StandardOutputToError redirect;
     poisson.reconstruct(vertices, polygons);
   } catch (const std::exception& failure) {
     LOG(WARNING) << "Poisson reconstruction failed: " << failure.what();

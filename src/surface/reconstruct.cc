@@ -34,7 +34,7 @@ void RefuseUnusable(const PointCloud& cloud) {
 
 int DepthForSpacing(const PointCloud& cloud, double spacing) {
   const double cube = kPoissonCubeScale * BoundingBox(cloud.points).sizes().maxCoeff();
-  return std::clamp(static_cast<int>(std::floor(std::log2(cube / spacing))), kMinDepth, kMaxDepth);
+  return std::clamp(static_cast<int>(std::ceil(std::log2(cube / spacing))), kMinDepth, kMaxDepth);
 }
 
 // Drops the triangles that reach farther than `distance` from all points.

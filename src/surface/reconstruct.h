@@ -15,7 +15,7 @@ struct SurfaceOptions {
   // A closed surface around all points; or an open one that ends where the points end.
   bool closed = true;
   // Levels of the Poisson octree, 3..12; 0 makes its finest cells as wide as the spacing of the
-  // points, or up to twice. Raising it keeps finer detail, and more of the noise, at four times
+  // points, or down to half. Raising it keeps finer detail, and more of the noise, at four times
   // the cost.
   int depth = 0;
   // Points that a finest cell should hold. Raising it (to 15 or 20) smooths noisy scans.

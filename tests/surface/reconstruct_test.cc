@@ -84,6 +84,16 @@ TEST_P(NoisyScan, GivesAClosedSurfaceNearTheTruth) {
   EXPECT_NEAR(surface.report.volume, EnclosedVolume(truth), 0.015 * EnclosedVolume(truth));
 }
 
+TEST(ReconstructSurface, PrintsNothingOnStandardOutput) {
+  // A body with sharp edges, at which PCL's iso-surface has loops that do not close.
+  const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {20, 3, 4});
+  ::testing::internal::CaptureStdout();
+  const Surface surface =
+      ReconstructSurface(Scan(box, 2000, 0.002 * BoundingBoxDiagonal(box.vertices), 1), {});
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_TRUE(surface.IsUsable()) << surface.message;
+}
+
 TEST(ReconstructSurface, GivesEvenTrianglesOfTheLengthAskedFor) {
   const PointCloud cloud = Scan(Ellipsoid(), 6000, 1e-4, 2);
   for (const double edge : {0.004, 0.008}) {
