@@ -63,7 +63,11 @@ struct LinearSolver::Implementation {
                  const LinearSolverOptions& solver_options)
       : pattern(std::move(block_pattern)),
         options(solver_options),
-        order(NestedDissection(*pattern, fixed)) {}
+        order(NestedDissection(*pattern, fixed)) {
+    if (options.method == LinearSolverOptions::Method::kKeptFactor) {
+      single_factor.emplace(*pattern, order);
+    }
+  }
 
   bool Factorise(const BlockMatrix& A);
   bool FactoriseInDouble(const BlockMatrix& A);
@@ -97,7 +101,6 @@ bool LinearSolver::Implementation::Factorise(const BlockMatrix& A) {
   solves = 0;
   Pivots pivots = Pivots::kInDoubt;
   if (options.method == LinearSolverOptions::Method::kKeptFactor && !single_precision_fails) {
-    if (!single_factor) single_factor.emplace(*pattern, order);
     pivots = single_factor->Factorise(A);
     kept = pivots == Pivots::kPositive ? Kept::kSingle : Kept::kNone;
     factorisation_cost =
