@@ -59,7 +59,8 @@ void Integrate(Body* body) {
         throw InputError(fmt::format(
             "tetrahedron {} (corners {}, {}, {}, {}) has volume {:.3g} m^3; a rest shape needs "
             "positive volumes, corners in right-handed order",
-            e, mesh.tets(0, e), mesh.tets(1, e), mesh.tets(2, e), mesh.tets(3, e), volume));
+            body->given_element[e], mesh.tets(0, e), mesh.tets(1, e), mesh.tets(2, e),
+            mesh.tets(3, e), volume));
       }
       const int q = e * points + p;
       body->weight[q] = rule.weights[p] * volume;
@@ -95,14 +96,17 @@ Body MakeBody(const TetMesh& mesh, double density) {
   }
   CheckNodeNumbers(mesh);
   Body body;
-  body.mesh = mesh;
+  body.mesh.nodes = mesh.nodes;
+  body.given_element = ElementsAlongCurve(mesh);
+  body.mesh.tets = mesh.tets(Eigen::all, body.given_element);
   body.boundary = ExtractBoundary(mesh);
   body.density = density;
   Integrate(&body);
   body.node_mass = LumpedMass(body);
-  body.pattern = std::make_shared<const BlockPattern>(
-      MakeBlockPattern(static_cast<int>(mesh.NodeCount()), mesh.tets));
-  body.schedule = std::make_shared<const ElementSchedule>(MakeElementSchedule(mesh, *body.pattern));
+  body.pattern =
+      std::make_shared<const BlockPattern>(MakeBlockPattern(body.NodeCount(), body.mesh.tets));
+  body.schedule =
+      std::make_shared<const ElementSchedule>(MakeElementSchedule(body.mesh, *body.pattern));
   return body;
 }
 
@@ -113,7 +117,7 @@ int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
     for (int a = 0; a < nodes; ++a) x.col(a) = position.segment<3>(3 * body.mesh.tets(a, e));
     for (int q = e * body.points_per_element; q < (e + 1) * body.points_per_element; ++q) {
       const Eigen::Matrix3d F = x * body.shape_gradient.middleCols<3>(3 * q);
-      if (!(F.determinant() > 0)) return e;
+      if (!(F.determinant() > 0)) return body.given_element[e];
     }
   }
   return -1;

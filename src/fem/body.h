@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "fem/block_matrix.h"
 #include "fem/element_schedule.h"
@@ -12,7 +13,10 @@
 namespace lacuna {
 
 struct Body {
-  TetMesh mesh;  // rest shape, m
+  // Rest shape, m. Nodes are numbered as in the mesh that was given; elements are sorted by place
+  // (element_schedule.h), and `given_element` holds their numbers there.
+  TetMesh mesh;
+  std::vector<int> given_element;
   BoundarySurface boundary;
   double density = 0;  // kg/m³
 
@@ -38,7 +42,7 @@ struct Body {
 Body MakeBody(const TetMesh& mesh, double density);
 
 // An element that is inside out or flat (det ∂x/∂X ≤ 0 at a quadrature point) when the nodes are at
-// `position` (3n), the one with the smallest number; −1 when there is none.
+// `position` (3n), by its number in the mesh that was given; −1 when there is none.
 int FindInvertedElement(const Body& body, const Eigen::VectorXd& position);
 
 }  // namespace lacuna

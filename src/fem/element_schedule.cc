@@ -9,8 +9,6 @@
 namespace lacuna {
 namespace {
 
-constexpr int kElementsPerChunk = 128;
-
 // The bits of x, each followed by two zeros.
 uint64_t SpreadBits(uint64_t x) {
   x &= 0x1fffff;
@@ -22,7 +20,33 @@ uint64_t SpreadBits(uint64_t x) {
   return x;
 }
 
-std::vector<int> MortonOrder(const TetMesh& mesh) {
+// The lowest colour that no neighbouring chunk has. A node remembers 64 colours; a chunk that finds
+// all of them taken gets a colour of its own.
+std::vector<int> ColourChunks(const TetMesh& mesh) {
+  constexpr int kSize = ElementSchedule::kElementsPerChunk;
+  const int elements = static_cast<int>(mesh.TetCount());
+  const int chunks = (elements + kSize - 1) / kSize;
+  std::vector<uint64_t> taken_at_node(mesh.NodeCount(), 0);
+  std::vector<int> colour(chunks);
+  int next_own_colour = 64;
+  for (int c = 0; c < chunks; ++c) {
+    const auto tets = mesh.tets.middleCols(c * kSize, std::min(kSize, elements - c * kSize));
+    uint64_t taken = 0;
+    for (const int node : tets.reshaped()) taken |= taken_at_node[node];
+    if (taken == ~uint64_t{0}) {
+      colour[c] = next_own_colour++;
+      continue;
+    }
+    colour[c] = 0;
+    while (taken >> colour[c] & 1) ++colour[c];
+    for (const int node : tets.reshaped()) taken_at_node[node] |= uint64_t{1} << colour[c];
+  }
+  return colour;
+}
+
+}  // namespace
+
+std::vector<int> ElementsAlongCurve(const TetMesh& mesh) {
   const int elements = static_cast<int>(mesh.TetCount());
   const Eigen::Vector3d low = mesh.nodes.rowwise().minCoeff();
   const double extent = (mesh.nodes.rowwise().maxCoeff() - low).maxCoeff();
@@ -43,57 +67,19 @@ std::vector<int> MortonOrder(const TetMesh& mesh) {
   return order;
 }
 
-// The lowest colour that no neighbouring chunk has. A node remembers 64 colours; a chunk that finds
-// all of them taken gets a colour of its own.
-std::vector<int> ColourChunks(const TetMesh& mesh, const std::vector<int>& order) {
-  const int elements = static_cast<int>(order.size());
-  const int chunks = (elements + kElementsPerChunk - 1) / kElementsPerChunk;
-  std::vector<uint64_t> taken_at_node(mesh.NodeCount(), 0);
-  std::vector<int> colour(chunks);
-  int next_own_colour = 64;
-  for (int c = 0; c < chunks; ++c) {
-    const int begin = c * kElementsPerChunk;
-    const int end = std::min(elements, begin + kElementsPerChunk);
-    uint64_t taken = 0;
-    for (int i = begin; i < end; ++i) {
-      for (const int node : mesh.tets.col(order[i])) taken |= taken_at_node[node];
-    }
-    if (taken == ~uint64_t{0}) {
-      colour[c] = next_own_colour++;
-      continue;
-    }
-    colour[c] = 0;
-    while (taken >> colour[c] & 1) ++colour[c];
-    const uint64_t bit = uint64_t{1} << colour[c];
-    for (int i = begin; i < end; ++i) {
-      for (const int node : mesh.tets.col(order[i])) taken_at_node[node] |= bit;
-    }
-  }
-  return colour;
-}
-
-}  // namespace
-
 ElementSchedule MakeElementSchedule(const TetMesh& mesh, const BlockPattern& pattern) {
-  const std::vector<int> curve = MortonOrder(mesh);
-  const std::vector<int> colour = ColourChunks(mesh, curve);
+  const std::vector<int> colour = ColourChunks(mesh);
   const int chunks = static_cast<int>(colour.size());
-  std::vector<int> by_colour(chunks);
-  std::iota(by_colour.begin(), by_colour.end(), 0);
-  std::stable_sort(by_colour.begin(), by_colour.end(),
-                   [&](int a, int b) { return colour[a] < colour[b]; });
-
   ElementSchedule schedule;
-  schedule.order.reserve(curve.size());
-  schedule.chunk_begin.push_back(0);
+  schedule.elements = static_cast<int>(mesh.TetCount());
+  schedule.chunk.resize(chunks);
+  std::iota(schedule.chunk.begin(), schedule.chunk.end(), 0);
+  std::stable_sort(schedule.chunk.begin(), schedule.chunk.end(),
+                   [&](int a, int b) { return colour[a] < colour[b]; });
   for (int k = 0; k < chunks; ++k) {
-    const int chunk = by_colour[k];
-    if (k == 0 || colour[chunk] != colour[by_colour[k - 1]]) schedule.colour_begin.push_back(k);
-    const auto begin = curve.begin() + chunk * kElementsPerChunk;
-    const auto left = curve.end() - begin;
-    schedule.order.insert(schedule.order.end(), begin,
-                          begin + std::min<ptrdiff_t>(left, kElementsPerChunk));
-    schedule.chunk_begin.push_back(static_cast<int>(schedule.order.size()));
+    if (k == 0 || colour[schedule.chunk[k]] != colour[schedule.chunk[k - 1]]) {
+      schedule.colour_begin.push_back(k);
+    }
   }
   schedule.colour_begin.push_back(chunks);
 

@@ -1,14 +1,16 @@
 // The order in which the elements of a mesh are visited when they add into shared arrays.
 //
-// Elements are sorted along a space-filling curve and cut into chunks; chunks that share no node
-// get the same colour. Colours run one after another, the chunks of a colour at the same time, the
-// elements of a chunk one after another. So two threads never touch the same node, an element may
-// add straight into nodal vectors and matrix blocks, and each node meets its elements in the same
-// order for any number of threads: results are bit-identical.
+// Elements, sorted along a space-filling curve, are cut into chunks of consecutive ones; chunks
+// that share no node get the same colour. Colours run one after another, the chunks of a colour at
+// the same time, the elements of a chunk one after another. So two threads never touch the same
+// node, an element may add straight into nodal vectors and matrix blocks, and each node meets its
+// elements in the same order for any number of threads: results are bit-identical.
 #ifndef LACUNA_FEM_ELEMENT_SCHEDULE_H_
 #define LACUNA_FEM_ELEMENT_SCHEDULE_H_
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "core/parallel.h"
@@ -18,17 +20,25 @@
 namespace lacuna {
 
 struct ElementSchedule {
-  std::vector<int> order;         // element numbers along the curve
-  std::vector<int> chunk_begin;   // chunks + 1, positions in `order`; chunks sorted by colour
-  std::vector<int> colour_begin;  // colours + 1, chunk numbers
+  int elements = 0;
+  std::vector<int> chunk;         // chunk numbers, sorted by colour
+  std::vector<int> colour_begin;  // colours + 1, positions in `chunk`
   // Where block (a, b) of element e lies in the matrix: block[(e·n + a)·n + b], n nodes per
   // element.
   std::vector<int> block;
 
-  int ChunkCount() const { return static_cast<int>(chunk_begin.size()) - 1; }
+  static constexpr int kElementsPerChunk = 128;
+  int ChunkCount() const { return static_cast<int>(chunk.size()); }
   int ColourCount() const { return static_cast<int>(colour_begin.size()) - 1; }
+  int ChunkBegin(int c) const { return c * kElementsPerChunk; }
+  int ChunkEnd(int c) const { return std::min(elements, (c + 1) * kElementsPerChunk); }
 };
 
+// The element numbers sorted along the Morton curve of their centroids. Neighbours in space become
+// neighbours in memory: assembly is twice as fast as in the order that a mesh generator leaves.
+std::vector<int> ElementsAlongCurve(const TetMesh& mesh);
+
+// For elements in the order of `mesh`.
 ElementSchedule MakeElementSchedule(const TetMesh& mesh, const BlockPattern& pattern);
 
 // Calls visit(element) for each element, as described above.
@@ -37,10 +47,8 @@ void ForEachElement(const ElementSchedule& schedule, const Visit& visit) {
   for (int colour = 0; colour < schedule.ColourCount(); ++colour) {
     const int first = schedule.colour_begin[colour];
     ParallelFor(schedule.colour_begin[colour + 1] - first, 1, [&](int64_t k) {
-      const int chunk = first + static_cast<int>(k);
-      for (int i = schedule.chunk_begin[chunk]; i < schedule.chunk_begin[chunk + 1]; ++i) {
-        visit(schedule.order[i]);
-      }
+      const int chunk = schedule.chunk[first + k];
+      for (int e = schedule.ChunkBegin(chunk); e < schedule.ChunkEnd(chunk); ++e) visit(e);
     });
   }
 }
@@ -50,10 +58,10 @@ template <typename Value>
 double SumOverElements(const ElementSchedule& schedule, const Value& value) {
   std::vector<double> partial(schedule.ChunkCount(), 0.0);
   ParallelFor(schedule.ChunkCount(), 1, [&](int64_t chunk) {
+    const int begin = schedule.ChunkBegin(static_cast<int>(chunk));
+    const int end = schedule.ChunkEnd(static_cast<int>(chunk));
     double sum = 0;
-    for (int i = schedule.chunk_begin[chunk]; i < schedule.chunk_begin[chunk + 1]; ++i) {
-      sum += value(schedule.order[i]);
-    }
+    for (int e = begin; e < end; ++e) sum += value(e);
     partial[chunk] = sum;
   });
   double total = 0;

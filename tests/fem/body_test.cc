@@ -102,17 +102,32 @@ TEST(ElementSchedule, VisitsEachElementOnceAndSharesNoNodeWithinAColour) {
   const ElementSchedule& schedule = *body.schedule;
   EXPECT_GT(schedule.ChunkCount(), 4);
   std::vector<int> visits(body.ElementCount(), 0);
-  for (const int e : schedule.order) ++visits[e];
+  ForEachElement(schedule, [&](int e) { ++visits[e]; });
   EXPECT_THAT(visits, testing::Each(1));
+  EXPECT_EQ(SumOverElements(schedule, [](int e) { return e; }),
+            0.5 * body.ElementCount() * (body.ElementCount() - 1));
   for (int colour = 0; colour < schedule.ColourCount(); ++colour) {
     std::set<int> nodes_of_others;
-    for (int c = schedule.colour_begin[colour]; c < schedule.colour_begin[colour + 1]; ++c) {
+    for (int k = schedule.colour_begin[colour]; k < schedule.colour_begin[colour + 1]; ++k) {
       std::set<int> nodes;
-      for (int i = schedule.chunk_begin[c]; i < schedule.chunk_begin[c + 1]; ++i) {
-        for (const int node : body.mesh.tets.col(schedule.order[i])) nodes.insert(node);
+      for (int e = schedule.ChunkBegin(schedule.chunk[k]); e < schedule.ChunkEnd(schedule.chunk[k]);
+           ++e) {
+        for (const int node : body.mesh.tets.col(e)) nodes.insert(node);
       }
       for (const int node : nodes) EXPECT_TRUE(nodes_of_others.insert(node).second);
     }
+  }
+}
+
+TEST(Body, RemembersTheNumbersOfTheGivenElements) {
+  const TetMesh mesh = JitteredBox(2);
+  const Body body = MakeBody(mesh, 1);
+  EXPECT_EQ(body.mesh.nodes, mesh.nodes);
+  EXPECT_NE(body.mesh.tets, mesh.tets) << "sorted by place";
+  EXPECT_THAT(std::set<int>(body.given_element.begin(), body.given_element.end()),
+              testing::SizeIs(body.ElementCount()));
+  for (int e = 0; e < body.ElementCount(); ++e) {
+    EXPECT_EQ(body.mesh.tets.col(e), mesh.tets.col(body.given_element[e]));
   }
 }
 
@@ -170,12 +185,12 @@ TEST(Body, FindsAnInvertedElement) {
   const Body body = MakeBody(JitteredBox(1), 1);
   Eigen::VectorXd position = body.mesh.nodes.reshaped();
   EXPECT_EQ(FindInvertedElement(body, position), -1);
-  const int node = body.mesh.tets(0, 17);
-  const Eigen::Vector3d across = body.mesh.nodes.col(body.mesh.tets(1, 17)) +
-                                 body.mesh.nodes.col(body.mesh.tets(2, 17)) -
-                                 body.mesh.nodes.col(node);
-  position.segment<3>(3 * node) = across + 2 * (across - body.mesh.nodes.col(node));
-  EXPECT_GE(FindInvertedElement(body, position), 0);
+  // One node far away turns some of its elements over, and no others.
+  const int node = 100;
+  position.segment<3>(3 * node) += Eigen::Vector3d(0.5, 0.3, 0.2);
+  const int inverted = FindInvertedElement(body, position);
+  ASSERT_GE(inverted, 0);
+  EXPECT_THAT(JitteredBox(1).tets.col(inverted), testing::Contains(node));
 }
 
 }  // namespace
