@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -59,7 +60,7 @@ Eigen::VectorXd LineLoad(const TetMesh& mesh, int cells) {
 
 struct Comparison {
   double rms = 0;        // m, over the three points of the three load cases
-  double tip_error = 0;  // of the largest tip deflection, relative
+  double tip_error = 0;  // the largest, relative to the point's displacement
   std::string table;     // one line per point, mm
 };
 
@@ -89,7 +90,8 @@ Comparison Compare(const std::string& law, int cells,
     EXPECT_EQ(node.size(), 1) << "the mesh has a node at each reference point";
     const Eigen::Vector3d found = solved[point.force].segment<3>(3 * node[0]);
     sum += (found - point.moved).squaredNorm();
-    comparison.tip_error = (found - point.moved).norm() / (point.moved - point.rest).norm();
+    comparison.tip_error = std::max(
+        comparison.tip_error, (found - point.moved).norm() / (point.moved - point.rest).norm());
     comparison.table += fmt::format(
         "{:20} {:8.5f} N  ({:7.3f} {:7.3f} {:7.3f}) mm, reference ({:7.3f} {:7.3f} {:7.3f}), "
         "off by {:.3f}\n",
@@ -111,12 +113,15 @@ TEST(SiliconeBeam, SagsAsAnotherCodeSays) {
   ASSERT_EQ(reference.size(), 9u);
 
   // 5 cells put nodes at all reference points. At ν = 0.499 the deflection still grows by some 2 %
-  // from here to the limit of fine meshes.
+  // from here to the limit of fine meshes: with 8 cells the middle of the upper edge is off by
+  // 0.03, 0.12 and 0.07 mm in the three load cases, of deflections of 7, 17 and 28 mm.
   const Comparison rubber = Compare("neo_hookean", 5, reference);
   std::printf("%s", rubber.table.c_str());
   EXPECT_LT(rubber.tip_error, 0.025);
-  // What material COMSOL was told is not on record; of our laws the neo-Hookean fits best.
-  for (const std::string law : {"linear", "corotational", "st_venant_kirchhoff"}) {
+  // What material COMSOL was told is not on record. Sag tells the laws apart little, but under the
+  // larger load the tip moves forward by 2.00 mm in the reference and, with 8 cells, by 1.94 mm in
+  // the neo-Hookean, 1.78 in the corotational and 1.53 in the St. Venant–Kirchhoff law.
+  for (const std::string law : {"corotational", "st_venant_kirchhoff"}) {
     const Comparison other = Compare(law, 5, reference);
     std::printf("%-20s rms %.3f mm, neo_hookean %.3f mm\n", law.c_str(), 1e3 * other.rms,
                 1e3 * rubber.rms);

@@ -28,7 +28,8 @@ struct CheckEffectOptions {
 //    both weights, and are not simply zero; they add into what is there, in proportion to the
 //    weight;
 //  - the stand-in of `convexify` is symmetric and definite;
-//  - forces and torques sum to zero where the card says so, and then do no work in a rigid motion;
+//  - forces and torques sum to zero where the card says so; then the forces are the same, but
+//    turned, in a frame that is turned, shifted and spinning;
 //  - forces and tangents are bit-identical for one and for two threads.
 void CheckEffect(Effect* effect, const CheckEffectOptions& options = {});
 
