@@ -113,7 +113,7 @@ Eigen::Isometry3d ReadPose(const Config& config, const std::string& key, double 
   }
   using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
   const Eigen::Matrix4d matrix = Eigen::Map<const RowMajor>(numbers.data());
-  const auto rotation = NearestRotation(matrix.topLeftCorner<3, 3>());
+  const auto rotation = RotationUpToRounding(matrix.topLeftCorner<3, 3>());
   if (!rotation || matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     config.Fail(key,
                 "is not a rigid motion: an orthonormal 3 × 3 block of determinant 1, a "

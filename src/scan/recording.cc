@@ -278,6 +278,10 @@ std::string DescribeRecording(const Recording& recording) {
                          Millimetres(correction.translation), correction.angle * 180 / M_PI,
                          Millimetres(correction.rms_before), Millimetres(correction.rms_after))
                    : "; " + correction.message;
+      if (correction.applied && correction.free_directions > 0) {
+        value +=
+            fmt::format(", {} of 6 directions of motion left as given", correction.free_directions);
+      }
     }
     line("camera", value);
   }

@@ -61,6 +61,8 @@ std::optional<AlignmentOptions> ReadAlignment(const Config& frames) {
       config->Quantity("max_angle", kAngle, {0, 1.5, true, false}, options.max_angle);
   options.sweeps = config->Integer("sweeps", 1, 100, options.sweeps);
   options.iterations = config->Integer("iterations", 1, 10'000, options.iterations);
+  options.min_stiffness =
+      config->Number("min_stiffness", {0, 1, true, true}, options.min_stiffness);
   options.min_pairs = config->Integer("min_pairs", 6, 10'000'000, options.min_pairs);
   return options;
 }

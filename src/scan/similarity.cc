@@ -30,7 +30,7 @@ std::string ReadLengthUnit(const Config& config, const std::string& default_unit
   return "m";
 }
 
-std::optional<Eigen::Matrix3d> NearestRotation(const Eigen::Matrix3d& matrix) {
+std::optional<Eigen::Matrix3d> RotationUpToRounding(const Eigen::Matrix3d& matrix) {
   constexpr double kRounding = 1e-4;  // of matrices written with five or more digits
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
@@ -49,7 +49,7 @@ Similarity ReadSimilarity(const Config& config, double length_unit) {
                   fmt::format("got {} numbers; expected nine, row by row", numbers.size()));
     }
     using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    const auto rotation = NearestRotation(Eigen::Map<const RowMajor>(numbers.data()));
+    const auto rotation = RotationUpToRounding(Eigen::Map<const RowMajor>(numbers.data()));
     if (!rotation) config.Fail("matrix", "is not a rotation (orthonormal rows, determinant 1)");
     similarity.rotation = *rotation;
     if (config.Has("axis") || config.Has("angle")) {

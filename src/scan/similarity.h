@@ -36,7 +36,7 @@ Similarity ReadSimilarity(const Config& config, double length_unit);
 std::optional<Similarity> ReadTransform(const Config& config, double length_unit);
 
 // The nearest rotation to `matrix`; nothing when it is further than 1e-4 from one or a reflection.
-std::optional<Eigen::Matrix3d> NearestRotation(const Eigen::Matrix3d& matrix);
+std::optional<Eigen::Matrix3d> RotationUpToRounding(const Eigen::Matrix3d& matrix);
 
 }  // namespace lacuna
 
