@@ -1,0 +1,178 @@
+#include "registration/drift.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "registration/basis_table.h"
+#include "registration/block_tree.h"
+#include "registration/motion_step.h"
+#include "registration/rigidity.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kFewestOutliers = 1e-3;
+constexpr double kMostOutliers = 0.8;
+
+// Spread over the target's bounding box; a flat target is given some thickness.
+double OutlierVolume(const Eigen::Matrix3Xd& target) {
+  const Eigen::Vector3d extent = target.rowwise().maxCoeff() - target.rowwise().minCoeff();
+  constexpr double kLeastThickness = 0.1;
+  return extent.cwiseMax(kLeastThickness * std::max(extent.maxCoeff(), 1e-3)).prod();
+}
+
+// b / σ² of motion_step.h, measured at a σ that is small but sees neighbours.
+Eigen::VectorXd CurvatureBias(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xd& normals,
+                              double sigma, const CpdOptions& options) {
+  const BlockTree queries(points);
+  BlockTree candidates(points);
+  const Posterior self =
+      ComputePosterior(queries, {sigma, 0.0, 1.0, options.cutoff}, *options.kernels, &candidates);
+  return self.shift.cast<double>().cwiseProduct(normals).colwise().sum().transpose() /
+         (sigma * sigma);
+}
+
+// The factor of a Hessian (lower half) that is positive definite but for the rounding of the single
+// precision that it was summed in.
+Eigen::LLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd hessian) {
+  Eigen::LLT<Eigen::MatrixXd> factor(hessian.selfadjointView<Eigen::Lower>());
+  for (double shift = 1e-7; factor.info() != Eigen::Success && shift < 1.0; shift *= 10.0) {
+    hessian.diagonal().array() += shift * hessian.diagonal().maxCoeff();
+    factor.compute(hessian.selfadjointView<Eigen::Lower>());
+  }
+  return factor;
+}
+
+// How much wider the prior of the motion would have to be for the motion found to be an ordinary
+// one: s² = N (λ |c|² + 2 μ E(c)) / 3K, the mean of a χ² (an empirical Bayes estimate). Without it
+// the uncertainty of what the data leaves open would not know a large motion from a small one.
+double PriorScale(const Patches& patches, const Eigen::Matrix3Xd& coefficients, double target_count,
+                  const CpdOptions& options) {
+  double strain = 0.0;
+  for (const Eigen::Matrix3d& f : DeformationGradients(patches, coefficients)) {
+    strain += (f - NearestRotation(f)).squaredNorm() / patches.Count();
+  }
+  const double energy = options.lambda * coefficients.squaredNorm() + options.rigidity * strain;
+  constexpr double kStillPrior = 1e-4;  // a motion of nothing at all is not certain either
+  return std::max(kStillPrior, target_count * energy / static_cast<double>(coefficients.size()));
+}
+
+// The covariance of the coefficients, summed over the axes (K × K): the inverse of the Hessian of
+// the negative log posterior, of which the objective is σ² times, with the prior as wide as it was
+// found.
+Eigen::MatrixXd Covariance(const SourceSurface& surface, const Pull& pull,
+                           const Eigen::MatrixXd& rigidity_hessian, double sigma,
+                           double target_count, double prior_scale, const CpdOptions& options) {
+  const double prior = sigma * sigma * target_count / prior_scale;
+  const MotionObjective objective = {options.tangential_weight, prior * options.lambda,
+                                     prior * options.rigidity};
+  const Eigen::LLT<Eigen::MatrixXd> hessian =
+      Factor(MotionHessian(surface, pull, rigidity_hessian, objective));
+  const Eigen::Index rank = rigidity_hessian.rows() / 3;
+  const Eigen::MatrixXd inverse = hessian.solve(Eigen::MatrixXd::Identity(3 * rank, 3 * rank));
+  return sigma * sigma *
+         (inverse.topLeftCorner(rank, rank) + inverse.block(rank, rank, rank, rank) +
+          inverse.bottomRightCorner(rank, rank));
+}
+
+// The variance that the prior is weighed against. The distances that the motion leaves along the
+// normals tell how far a point may be trusted: clean scans less prior, noisy ones more than σ²
+// alone, which cannot fall below the spacing, would give them.
+double PriorVariance(double sigma, double residual) {
+  constexpr double kResidualShare = 4.4;  // tuned: residual / σ is about 0.06 clean, 0.23 noisy
+  constexpr double kLeast = 0.05, kMost = 2.0;
+  return sigma * sigma * std::clamp(kResidualShare * residual / sigma, kLeast, kMost);
+}
+
+// In the surface Σ p |d|² / Σ p is 2 σ² whatever σ is; what is left is the spread along the normal.
+double NormalSpread(const Posterior& posterior, double sigma) {
+  return std::sqrt(
+      std::max(0.0, posterior.total_spread / posterior.total_weight - 2.0 * sigma * sigma));
+}
+
+}  // namespace
+
+void RunLevel(const NormalisedClouds& clouds, const Level& level, const GaussianBasis& basis,
+              const CpdOptions& options, Drift* drift) {
+  const Eigen::Matrix3Xd rest = EveryNth(clouds.source, level.source_stride);
+  const Eigen::Matrix3Xf rest_single = rest.cast<float>();
+  BlockTree source(rest_single);
+  BlockTree target(EveryNth(clouds.target, level.target_stride).cast<float>());
+  const double target_count = static_cast<double>(target.Size());
+  const double volume = OutlierVolume(clouds.target);
+  const double spacing =
+      clouds.source_spacing * std::sqrt(static_cast<double>(level.source_stride));
+  const double tolerance = (level.is_last ? 1.0 : 10.0) * options.tolerance * spacing;
+
+  const BasisTable table(basis, source, *options.kernels);
+  SourceSurface surface;
+  surface.normals = EveryNth(clouds.source_normals, level.source_stride);
+  surface.curvature_bias = CurvatureBias(rest_single, surface.normals, 1.5 * level.floor, options);
+  surface.patches = MakePatches(basis, rest);
+  const Eigen::MatrixXd rigidity_hessian = RigidityHessian(surface.patches);
+
+  const int rank = basis.Rank();
+  Eigen::Matrix3Xd coefficients = drift->coefficients.leftCols(rank);
+  Eigen::Matrix3Xf displacement = table.Expand(coefficients);
+  MotionObjective objective;
+  Pull pull;
+  Eigen::LLT<Eigen::MatrixXd> hessian;
+  double factor_sigma = 0.0;
+  int factor_age = 0;
+  double sigma = drift->sigma;
+  drift->converged = false;
+  for (int k = 0; k < options.max_iterations && !drift->converged; ++k) {
+    ++drift->iterations;
+    sigma = drift->sigma;
+    source.Move(rest_single + displacement);
+    const double outliers = std::clamp(drift->outlier_weight, kFewestOutliers, kMostOutliers);
+    drift->posterior = ComputePosterior(source, {sigma, outliers, volume, options.cutoff},
+                                        *options.kernels, &target);
+    drift->has_overlap = drift->posterior.total_weight > std::max(3.0, 0.01 * target_count);
+    if (!drift->has_overlap) return;
+
+    const std::vector<Eigen::Matrix3d> gradients =
+        DeformationGradients(surface.patches, coefficients);
+    objective.tangential_weight = options.tangential_weight;
+    pull = PullOf(surface, gradients, drift->posterior, sigma, objective);
+    const double prior = target_count * PriorVariance(sigma, pull.residual);
+    objective.coherence = prior * options.lambda;
+    objective.rigidity = prior * options.rigidity;
+    // The Hessian sets the pace only, so that an old factor will do for a few steps.
+    constexpr int kOldestFactor = 4;
+    if (factor_age == kOldestFactor || std::abs(sigma - factor_sigma) > 0.1 * sigma) {
+      factor_sigma = sigma;
+      factor_age = 0;
+      hessian = Factor(MotionHessian(surface, pull, rigidity_hessian, objective));
+    }
+    ++factor_age;
+    coefficients += MotionStep(surface, table, pull, coefficients, gradients, objective, hessian);
+    const Eigen::Matrix3Xf moved = table.Expand(coefficients);
+    const double change =
+        std::sqrt((moved - displacement).squaredNorm() / static_cast<double>(rest.cols()));
+    displacement = moved;
+
+    constexpr double kFastest = 0.7;
+    drift->noise = NormalSpread(drift->posterior, sigma);
+    drift->sigma = std::max(level.floor, std::clamp(drift->noise, kFastest * sigma, sigma));
+    if (options.estimate_outlier_weight) {
+      drift->outlier_weight = 1.0 - drift->posterior.total_weight / target_count;
+    }
+    if (options.progress) {
+      options.progress({drift->iterations, static_cast<int>(rest.cols()),
+                        static_cast<int>(clouds.source.cols()), clouds.scale * drift->sigma,
+                        clouds.scale * change});
+    }
+    drift->converged = drift->sigma > 0.97 * sigma && change < tolerance;
+  }
+  drift->coefficients.leftCols(rank) = coefficients;
+  if (!level.is_last) return;
+  drift->displacement = displacement;
+  drift->prior_scale = PriorScale(surface.patches, coefficients, target_count, options);
+  drift->covariance =
+      Covariance(surface, pull, rigidity_hessian, sigma, target_count, drift->prior_scale, options);
+}
+
+}  // namespace lacuna
