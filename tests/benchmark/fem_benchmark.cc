@@ -17,7 +17,10 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <memory>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -36,8 +39,8 @@ namespace {
 
 constexpr double kTimeStep = 0.01;     // s
 constexpr int kStepsPerReversal = 12;  // of the strong field's direction
-constexpr int kComparedSteps = 8;      // with the direct solution
-constexpr int kReferenceRuns = 5;      // of CHOLMOD, before and after the motion
+constexpr int kComparedSteps = 4;      // with the direct solution
+constexpr int kReferenceRuns = 3;      // of CHOLMOD, before and after the motion
 
 struct Time {
   double wall = 0, cpu = 0;  // s
@@ -316,11 +319,14 @@ int main(int argc, char** argv) {
   lacuna::UseFastBlasKernels(argv);
   int steps = 60;
   double tolerance = 1e-8;
+  std::vector<int> thread_counts = {1, 2};
   std::vector<std::string> meshes;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     if (word == "--steps" && k + 1 < argc) {
       steps = std::max(1, std::atoi(argv[++k]));
+    } else if (word == "--threads" && k + 1 < argc) {
+      thread_counts = {std::max(1, std::atoi(argv[++k]))};
     } else if (word == "--tolerance" && k + 1 < argc) {
       tolerance = std::atof(argv[++k]);
     } else {
@@ -328,7 +334,7 @@ int main(int argc, char** argv) {
     }
   }
   if (meshes.empty()) {
-    std::cerr << "usage: fem_benchmark [--steps 60] [--tolerance 1e-8] MESH...\n";
+    std::cerr << "usage: fem_benchmark [--steps 60] [--threads 1|2] [--tolerance 1e-8] MESH...\n";
     return 2;
   }
   fmt::print("BLAS kernels: {}; tolerance {:.0e}\n\n", lacuna::BlasKernelName(), tolerance);
@@ -336,7 +342,7 @@ int main(int argc, char** argv) {
   bool good = true;
   for (const std::string& mesh : meshes) {
     for (const lacuna::Motion& motion : lacuna::kMotions) {
-      for (const int threads : {1, 2}) {
+      for (const int threads : thread_counts) {
         good = lacuna::RunInChild(mesh, motion, threads, steps, tolerance) && good;
       }
     }
