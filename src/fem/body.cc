@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "fem/element_kinematics.h"
 #include "fem/shape_functions.h"
 
 namespace lacuna {
@@ -88,6 +89,18 @@ Eigen::VectorXd LumpedMass(const Body& body) {
   return mass;
 }
 
+template <int kNodes>
+int FirstInverted(const Body& body, const Eigen::VectorXd& position) {
+  for (int e = 0; e < body.ElementCount(); ++e) {
+    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, e, position);
+    for (int q = e * body.points_per_element; q < (e + 1) * body.points_per_element; ++q) {
+      const Eigen::Matrix3d F = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q));
+      if (!(F.determinant() > 0)) return body.given_element[e];
+    }
+  }
+  return -1;
+}
+
 }  // namespace
 
 Body MakeBody(const TetMesh& mesh, double density) {
@@ -111,16 +124,8 @@ Body MakeBody(const TetMesh& mesh, double density) {
 }
 
 int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
-  const int nodes = static_cast<int>(body.mesh.tets.rows());
-  Eigen::Matrix3Xd x(3, nodes);
-  for (int e = 0; e < body.ElementCount(); ++e) {
-    for (int a = 0; a < nodes; ++a) x.col(a) = position.segment<3>(3 * body.mesh.tets(a, e));
-    for (int q = e * body.points_per_element; q < (e + 1) * body.points_per_element; ++q) {
-      const Eigen::Matrix3d F = x * body.shape_gradient.middleCols<3>(3 * q);
-      if (!(F.determinant() > 0)) return body.given_element[e];
-    }
-  }
-  return -1;
+  return body.mesh.Order() == 1 ? FirstInverted<4>(body, position)
+                                : FirstInverted<10>(body, position);
 }
 
 }  // namespace lacuna

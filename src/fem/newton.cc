@@ -70,6 +70,7 @@ class Newton {
 
   bool IsConverged(const Iterate& at) const {
     const double norm = at.residual.norm();
+    if (!std::isfinite(norm) || !std::isfinite(at.force_scale)) return false;
     return norm <= problem_.relative_tolerance * at.force_scale ||
            (std::isfinite(rounding_) && norm <= rounding_);
   }
