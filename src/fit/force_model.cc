@@ -72,6 +72,16 @@ ForceModel FootprintForce(const Body& body, const Eigen::VectorXi& nodes, double
   return model;
 }
 
+ForceModel NodalForces(const Body& body, const Eigen::VectorXi& nodes, double force_scale) {
+  ForceModel model = NoForces(body);
+  Triplets entries;
+  for (Eigen::Index i = 0; i < nodes.size(); ++i)
+    for (int k = 0; k < 3; ++k) entries.emplace_back(3 * nodes[i] + k, 3 * i + k, force_scale);
+  model.basis.resize(3 * body.NodeCount(), 3 * nodes.size());
+  model.basis.setFromTriplets(entries.begin(), entries.end());
+  return model;
+}
+
 ForceModel SmoothForces(const Body& body, const Eigen::VectorXi& nodes, double length,
                         double traction_scale) {
   CHECK_GT(length, 0);

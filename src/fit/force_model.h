@@ -36,6 +36,10 @@ ForceModel FreeForces(const Body& body, const Eigen::VectorXi& nodes);
 // coefficients, each of `force_scale`, N): a contact whose footprint is known.
 ForceModel FootprintForce(const Body& body, const Eigen::VectorXi& nodes, double force_scale);
 
+// One force of its own at each of `nodes` (three coefficients each, of `force_scale`, N): as
+// FreeForces, but few enough to be coefficients, and with a prior in newtons.
+ForceModel NodalForces(const Body& body, const Eigen::VectorXi& nodes, double force_scale);
+
 // A smooth traction field over the boundary vertices among `nodes`: a Gaussian random field of
 // standard deviation `traction_scale` (Pa) and correlation length `length` (m), spanned by the
 // pivoted Cholesky factor of its covariance up to 0.1 % of the variance.

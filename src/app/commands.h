@@ -1,0 +1,22 @@
+// The commands of the program. Each adds itself to the command line and, when it is the one that
+// was given, becomes `*command`, which returns the exit status.
+#ifndef LACUNA_APP_COMMANDS_H_
+#define LACUNA_APP_COMMANDS_H_
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace lacuna {
+
+void AddReconstruct(CLI::App* app, std::function<int()>* command);
+void AddSimulate(CLI::App* app, std::function<int()>* command);
+void AddInfo(CLI::App* app, std::function<int()>* command);
+void AddValidate(CLI::App* app, std::function<int()>* command);
+void AddEffects(CLI::App* app, std::function<int()>* command);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_APP_COMMANDS_H_

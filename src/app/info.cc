@@ -1,0 +1,104 @@
+// lacuna info FILE
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "app/commands.h"
+#include "core/error.h"
+#include "geometry/mesh_io.h"
+#include "geometry/surface_check.h"
+#include "meshing/tet_quality.h"
+#include "record/manifest.h"
+#include "record/run_directory.h"
+#include "record/run_record.h"
+#include "scan/recording.h"
+
+namespace lacuna {
+namespace {
+
+void DescribeSurface(const std::filesystem::path& file) {
+  const TriMeshFile read = ReadTriMesh(file);
+  const SurfaceReport report = CheckSurface(read.mesh);
+  const Eigen::AlignedBox3d box = BoundingBox(read.mesh.vertices);
+  const auto say = [](bool yes) { return yes ? "yes" : "no"; };
+  fmt::print("{}: a surface\n  vertices {}, triangles {}, components {}\n", file.string(),
+             report.vertices, report.triangles, report.components);
+  fmt::print("  size {:.6g} x {:.6g} x {:.6g} in the file's own unit, area {:.6g}, volume {:.6g}\n",
+             box.sizes()[0], box.sizes()[1], box.sizes()[2], report.area, report.volume);
+  fmt::print("  edges {:.4g} to {:.4g}, mean {:.4g}; smallest angle {:.1f} deg\n", report.min_edge,
+             report.max_edge, report.mean_edge, report.min_angle * 180 / M_PI);
+  fmt::print("  closed {}, manifold {}, consistently oriented {}, free of self-intersections {}\n",
+             say(report.IsClosed()), say(report.IsManifold()), say(report.IsOriented()),
+             say(report.IsFreeOfIntersections()));
+  for (const std::string& note : read.notes) fmt::print("  note: {}\n", note);
+}
+
+void DescribeTets(const std::filesystem::path& file) {
+  const TetMeshFile read = ReadTetMesh(file);
+  const TetQuality quality = MeasureTets(read.mesh);
+  fmt::print("{}: a tetrahedral mesh of order {}\n", file.string(), read.mesh.Order());
+  fmt::print("  nodes {}, tetrahedra {}, volume {:.6g} in the file's own unit cubed\n",
+             read.mesh.NodeCount(), quality.tets, quality.total_volume);
+  fmt::print(
+      "  radius-edge ratio {:.3f} mean, {:.3f} worst; dihedral angles {:.1f} to {:.1f} deg\n",
+      quality.radius_edge_ratio.mean, quality.radius_edge_ratio.max,
+      quality.min_dihedral_angle * 180 / M_PI, quality.max_dihedral_angle * 180 / M_PI);
+  for (const std::string& note : read.notes) fmt::print("  note: {}\n", note);
+}
+
+void DescribeRun(const std::filesystem::path& folder) {
+  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  fmt::print("{}: a run, {}\n  by lacuna {}, seed {}, {} input files\n", folder.string(),
+             manifest.finished ? "finished" : "not finished (run the same command to resume)",
+             manifest.program_version, manifest.seed, manifest.inputs.size());
+  for (const auto& [stage, result] : manifest.stages)
+    fmt::print("  stage {:10} {} files\n", stage, result.files.size());
+  if (!manifest.finished) return;
+  const RunRecord record = LoadRunRecord(FinishedStage(folder, "results"));
+  fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
+             record.frames.size(), record.mesh.node_count, record.mesh.tet_count,
+             record.mesh.order);
+  fmt::print("  |D_anim| {:.4g} m; usable: {}\n", record.animation_residual,
+             record.IsUsable() ? "yes" : "no");
+  for (const auto& [name, value] : record.measures) fmt::print("  {:30} {:.6g}\n", name, value);
+  for (const std::string& warning : record.warnings) fmt::print("  warning: {}\n", warning);
+}
+
+int Info(const std::filesystem::path& path) {
+  constexpr std::array kSurfaces{".ply", ".obj", ".stl", ".off"};
+  constexpr std::array kTets{".msh", ".node", ".ele", ".mesh", ".tet", ".txt"};
+  const std::string extension = path.extension().string();
+  const auto is_in = [&](const auto& list) {
+    return std::find(list.begin(), list.end(), extension) != list.end();
+  };
+  if (!std::filesystem::exists(path))
+    throw InputError(SourcePosition{path.string()}, "there is no such file or folder");
+  if (std::filesystem::exists(path / "manifest.json")) {
+    DescribeRun(path);
+  } else if (std::filesystem::is_directory(path) || extension == ".yaml") {
+    fmt::print("{}", DescribeRecording(LoadRecording(path)));
+  } else if (is_in(kSurfaces)) {
+    DescribeSurface(path);
+  } else if (is_in(kTets)) {
+    DescribeTets(path);
+  } else {
+    throw InputError(SourcePosition{path.string()},
+                     "is neither a recording, a run nor a mesh that Lacuna knows");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddInfo(CLI::App* app, std::function<int()>* command) {
+  CLI::App* info = app->add_subcommand("info", "Tell what a recording, a mesh or a run holds");
+  auto path = std::make_shared<std::string>();
+  info->add_option("file", *path, "A recording (its folder or recording.yaml), a mesh, or a run")
+      ->required();
+  info->callback([command, path] { *command = [path] { return Info(*path); }; });
+}
+
+}  // namespace lacuna

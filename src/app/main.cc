@@ -1,0 +1,78 @@
+// lacuna: one small function per command; here the command line and the three kinds of failure.
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+
+#include "app/commands.h"
+#include "core/blas_kernels.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/logging.h"
+#include "core/parallel.h"
+#include "record/library_versions.h"
+
+namespace {
+
+constexpr char kFooter[] = R"(Start here:
+  lacuna validate experiments/bend.yaml        check a file without running it
+  lacuna reconstruct experiments/bend.yaml     scans -> model with forces; results/bend
+  lacuna info experiments/recordings/bend      what a recording, mesh or run holds
+  lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
+  lacuna effects                               what physics a model can have
+
+Exit status: 0 done; 1 a result is not usable (the record says why); 2 unusable input;
+130 stopped by Ctrl-C (run the same command again to resume).)";
+
+constexpr int kUnusableInput = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  lacuna::UseFastBlasKernels(argv);
+  lacuna::InitialiseLogging(argv[0]);
+  lacuna::InstallInterruptHandler();
+
+  CLI::App app{
+      "Turns recordings of a deforming soft object into a finite-element model that moves like "
+      "it."};
+  app.footer(kFooter);
+  app.set_version_flag("--version", lacuna::ProgramVersion());
+  app.require_subcommand(1);
+  int threads = 0;
+  bool verbose = false;
+  app.add_option("--threads", threads, "Threads to use; results do not depend on it")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("-v,--verbose", verbose, "Log what the stages do");
+
+  std::function<int()> command;
+  lacuna::AddReconstruct(&app, &command);
+  lacuna::AddSimulate(&app, &command);
+  lacuna::AddInfo(&app, &command);
+  lacuna::AddValidate(&app, &command);
+  lacuna::AddEffects(&app, &command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? 0 : kUnusableInput;
+  }
+  if (threads > 0) lacuna::SetThreadCount(threads);
+  if (verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);
+
+  try {
+    return command();
+  } catch (const lacuna::InputError& problem) {
+    fmt::print(stderr, "lacuna: {}\n", problem.what());
+    return kUnusableInput;
+  } catch (const lacuna::Interrupted& interrupted) {
+    fmt::print(stderr, "lacuna: stopped; run the same command again to resume\n");
+    return interrupted.ExitCode();
+  } catch (const std::exception& problem) {
+    fmt::print(stderr, "lacuna: {}\n", problem.what());
+    return kUnusableInput;
+  }
+}

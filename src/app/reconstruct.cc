@@ -1,0 +1,70 @@
+// lacuna reconstruct EXPERIMENT
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "app/commands.h"
+#include "study/reconstruction.h"
+
+namespace lacuna {
+namespace {
+
+std::string Length(double metres) {
+  return std::isnan(metres) ? "-" : fmt::format("{:.3f} mm", 1e3 * metres);
+}
+
+void PrintFrames(const RunRecord& record) {
+  fmt::print(
+      "\n  frame    time s   |D| m      |D| per point   scan to surface: mean   max"
+      "         force N   fit\n");
+  for (const FrameRecord& frame : record.frames) {
+    fmt::print("  {:5} {:9.3f}   {:<9.4g}  {:>13}   {:>21} {:>9}   {:9.4g}   {}\n", frame.frame,
+               frame.time, frame.residual, Length(frame.residual_mean),
+               Length(frame.surface_distance_mean), Length(frame.surface_distance_max),
+               frame.force_resultant.norm(), frame.solver.status);
+  }
+}
+
+void PrintSummary(const RunRecord& record, const std::filesystem::path& output) {
+  fmt::print(
+      "\n|D_anim| (Eq. 2)  {:.4g} m, {} per point and frame, {:.3f} % of the object's size\n",
+      record.animation_residual, Length(record.relative_animation_residual * record.object_size),
+      100 * record.relative_animation_residual);
+  for (const auto& [name, value] : record.measures) fmt::print("{:32} {:.6g}\n", name, value);
+  for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
+  const std::filesystem::path results = output / "results";
+  fmt::print(
+      "\nThe run lies in {}\n"
+      "  results/record.json, frames.csv         the numbers\n"
+      "  results/body.pvd, surface.pvd, scan.pvd  open in ParaView\n"
+      "  manifest.json                            what was run, on which inputs\n",
+      output.string());
+}
+
+int Reconstruct(const std::string& file) {
+  const ReconstructionStudy study = ReadReconstruction(Config::Load(file));
+  for (const std::string& warning : study.recording.warnings)
+    fmt::print(stderr, "warning: {}\n", warning);
+  Progress progress;
+  const RunRecord record = RunReconstruction(study, &progress);
+  PrintFrames(record);
+  PrintSummary(record, study.output);
+  return record.IsUsable() ? 0 : 1;
+}
+
+}  // namespace
+
+void AddReconstruct(CLI::App* app, std::function<int()>* command) {
+  CLI::App* reconstruct =
+      app->add_subcommand("reconstruct", "From a recording to a model with per-step forces");
+  reconstruct->footer(
+      "The experiment file names a recording and says how to mesh, what material, which forces;\n"
+      "experiments/bend.yaml is one with every key explained. Run again, it resumes by stage.");
+  auto file = std::make_shared<std::string>();
+  reconstruct->add_option("experiment", *file, "The experiment's YAML file")->required();
+  reconstruct->callback([command, file] { *command = [file] { return Reconstruct(*file); }; });
+}
+
+}  // namespace lacuna

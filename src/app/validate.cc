@@ -1,0 +1,55 @@
+// lacuna validate FILE
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "scan/recording.h"
+#include "study/reconstruction.h"
+#include "study/scene.h"
+
+namespace lacuna {
+namespace {
+
+int Validate(const std::filesystem::path& path, bool show) {
+  nlohmann::json resolved;
+  if (std::filesystem::is_directory(path) || path.filename() == "recording.yaml") {
+    const Recording recording = LoadRecording(path);
+    for (int frame = 0; frame < recording.FrameCount(); ++frame) LoadFrame(recording, frame);
+    for (const std::string& warning : recording.warnings) fmt::print("warning: {}\n", warning);
+    fmt::print("{}: a sound recording of {} frames\n", path.string(), recording.FrameCount());
+    resolved = nlohmann::json::parse(recording.resolved);
+  } else {
+    const Config config = Config::Load(path);
+    if (config.Has("bar")) {
+      ReadScene(config);
+      fmt::print("{}: a sound scene\n", path.string());
+    } else {
+      const ReconstructionStudy study = ReadReconstruction(config);
+      for (const std::string& warning : study.recording.warnings)
+        fmt::print("warning: {}\n", warning);
+      fmt::print("{}: a sound experiment on {} frames of \"{}\"\n", path.string(),
+                 study.frames.size(), study.recording.name);
+    }
+    resolved = config.Resolved();
+  }
+  if (show) fmt::print("{}\n", resolved.dump(2));
+  return 0;
+}
+
+}  // namespace
+
+void AddValidate(CLI::App* app, std::function<int()>* command) {
+  CLI::App* validate = app->add_subcommand(
+      "validate", "Check an experiment, a scene or a recording without computing anything");
+  auto path = std::make_shared<std::string>();
+  auto show = std::make_shared<bool>(false);
+  validate->add_option("file", *path, "The YAML file, or a recording's folder")->required();
+  validate->add_flag("--show", *show, "Print every value, defaults included, in SI units");
+  validate->callback(
+      [command, path, show] { *command = [path, show] { return Validate(*path, *show); }; });
+}
+
+}  // namespace lacuna

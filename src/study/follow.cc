@@ -1,0 +1,367 @@
+#include "study/follow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "core/atomic_file.h"
+#include "core/interrupt.h"
+#include "core/npy.h"
+#include "registration/coherent_point_drift.h"
+#include "study/grip_tracks.h"
+
+namespace lacuna {
+namespace {
+
+Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
+}
+
+Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
+  return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
+}
+
+// The force model that the settings describe: on boundary nodes of the region that no grip holds,
+// where a force would move nothing.
+ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body) {
+  const ForceSettings& settings = study.follow.forces;
+  const Body& body = *grips_and_body.body;
+  const std::vector<char> gripped = GrippedNodes(grips_and_body);
+  std::vector<char> selectable(body.NodeCount(), 0);
+  for (const int node : body.boundary.node) selectable[node] = !gripped[node];
+  std::vector<int> nodes;
+  if (settings.region) {
+    nodes = SelectNodes(*settings.region, body.mesh.nodes);
+  } else {
+    nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
+  }
+  std::erase_if(nodes, [&](int node) { return !selectable[node]; });
+  if (nodes.empty() && settings.kind != ForceSettings::Kind::kNone) {
+    throw InputError(
+        fmt::format("{}: forces.region: no free node of the boundary lies in it", study.name));
+  }
+  const Eigen::VectorXi where =
+      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  ForceModel model = NoForces(body);
+  switch (settings.kind) {
+    case ForceSettings::Kind::kNone:
+      break;
+    case ForceSettings::Kind::kFree:
+      model = FreeForces(body, where);
+      break;
+    case ForceSettings::Kind::kFootprint:
+      model = FootprintForce(body, where, settings.force_scale);
+      break;
+    case ForceSettings::Kind::kNodal:
+      model = NodalForces(body, where, settings.force_scale);
+      break;
+    case ForceSettings::Kind::kSmooth: {
+      const double size = BoundingBoxDiagonal(body.mesh.nodes);
+      const double young_modulus = study.effects.front()->Parameters()[0];
+      model =
+          SmoothForces(body, where, settings.length > 0 ? settings.length : 0.25 * size,
+                       settings.traction_scale > 0 ? settings.traction_scale : 0.1 * young_modulus);
+      break;
+    }
+  }
+  return settings.hold_net_force ? HoldNetForceAndTorque(body, model) : model;
+}
+
+double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
+  if (study.follow.noise > 0) return study.follow.noise;
+  const double estimated = EstimateNoise(states.front().cloud.points);
+  // Exact data would ask for an exact fit, which no mesh gives.
+  const double floor = 1e-5 * BoundingBoxDiagonal(states.front().cloud.points);
+  return std::max(estimated, floor);
+}
+
+// Where the boundary vertices at `surface` are in the state, by CPD.
+struct Correspondence {
+  Eigen::Matrix3Xd target;  // 3 × boundary vertices
+  Eigen::VectorXd sigma;    // m, of a target across the surface
+};
+
+class Follower {
+ public:
+  Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
+           const std::vector<FrameState>& states, FollowedMotion* motion)
+      : study_(study), states_(states), motion_(*motion) {
+    motion_.noise = NoiseOf(study, states);
+    model_ = {motion_.body, study.effects, {}};
+    grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
+    forces_ = MakeForceModel(study, model_);
+    history_ = RestHistory(model_);
+    if (states.front().tracked.cols() > 0) {
+      at_rest_ = SurfaceSearch(motion_.body->boundary.surface).Nearest(states.front().tracked);
+      offset_ = states.front().tracked - at_rest_.point;
+    }
+    StepOptions options;
+    options.scheme = study.follow.scheme;
+    stepper_ = std::make_unique<Stepper>(model_, options);
+    previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
+  }
+
+  // The reference frame itself: nothing has moved yet.
+  void RecordRest() {
+    FollowedFrame frame;
+    frame.time = states_.front().time;
+    history_.time = frame.time;
+    frame.position = motion_.body->mesh.nodes;
+    frame.force = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
+    frame.pseudo_force = frame.force;
+    frame.solver = {true, "reference", "", 0};
+    frame.residual = ResidualDisplacement(frame.position, states_.front());
+    motion_.frames.push_back(std::move(frame));
+    grips_->Begin(history_.time);
+  }
+
+  // False when the frame could not be followed; its record says why.
+  bool Follow(size_t k) {
+    frame_ = k;
+    const FrameState& state = states_[k];
+    const Body& body = *motion_.body;
+    const bool quasi_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
+    double time_step = k > 0 ? state.time - states_[k - 1].time : 0;
+    if (k == 0) history_.time = state.time;
+    if (quasi_static && k == 0) time_step = 0;
+
+    FollowedFrame frame;
+    frame.time = state.time;
+    const Eigen::Matrix3Xd before = AsPoints(history_.position);
+    const DisplacementField motion = RegisteredMotion(k);
+    const Eigen::Matrix3Xd shift = motion.IsEmpty()
+                                       ? Eigen::Matrix3Xd::Zero(3, before.cols()).eval()
+                                       : motion.Evaluate(before);
+    frame.pseudo_force = PseudoForce(shift, time_step);
+    grips_->Extend(state.time, before, before + shift, state.tracked);
+
+    ForceFitStart start{Stacked(before + shift), coefficients_, {}};
+    grips_->Place(state.time, &start.position);
+    // Statics without a step does not know the frame's time from the history.
+    MotionHistory from = history_;
+    if (time_step == 0) from.time = state.time;
+    const StepEquation equation(model_, from, study_.follow.scheme, time_step);
+
+    ForceFit fit;
+    int iterations = 0;
+    if (forces_.HasUnknowns()) {
+      const Correspondence correspondence = Register(AsPoints(start.position), state);
+      for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
+        ThrowIfInterrupted();
+        const Observations seen = Observe(AsPoints(start.position), state, correspondence);
+        frame.observations = static_cast<int>(seen.Count());
+        fit = FitStepForces(model_, equation, forces_, seen, start, {force_, coefficients_},
+                            study_.follow.fit);
+        iterations += fit.factorisations;
+        if (!fit.IsUsable()) break;
+        start = {fit.position, fit.coefficients, fit.multiplier};
+      }
+      if (!fit.IsUsable()) return Fail("forces", fit.message, iterations, &frame);
+      frame.weighted_rms = fit.weighted_rms;
+    } else {
+      fit.force = Eigen::VectorXd::Zero(3 * body.NodeCount());
+    }
+
+    // The forces, not the fitted places, are the result: what stands in the record is where an
+    // ordinary step under these forces leads.
+    MotionHistory after = from;
+    const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
+                                           : stepper_->Equilibrium(fit.force, &after);
+    if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
+    history_ = after;
+    force_ = fit.force;
+    coefficients_ = fit.coefficients;
+
+    frame.position = AsPoints(history_.position);
+    frame.force = AsPoints(fit.force);
+    frame.residual = ResidualDisplacement(frame.position, state);
+    frame.solver = {true, "converged", "", iterations};
+    motion_.frames.push_back(std::move(frame));
+    return true;
+  }
+
+ private:
+  bool Fail(const char* what, const std::string& message, int iterations, FollowedFrame* frame) {
+    frame->solver = {false, "no convergence", fmt::format("{}: {}", what, message), iterations};
+    const Eigen::Index nodes = motion_.body->NodeCount();
+    const auto unknown = std::numeric_limits<double>::quiet_NaN();
+    frame->position = Eigen::Matrix3Xd::Constant(3, nodes, unknown);
+    frame->force = frame->position;
+    frame->residual = Eigen::Matrix3Xd::Constant(3, motion_.body->boundary.node.size(), unknown);
+    motion_.frames.push_back(std::move(*frame));
+    return false;
+  }
+
+  PointCloud SimulatedSurface(const Eigen::Matrix3Xd& nodes) const {
+    const TriMesh surface = BoundaryAt(motion_.body->boundary, nodes);
+    return {surface.vertices, VertexNormals(surface)};
+  }
+
+  // The motion from state k − 1 to state k (the paper's displacement field between consecutive
+  // surfaces). Before the first state stands the simulated surface.
+  DisplacementField RegisteredMotion(size_t k) const {
+    const PointCloud from =
+        k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(AsPoints(history_.position));
+    return Registered(from, StatePoints(states_[k])).field;
+  }
+
+  // A registration that has not quite settled still guides, with a warning; one that failed moves
+  // nothing, and what depends on it shows.
+  CpdResult Registered(const PointCloud& source, const PointCloud& target) const {
+    CpdResult result = RegisterNonrigid(source, target, study_.registration);
+    if (!result.IsUsable()) {
+      motion_.warnings.push_back(
+          fmt::format("frame {}: registration: {}", study_.frames[frame_], result.message));
+    }
+    if (result.displaced.cols() != source.Size()) result.displaced = source.points;
+    return result;
+  }
+
+  // v = d/dt, α = dv/dt, F = m α.
+  Eigen::Matrix3Xd PseudoForce(const Eigen::Matrix3Xd& shift, double time_step) {
+    if (time_step <= 0) return Eigen::Matrix3Xd::Zero(3, shift.cols());
+    const Eigen::Matrix3Xd velocity = shift / time_step;
+    const Eigen::Matrix3Xd acceleration = (velocity - previous_velocity_) / time_step;
+    previous_velocity_ = velocity;
+    return acceleration * motion_.body->node_mass.asDiagonal();
+  }
+
+  bool IsTracked(const FrameState& state) const {
+    return study_.follow.use_identity && state.tracked.cols() > 0;
+  }
+
+  Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
+    if (IsTracked(state)) return {};
+    const PointCloud surface = SimulatedSurface(nodes);
+    const CpdResult aligned = RegisterNonrigid(surface, StatePoints(state), study_.registration);
+    Correspondence correspondence;
+    correspondence.target = surface.points + aligned.field.Evaluate(surface.points);
+    correspondence.sigma = aligned.field.StandardDeviation(surface.points);
+    return correspondence;
+  }
+
+  Observations Observe(const Eigen::Matrix3Xd& nodes, const FrameState& state,
+                       const Correspondence& correspondence) const {
+    const BoundarySurface& boundary = motion_.body->boundary;
+    if (IsTracked(state)) {
+      return ObserveMarkers(boundary, at_rest_, state.tracked - offset_, motion_.noise);
+    }
+    const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
+    // Across the surface CPD is all there is; along its normal the scanned points say more where
+    // there are any, so there CPD only guides.
+    Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(motion_.noise);
+    if (study_.follow.tangential_noise > 0) tangent.setConstant(study_.follow.tangential_noise);
+    const Eigen::VectorXd normal = tangent.cwiseMax(5 * motion_.noise);
+    const Observations registered =
+        ObserveVertices(boundary, nodes, correspondence.target, normal, tangent);
+    const Observations scanned =
+        ObserveScan(boundary, nodes, state.cloud, motion_.noise, study_.follow.reach * size);
+    return Concatenate(registered, scanned);
+  }
+
+  // align(p, S) − p of Eq. 1.
+  Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
+                                        const FrameState& state) const {
+    const PointCloud surface = SimulatedSurface(nodes);
+    return Registered(surface, StatePoints(state)).displaced - surface.points;
+  }
+
+  const ReconstructionStudy& study_;
+  const std::vector<FrameState>& states_;
+  FollowedMotion& motion_;
+  size_t frame_ = 0;  // the one being followed
+  Model model_;
+  std::unique_ptr<GripTracks> grips_;
+  ForceModel forces_;
+  MotionHistory history_;
+  std::unique_ptr<Stepper> stepper_;
+  SurfaceHits at_rest_;      // of the tracked points on the reference surface
+  Eigen::Matrix3Xd offset_;  // and how far beside it they lie
+  Eigen::Matrix3Xd previous_velocity_;
+  Eigen::VectorXd force_, coefficients_;
+};
+
+nlohmann::json ReadJson(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  try {
+    return nlohmann::json::parse(stream);
+  } catch (const nlohmann::json::exception& problem) {
+    throw InputError(SourcePosition{file.string()}, problem.what());
+  }
+}
+
+}  // namespace
+
+FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
+                            const std::vector<FrameState>& states, Progress* progress) {
+  FollowedMotion motion;
+  motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
+  Follower follower(study, reference, states, &motion);
+  progress->Begin("forces", static_cast<int64_t>(states.size()));
+  size_t first = 0;
+  if (FirstFrameIsReference(study)) {
+    follower.RecordRest();
+    first = 1;
+  }
+  for (size_t k = first; k < states.size(); ++k) {
+    ThrowIfInterrupted();
+    const bool followed = follower.Follow(k);
+    progress->Report(static_cast<int64_t>(k + 1), motion.frames.back().weighted_rms);
+    if (followed) continue;
+    motion.warnings.push_back(fmt::format("frame {} could not be followed ({}); the run ends there",
+                                          study.frames[k], motion.frames.back().solver.message));
+    break;
+  }
+  progress->End();
+  return motion;
+}
+
+void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder) {
+  nlohmann::json index;
+  index["noise_m"] = motion.noise;
+  index["warnings"] = motion.warnings;
+  for (size_t k = 0; k < motion.frames.size(); ++k) {
+    const FollowedFrame& frame = motion.frames[k];
+    index["frames"].push_back({{"time_s", frame.time},
+                               {"weighted_rms", frame.weighted_rms},
+                               {"observations", frame.observations},
+                               {"usable", frame.solver.usable},
+                               {"status", frame.solver.status},
+                               {"message", frame.solver.message},
+                               {"iterations", frame.solver.iterations}});
+    WriteNpy(folder / fmt::format("position_{:04}.npy", k), frame.position);
+    WriteNpy(folder / fmt::format("force_{:04}.npy", k), frame.force);
+    WriteNpy(folder / fmt::format("pseudo_force_{:04}.npy", k), frame.pseudo_force);
+    WriteNpy(folder / fmt::format("residual_{:04}.npy", k), frame.residual);
+  }
+  WriteFileAtomically(folder / "motion.json", index.dump(2) + "\n");
+}
+
+FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,
+                                  const std::filesystem::path& folder) {
+  FollowedMotion motion;
+  motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
+  const nlohmann::json index = ReadJson(folder / "motion.json");
+  motion.noise = index.at("noise_m");
+  motion.warnings = index.at("warnings");
+  for (const nlohmann::json& entry : index.at("frames")) {
+    FollowedFrame frame;
+    frame.time = entry.at("time_s");
+    frame.weighted_rms = entry.at("weighted_rms");
+    frame.observations = entry.at("observations");
+    frame.solver = {entry.at("usable"), entry.at("status"), entry.at("message"),
+                    entry.at("iterations")};
+    const size_t k = motion.frames.size();
+    frame.position = ReadNpyMatrix(folder / fmt::format("position_{:04}.npy", k));
+    frame.force = ReadNpyMatrix(folder / fmt::format("force_{:04}.npy", k));
+    frame.pseudo_force = ReadNpyMatrix(folder / fmt::format("pseudo_force_{:04}.npy", k));
+    frame.residual = ReadNpyMatrix(folder / fmt::format("residual_{:04}.npy", k));
+    motion.frames.push_back(std::move(frame));
+  }
+  return motion;
+}
+
+}  // namespace lacuna

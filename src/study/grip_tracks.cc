@@ -1,0 +1,89 @@
+#include "study/grip_tracks.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "study/physics.h"
+
+namespace lacuna {
+namespace {
+
+Eigen::Matrix3Xd Interpolated(const std::map<double, Eigen::Matrix3Xd>& places, double time) {
+  const auto after = places.lower_bound(time);
+  if (after == places.end()) return places.rbegin()->second;
+  if (after == places.begin() || after->first == time) return after->second;
+  const auto before = std::prev(after);
+  const double share = (time - before->first) / (after->first - before->first);
+  return (1 - share) * before->second + share * after->second;
+}
+
+// The rigid motion that carries `from` nearest to `to` (Umeyama 1991, without scale).
+Eigen::Isometry3d RigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  Eigen::Isometry3d motion;
+  motion.matrix() = Eigen::umeyama(from, to, /*with_scaling=*/false);
+  return motion;
+}
+
+}  // namespace
+
+GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
+    : recording_(recording), model_(*model) {
+  for (const Region& region : recording.fixed)
+    model->grips.push_back({NodesIn(region, reference.nodes), {}});
+  for (const RecordedGrip& grip : recording.grips) {
+    auto track = std::make_shared<Track>();
+    track->grip = grip;
+    track->nodes = NodesIn(grip.region, reference.nodes);
+    track->rest = reference.nodes(Eigen::all, track->nodes);
+    for (const std::string& name : grip.markers) {
+      const auto& names = recording.markers.names;
+      track->markers.push_back(
+          static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
+    }
+    tracks_.push_back(track);
+    model->grips.push_back(
+        {track->nodes, [track](double time) { return Interpolated(track->places, time); }});
+  }
+  Begin(recording.times.front());
+}
+
+void GripTracks::Begin(double time) {
+  for (const auto& track : tracks_) track->places = {{time, track->rest}};
+}
+
+void GripTracks::Extend(double time, const Eigen::Matrix3Xd& before, const Eigen::Matrix3Xd& moved,
+                        const Eigen::Matrix3Xd& markers) {
+  for (const auto& track : tracks_) {
+    Eigen::Matrix3Xd place;
+    switch (track->grip.motion) {
+      case GripMotion::kGiven:
+        place = track->rest.colwise() + DisplacementAt(track->grip, time);
+        break;
+      case GripMotion::kFollowsScan: {
+        const Eigen::Matrix3Xd here = before(Eigen::all, track->nodes);
+        place = RigidMotion(here, moved(Eigen::all, track->nodes)) * here;
+        break;
+      }
+      case GripMotion::kFollowsMarkers: {
+        const Eigen::Matrix3Xd at_rest = recording_.marker_places(Eigen::all, track->markers);
+        place = RigidMotion(at_rest, markers(Eigen::all, track->markers)) * track->rest;
+        break;
+      }
+    }
+    track->places[time] = place;
+  }
+}
+
+void GripTracks::Place(double time, Eigen::VectorXd* position) const {
+  for (const Grip& grip : model_.grips) {
+    const Eigen::Matrix3Xd places =
+        grip.motion ? grip.motion(time)
+                    : Eigen::Matrix3Xd(model_.body->mesh.nodes(Eigen::all, grip.nodes));
+    for (Eigen::Index i = 0; i < grip.nodes.size(); ++i)
+      position->segment<3>(3 * grip.nodes[i]) = places.col(i);
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,48 @@
+// The grips of a recording, as the model's prescribed motions.
+#ifndef LACUNA_STUDY_GRIP_TRACKS_H_
+#define LACUNA_STUDY_GRIP_TRACKS_H_
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "fem/model.h"
+#include "scan/recording.h"
+
+namespace lacuna {
+
+// Fixed regions stay where they rest. A gripped region moves as a rigid body: along its given path,
+// with its markers, or as the scanned surface moves there. Positions between two frames are
+// interpolated linearly.
+class GripTracks {
+ public:
+  // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
+  // when a region holds no node.
+  GripTracks(const Recording& recording, const TetMesh& reference, Model* model);
+
+  // All grips rest at this time.
+  void Begin(double time);
+  // Adds where the grips are at `time`. `before` and `moved` (3 × nodes): the model's nodes and
+  // where the registered motion of the scan carries them; `markers` (3 × m): the frame's markers.
+  void Extend(double time, const Eigen::Matrix3Xd& before, const Eigen::Matrix3Xd& moved,
+              const Eigen::Matrix3Xd& markers);
+  // Puts the gripped nodes of a stacked position (3n) where they are at `time`.
+  void Place(double time, Eigen::VectorXd* position) const;
+
+ private:
+  struct Track {
+    RecordedGrip grip;
+    Eigen::VectorXi nodes;
+    Eigen::Matrix3Xd rest;                      // of the nodes
+    std::vector<int> markers;                   // columns of the marker tracks
+    std::map<double, Eigen::Matrix3Xd> places;  // by time
+  };
+  const Recording& recording_;
+  const Model& model_;
+  std::vector<std::shared_ptr<Track>> tracks_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_GRIP_TRACKS_H_

@@ -1,0 +1,44 @@
+// The parts of a YAML file that describe a model: mesh, material, effects, time.
+#ifndef LACUNA_STUDY_PHYSICS_H_
+#define LACUNA_STUDY_PHYSICS_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "fem/model.h"
+#include "fem/step_equation.h"
+#include "meshing/tetrahedralize.h"
+#include "scan/region.h"
+
+namespace lacuna {
+
+// `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`; q and v of the paper.
+struct MeshSettings {
+  TetOptions tets;
+  int order = 1;
+};
+MeshSettings ReadMeshSettings(const Config& config);
+
+// `material: {law: …}` and `effects: [{type: …}]`, the material first.
+std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config);
+
+// `scheme: quasi_static | implicit_euler | bdf2`.
+TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);
+
+// A number over time: linear between its points, constant before the first and after the last.
+struct Profile {
+  std::vector<double> times;   // s, ascending
+  std::vector<double> values;  // dimensionless
+  double At(double time) const;
+};
+// `profile: {times: [0 s, 0.5 s], values: [0, 1]}`; absent: 1 at all times.
+Profile ReadProfile(const Config& config);
+
+// The mesh nodes inside a region, as the model wants them.
+Eigen::VectorXi NodesIn(const Region& region, const Eigen::Matrix3Xd& nodes);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_PHYSICS_H_

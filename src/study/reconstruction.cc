@@ -1,0 +1,250 @@
+#include "study/reconstruction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hash.h"
+#include "core/interrupt.h"
+#include "record/run_directory.h"
+#include "study/follow.h"
+#include "study/frame_states.h"
+#include "study/reference.h"
+#include "study/results.h"
+
+namespace lacuna {
+namespace {
+
+// Raised when the stage's code changes so that its result does.
+constexpr int kStatesVersion = 1;
+constexpr int kReferenceVersion = 1;
+constexpr int kMotionVersion = 1;
+constexpr int kResultsVersion = 1;
+
+FilterOptions ReadFilter(const Config& config) {
+  FilterOptions filter;
+  filter.outlier_neighbours = config.Integer("outlier_neighbours", 0, 1000, 16);
+  filter.outlier_deviations =
+      config.Number("outlier_deviations", kPositive, filter.outlier_deviations);
+  filter.voxel_size = config.Quantity("voxel", kLength, kNotNegative, filter.voxel_size);
+  filter.normal_neighbours = config.Integer("normal_neighbours", 3, 1000, filter.normal_neighbours);
+  return filter;
+}
+
+SurfaceOptions ReadSurface(const Config& config) {
+  SurfaceOptions surface;
+  surface.depth = config.Integer("depth", 0, 12, surface.depth);
+  surface.samples_per_node = config.Number("samples_per_node", kPositive, surface.samples_per_node);
+  surface.point_weight = config.Number("point_weight", kNotNegative, surface.point_weight);
+  surface.edge_length = config.Quantity("edge_length", kLength, kNotNegative, surface.edge_length);
+  return surface;
+}
+
+CpdOptions ReadRegistration(const Config& config) {
+  CpdOptions cpd;
+  cpd.beta = config.Number("beta", kPositive, cpd.beta);
+  cpd.lambda = config.Number("lambda", kPositive, cpd.lambda);
+  cpd.rigidity = config.Number("rigidity", kNotNegative, cpd.rigidity);
+  cpd.tangential_weight =
+      config.Number("tangential_weight", {0, 1, true, false}, cpd.tangential_weight);
+  cpd.outlier_weight = config.Number("outlier_weight", {0, 1, false, true}, cpd.outlier_weight);
+  cpd.initial_sigma = config.Quantity("initial_sigma", kLength, kNotNegative, cpd.initial_sigma);
+  cpd.max_rank = config.Integer("max_rank", 1, 2000, cpd.max_rank);
+  return cpd;
+}
+
+ForceSettings ReadForces(const Config& config, const std::filesystem::path& data_folder) {
+  using Kind = ForceSettings::Kind;
+  ForceSettings forces;
+  forces.kind = config.Choice<Kind>("model",
+                                    {{"none", Kind::kNone},
+                                     {"free", Kind::kFree},
+                                     {"smooth", Kind::kSmooth},
+                                     {"footprint", Kind::kFootprint},
+                                     {"nodal", Kind::kNodal}},
+                                    "smooth");
+  if (const auto region = config.OptionalChild("region"))
+    forces.region = ReadRegion(*region, data_folder, "forces");
+  if ((forces.kind == Kind::kFootprint || forces.kind == Kind::kNodal) && !forces.region)
+    config.Fail("model", "needs a region");
+  forces.length = config.Quantity("length", kLength, kNotNegative, forces.length);
+  forces.traction_scale =
+      config.Quantity("traction_scale", kPressure, kNotNegative, forces.traction_scale);
+  forces.force_scale = config.Quantity("force_scale", kForce, kPositive, forces.force_scale);
+  forces.hold_net_force = config.Flag("hold_net_force", forces.hold_net_force);
+  if (forces.hold_net_force && forces.kind == Kind::kFree)
+    config.Fail("hold_net_force", "goes with smooth forces; free ones have no basis to restrict");
+  return forces;
+}
+
+FollowSettings ReadFollow(const Config& config, const std::filesystem::path& data_folder) {
+  FollowSettings follow;
+  if (const auto motion = config.OptionalChild("motion"))
+    follow.scheme = ReadTimeScheme(*motion, "implicit_euler");
+  if (const auto forces = config.OptionalChild("forces"))
+    follow.forces = ReadForces(*forces, data_folder);
+  if (const auto fit = config.OptionalChild("fit")) {
+    follow.noise = fit->Quantity("noise", kLength, kNotNegative, follow.noise);
+    follow.tangential_noise =
+        fit->Quantity("tangential_noise", kLength, kNotNegative, follow.tangential_noise);
+    follow.alignment_rounds = fit->Integer("alignment_rounds", 1, 50, follow.alignment_rounds);
+    follow.use_identity = fit->Flag("use_identity", follow.use_identity);
+    follow.reach = fit->Number("reach", {0, 1, true, false}, follow.reach);
+    follow.fit.free_force_scale =
+        fit->Quantity("free_force_scale", kLength, kPositive, follow.fit.free_force_scale);
+    follow.fit.balance_tolerance =
+        fit->Quantity("balance_tolerance", kLength, kPositive, follow.fit.balance_tolerance);
+    follow.fit.robust_threshold =
+        fit->Number("robust_threshold", kNotNegative, follow.fit.robust_threshold);
+    follow.fit.max_iterations = fit->Integer("max_iterations", 1, 1000, follow.fit.max_iterations);
+  }
+  return follow;
+}
+
+std::vector<int> ReadFrames(const Config& config, const Recording& recording) {
+  const int count = recording.FrameCount();
+  int first = 0, last = count - 1, every = 1;
+  if (const auto frames = config.OptionalChild("frames")) {
+    first = frames->Integer("first", 0, count - 1, first);
+    last = frames->Integer("last", first, count - 1, last);
+    every = frames->Integer("every", 1, count, every);
+  }
+  std::vector<int> chosen;
+  for (int frame = first; frame <= last; frame += every) chosen.push_back(frame);
+  return chosen;
+}
+
+void ReadValidation(const Config& config, ValidationSettings* validation) {
+  const auto entry = config.OptionalChild("validation");
+  if (!entry) return;
+  validation->hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
+  if (validation->hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
+  validation->true_positions = entry->Path("true_positions", "");
+  validation->true_mesh = entry->Path("true_mesh", "");
+  validation->true_forces = entry->Path("true_forces", "");
+  if (validation->true_positions.empty() != validation->true_mesh.empty())
+    entry->Fail("true_positions", "and true_mesh go together");
+}
+
+// What is hashed so that a changed input is noticed.
+std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
+  std::map<std::string, std::string> hashes;
+  for (const std::filesystem::path& file : RecordingFiles(study.recording))
+    hashes[file.lexically_proximate(study.recording.file.parent_path()).generic_string()] =
+        HashFile(file);
+  return hashes;
+}
+
+// A stage that is read back where the run directory has it, computed and stored where not.
+template <typename Value, typename Compute, typename Save, typename Read>
+Value RunStage(RunDirectory* run, const StageIdentity& identity, Progress* progress,
+               const Compute& compute, const Save& save, const Read& read) {
+  const std::string key = StageKey(identity);
+  if (run->Has(identity.stage, key)) {
+    progress->Begin(identity.stage, 0);
+    Value value = read(run->StageFolder(identity.stage));
+    progress->End("resumed");
+    return value;
+  }
+  Value value = compute();
+  run->Store(identity.stage, key,
+             [&](const std::filesystem::path& folder) { save(value, folder); });
+  return value;
+}
+
+}  // namespace
+
+ReconstructionStudy ReadReconstruction(const Config& config) {
+  ReconstructionStudy study;
+  config.Integer("schema_version", 1, 1);
+  study.name = config.Text("name");
+  study.output = config.Path("output", "../results/" + study.name);
+  study.seed = static_cast<uint64_t>(config.Integer("seed", 0, 1 << 30, 1));
+  study.recording = LoadRecording(config.Path("recording"));
+  study.frames = ReadFrames(config, study.recording);
+  if (const auto filter = config.OptionalChild("filter")) study.filter = ReadFilter(*filter);
+  if (const auto surface = config.OptionalChild("surface")) {
+    study.surfaces_of_frames =
+        surface->Choice<bool>("of_frames", {{"poisson", true}, {"none", false}}, "poisson");
+    study.surface = ReadSurface(*surface);
+  }
+  if (const auto registration = config.OptionalChild("registration"))
+    study.registration = ReadRegistration(*registration);
+  const Config mesh = config.Child("mesh");
+  study.mesh = ReadMeshSettings(mesh);
+  study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
+  study.density = study.recording.density
+                      ? config.Quantity("density", kDensity, kPositive, *study.recording.density)
+                      : config.Quantity("density", kDensity, kPositive);
+  study.effects = ReadEffects(config);
+  study.follow = ReadFollow(config, study.recording.data_folder);
+  ReadValidation(config, &study.validation);
+  config.RefuseUnknownKeys();
+  if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
+    config.Fail("recording",
+                "has one frame, which would be the reference shape and the motion at once; give a "
+                "reference shape or more frames");
+  }
+  study.configuration = config.Resolved();
+  return study;
+}
+
+RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress) {
+  RunDirectory run(study.output);
+  const std::map<std::string, std::string> inputs = HashInputs(study);
+  run.Begin(study.configuration, inputs, study.seed);
+  const nlohmann::json& options = study.configuration;
+  const auto part = [&options](std::initializer_list<const char*> keys) {
+    nlohmann::json chosen = nlohmann::json::object();
+    for (const char* key : keys)
+      if (options.contains(key)) chosen[key] = options[key];
+    return chosen;
+  };
+
+  const auto states = RunStage<std::vector<FrameState>>(
+      &run,
+      {"surfaces", kStatesVersion, part({"frames", "filter", "surface", "validation"}), inputs},
+      progress, [&] { return LoadFrameStates(study, progress); }, SaveFrameStates, ReadFrameStates);
+
+  std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
+  for (const auto& [name, hash] : inputs) behind[name] = hash;
+  const auto reference = RunStage<ReferenceBody>(
+      &run, {"mesh", kReferenceVersion, part({"mesh"}), behind}, progress,
+      [&] {
+        progress->Begin("mesh", 0);
+        ReferenceBody body = MakeReferenceBody(study, states.front());
+        progress->End(
+            fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
+        return body;
+      },
+      SaveReferenceBody, ReadReferenceBody);
+
+  behind["mesh"] = run.ResultHash("mesh");
+  const auto motion = RunStage<FollowedMotion>(
+      &run,
+      {"motion", kMotionVersion,
+       part({"material", "effects", "density", "motion", "forces", "fit", "registration"}), behind},
+      progress, [&] { return FollowFrames(study, reference, states, progress); },
+      SaveFollowedMotion,
+      [&](const std::filesystem::path& folder) {
+        return ReadFollowedMotion(study, reference, folder);
+      });
+
+  behind["motion"] = run.ResultHash("motion");
+  for (const auto& file :
+       {study.validation.true_positions, study.validation.true_mesh, study.validation.true_forces})
+    if (!file.empty()) behind[file.filename().string()] = HashFile(file);
+  const auto record = RunStage<RunRecord>(
+      &run, {"results", kResultsVersion, part({"name", "validation"}), behind}, progress,
+      [&] { return MeasureRun(study, reference, states, motion); },
+      [&](const RunRecord& value, const std::filesystem::path& folder) {
+        SaveRunRecord(value, folder);
+        WriteFields(study, states, motion, value, folder);
+      },
+      LoadRunRecord);
+  run.Finish();
+  return record;
+}
+
+}  // namespace lacuna

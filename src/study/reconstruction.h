@@ -1,0 +1,91 @@
+// From a recording to a model with per-step forces that follows it: the paper's pipeline.
+//
+//   points → surface → registered frames → tet mesh → trajectory with forces → measures → files
+#ifndef LACUNA_STUDY_RECONSTRUCTION_H_
+#define LACUNA_STUDY_RECONSTRUCTION_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/progress.h"
+#include "fem/simulate.h"
+#include "fit/force_fit.h"
+#include "record/run_record.h"
+#include "registration/coherent_point_drift.h"
+#include "scan/filter.h"
+#include "scan/recording.h"
+#include "study/physics.h"
+#include "surface/reconstruct.h"
+
+namespace lacuna {
+
+// Where unknown forces may act, and how they may vary (fit/force_model.h).
+struct ForceSettings {
+  enum class Kind { kNone, kFree, kSmooth, kFootprint, kNodal };
+  Kind kind = Kind::kSmooth;
+  std::optional<Region> region;  // absent: the whole boundary; a footprint needs one
+  double length = 0;             // m, of smooth forces; 0: a quarter of the object's diagonal
+  double traction_scale = 0;     // Pa, of smooth forces; 0: a tenth of Young's modulus
+  double force_scale = 1;        // N, of a footprint or of each node
+  bool hold_net_force = false;   // no net force, no net torque
+};
+
+struct FollowSettings {
+  TimeScheme scheme = TimeScheme::kImplicitEuler;
+  ForceSettings forces;
+  ForceFitOptions fit;
+  double noise = 0;             // m, standard deviation of a scanned point; 0: estimated
+  double tangential_noise = 0;  // m, of a correspondence across the normal; 0: CPD's own
+  int alignment_rounds = 3;     // correspondences are taken anew so often; more: slower, exacter
+  // Scanned points farther than this from the simulated surface are somebody else's, in parts of
+  // the object's size; larger: a worse start is forgiven, more foreign points are taken in.
+  double reach = 0.1;
+  // Of tracked points and markers: believe that row i is the same material point in every frame.
+  // Otherwise correspondence comes from CPD.
+  bool use_identity = true;
+};
+
+// Numbers known from elsewhere, against which a reconstruction is checked. Nothing of it enters the
+// fit.
+struct ValidationSettings {
+  int hold_out_every = 0;  // every k-th tracked point is kept from the fit and predicted; 0: none
+  std::filesystem::path true_positions;  // .npy, frames × points × 3, m
+  std::filesystem::path true_mesh;       // the tet mesh whose nodes these points are
+  std::filesystem::path true_forces;     // .npy, frames × 3, N, the resultant
+};
+
+struct ReconstructionStudy {
+  std::string name;
+  std::filesystem::path output;
+  Recording recording;
+  std::vector<int> frames;  // of the recording, ascending
+  uint64_t seed = 1;
+  FilterOptions filter;
+  SurfaceOptions surface;
+  bool surfaces_of_frames = true;  // Poisson surface of each frame; else its points stand for it
+  CpdOptions registration;
+  MeshSettings mesh;
+  int sheet_layers = 1;
+  double density = 1000;  // kg/m³
+  std::vector<std::shared_ptr<Effect>> effects;
+  FollowSettings follow;
+  ValidationSettings validation;
+  nlohmann::json configuration;  // resolved, SI
+};
+
+// Reads and checks everything that can be checked before the computation. Throws InputError.
+ReconstructionStudy ReadReconstruction(const Config& config);
+
+// Runs what is not yet in the run directory. Throws InputError for input that turns out unusable
+// (file and frame named) and Interrupted; numerical outcomes stand in the record.
+RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_RECONSTRUCTION_H_

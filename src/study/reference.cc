@@ -1,0 +1,104 @@
+#include "study/reference.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "geometry/mesh_io.h"
+#include "geometry/sheet.h"
+#include "meshing/tetrahedralize.h"
+
+namespace lacuna {
+namespace {
+
+SheetPosition PositionOf(SheetFace face) {
+  // The scanned side is the one that its normals point to.
+  return face == SheetFace::kFront ? SheetPosition::kTop : SheetPosition::kMiddle;
+}
+
+TriMesh ReferenceSurface(const ReconstructionStudy& study, const FrameState& first) {
+  const ReferenceShape& reference = study.recording.reference;
+  if (reference.source == ReferenceSource::kMesh) {
+    TriMesh mesh = ReadTriMesh(reference.file).mesh;
+    mesh.vertices = reference.world_from_file * mesh.vertices;
+    return mesh;
+  }
+  if (study.recording.tracked && study.recording.connectivity.cols() > 0) {
+    const Frame frame = LoadFrame(study.recording, study.frames.front());
+    if (frame.cloud.Size() != frame.row_count) {
+      throw InputError(fmt::format("{}: frame {}: the reference frame lacks {} of its {} points",
+                                   study.recording.file.string(), study.frames.front(),
+                                   frame.row_count - frame.cloud.Size(), frame.row_count));
+    }
+    return {frame.cloud.points, study.recording.connectivity};
+  }
+  return first.surface;
+}
+
+MeshRecord Describe(const TetMesh& mesh) {
+  const TetQuality quality = MeasureTets(mesh);
+  return {.node_count = mesh.NodeCount(),
+          .tet_count = mesh.TetCount(),
+          .order = mesh.Order(),
+          .volume = quality.total_volume,
+          .smallest_angle = quality.min_dihedral_angle,
+          .largest_radius_edge_ratio = quality.radius_edge_ratio.max};
+}
+
+}  // namespace
+
+bool FirstFrameIsReference(const ReconstructionStudy& study) {
+  return study.recording.reference.source == ReferenceSource::kFirstFrame;
+}
+
+ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first) {
+  const ReferenceShape& reference = study.recording.reference;
+  ReferenceBody body;
+  if (reference.source == ReferenceSource::kTetMesh) {
+    TetMeshFile given = ReadTetMesh(reference.file);
+    given.mesh.nodes = reference.world_from_file * given.mesh.nodes;
+    body.mesh = given.mesh;
+    body.notes = given.notes;
+  } else {
+    const TriMesh surface = ReferenceSurface(study, first);
+    if (surface.triangles.cols() == 0) {
+      throw InputError(
+          fmt::format("{}: the reference shape has no surface; give a mesh under "
+                      "`reference`, or frames that surround the object",
+                      study.recording.file.string()));
+    }
+    if (reference.sheet_thickness > 0) {
+      body.mesh = ThickenToTets(surface, reference.sheet_thickness, study.sheet_layers,
+                                PositionOf(reference.sheet_face));
+    } else {
+      const MeshResult meshed = MeshTetrahedra(surface, study.mesh.tets);
+      if (!meshed.IsUsable()) {
+        throw InputError(fmt::format("{}: the reference shape cannot be meshed: {}",
+                                     study.recording.file.string(), meshed.message));
+      }
+      body.mesh = meshed.mesh;
+    }
+  }
+  if (study.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);
+  body.quality = Describe(body.mesh);
+  return body;
+}
+
+void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {
+  WriteTetMesh(folder / "body.msh", body.mesh);
+  std::string notes;
+  for (const std::string& note : body.notes) notes += note + "\n";
+  WriteFileAtomically(folder / "notes.txt", notes);
+}
+
+ReferenceBody ReadReferenceBody(const std::filesystem::path& folder) {
+  ReferenceBody body;
+  body.mesh = ReadTetMesh(folder / "body.msh").mesh;
+  body.quality = Describe(body.mesh);
+  std::ifstream notes(folder / "notes.txt");
+  for (std::string note; std::getline(notes, note);) body.notes.push_back(note);
+  return body;
+}
+
+}  // namespace lacuna

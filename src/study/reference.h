@@ -1,0 +1,32 @@
+// Stage 4 of the paper: the undeformed body, from the first surface or from a given shape.
+#ifndef LACUNA_STUDY_REFERENCE_H_
+#define LACUNA_STUDY_REFERENCE_H_
+
+#include <string>
+#include <vector>
+
+#include "geometry/tet_mesh.h"
+#include "record/run_record.h"
+#include "study/frame_states.h"
+#include "study/reconstruction.h"
+
+namespace lacuna {
+
+struct ReferenceBody {
+  TetMesh mesh;  // of the study's order, world frame, m
+  MeshRecord quality;
+  std::vector<std::string> notes;
+};
+
+// Throws InputError when the shape cannot be meshed, saying why and where.
+ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first);
+
+void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
+ReferenceBody ReadReferenceBody(const std::filesystem::path& folder);
+
+// The first frame is the reference shape itself: there is nothing to follow in it.
+bool FirstFrameIsReference(const ReconstructionStudy& study);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_REFERENCE_H_
