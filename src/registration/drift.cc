@@ -81,15 +81,24 @@ Eigen::MatrixXd Covariance(const SourceSurface& surface, const Pull& pull,
 // normals tell how far a point may be trusted: clean scans less prior, noisy ones more than σ²
 // alone, which cannot fall below the spacing, would give them.
 double PriorVariance(double sigma, double residual) {
-  constexpr double kResidualShare = 4.4;  // tuned: residual / σ is about 0.06 clean, 0.23 noisy
-  constexpr double kLeast = 0.05, kMost = 2.0;
+  constexpr double kResidualShare =
+      8.0;  // residual / σ is about 0.06 for clean scans, 0.2 for noisy
+  constexpr double kLeast = 0.05, kMost = 4.0;
   return sigma * sigma * std::clamp(kResidualShare * residual / sigma, kLeast, kMost);
 }
 
-// In the surface Σ p |d|² / Σ p is 2 σ² whatever σ is; what is left is the spread along the normal.
-double NormalSpread(const Posterior& posterior, double sigma) {
-  return std::sqrt(
-      std::max(0.0, posterior.total_spread / posterior.total_weight - 2.0 * sigma * sigma));
+// In the surface Σ p |d|² / Σ p is 2 σ² whatever σ is; what is left is the spread along the normal,
+// which estimates σ² in few steps. Where distances within the surface count (ε), it is Myronenko &
+// Song's mean over the three axes instead.
+double NormalVariance(const Posterior& posterior, double sigma) {
+  return std::max(0.0, posterior.total_spread / posterior.total_weight - 2.0 * sigma * sigma);
+}
+double NextSigma(const Posterior& posterior, double sigma, double tangential_weight) {
+  const double isotropic = posterior.total_spread / (3.0 * posterior.total_weight);
+  const double next = std::sqrt((1.0 - tangential_weight) * NormalVariance(posterior, sigma) +
+                                tangential_weight * isotropic);
+  constexpr double kFastest = 0.7;
+  return std::clamp(next, kFastest * sigma, sigma);
 }
 
 }  // namespace
@@ -154,9 +163,9 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
         std::sqrt((moved - displacement).squaredNorm() / static_cast<double>(rest.cols()));
     displacement = moved;
 
-    constexpr double kFastest = 0.7;
-    drift->noise = NormalSpread(drift->posterior, sigma);
-    drift->sigma = std::max(level.floor, std::clamp(drift->noise, kFastest * sigma, sigma));
+    drift->noise = std::sqrt(NormalVariance(drift->posterior, sigma));
+    drift->sigma =
+        std::max(level.floor, NextSigma(drift->posterior, sigma, options.tangential_weight));
     if (options.estimate_outlier_weight) {
       drift->outlier_weight = 1.0 - drift->posterior.total_weight / target_count;
     }
