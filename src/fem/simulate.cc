@@ -133,13 +133,18 @@ struct Stepper::Implementation {
     const int factorisations_before = solver.factorisations();
     Eigen::VectorXd position = history->position;
     NewtonSummary solved = Solve(equation, force, target, &position);
-    int inverted = solved.IsUsable() ? FindInvertedElement(*model.body, position) : -1;
+    const auto find_inverted = [&] {
+      return options.refuse_inverted && solved.IsUsable()
+                 ? FindInvertedElement(*model.body, position)
+                 : -1;
+    };
+    int inverted = find_inverted();
     if (!solved.IsUsable() || inverted >= 0) {
       const int iterations = solved.iterations;
       position = history->position;
       solved = SolveByIncrements(equation, force, target, &result.load_increments, &position);
       solved.iterations += iterations;
-      inverted = solved.IsUsable() ? FindInvertedElement(*model.body, position) : -1;
+      inverted = find_inverted();
     }
     result.iterations = solved.iterations;
     result.factorisations = solver.factorisations() - factorisations_before;

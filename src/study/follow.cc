@@ -78,7 +78,7 @@ double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& 
   return std::max(estimated, floor);
 }
 
-// Where the boundary vertices at `surface` are in the state, by CPD.
+// Where points of the body are in the state, by CPD.
 struct Correspondence {
   Eigen::Matrix3Xd target;  // 3 × boundary vertices
   Eigen::VectorXd sigma;    // m, of a target across the surface
@@ -100,6 +100,7 @@ class Follower {
     }
     StepOptions options;
     options.scheme = study.follow.scheme;
+    options.refuse_inverted = !study.follow.allow_inverted;
     stepper_ = std::make_unique<Stepper>(model_, options);
     previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
   }
@@ -123,10 +124,9 @@ class Follower {
     frame_ = k;
     const FrameState& state = states_[k];
     const Body& body = *motion_.body;
-    const bool quasi_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
-    double time_step = k > 0 ? state.time - states_[k - 1].time : 0;
-    if (k == 0) history_.time = state.time;
-    if (quasi_static && k == 0) time_step = 0;
+    // In statics every frame is an equilibrium of its own, without a step from the last one.
+    const bool is_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
+    const double time_step = is_static || k == 0 ? 0 : state.time - states_[k - 1].time;
 
     FollowedFrame frame;
     frame.time = state.time;
@@ -140,7 +140,6 @@ class Follower {
 
     ForceFitStart start{Stacked(before + shift), coefficients_, {}};
     grips_->Place(state.time, &start.position);
-    // Statics without a step does not know the frame's time from the history.
     MotionHistory from = history_;
     if (time_step == 0) from.time = state.time;
     const StepEquation equation(model_, from, study_.follow.scheme, time_step);
@@ -153,8 +152,10 @@ class Follower {
         ThrowIfInterrupted();
         const Observations seen = Observe(AsPoints(start.position), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
-        fit = FitStepForces(model_, equation, forces_, seen, start, {force_, coefficients_},
-                            study_.follow.fit);
+        // Free forces are expected to go on as they were. Coefficients are expected to be small: as
+        // a random walk, what the scans do not see of them would drift away.
+        fit =
+            FitStepForces(model_, equation, forces_, seen, start, {force_, {}}, study_.follow.fit);
         iterations += fit.factorisations;
         if (!fit.IsUsable()) break;
         start = {fit.position, fit.coefficients, fit.multiplier};
@@ -168,6 +169,7 @@ class Follower {
     // The forces, not the fitted places, are the result: what stands in the record is where an
     // ordinary step under these forces leads.
     MotionHistory after = from;
+    if (time_step == 0 && fit.IsUsable()) after.position = fit.position;
     const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
                                            : stepper_->Equilibrium(fit.force, &after);
     if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
@@ -229,6 +231,20 @@ class Follower {
     return acceleration * motion_.body->node_mass.asDiagonal();
   }
 
+  // What stands for the model in a registration: the places of the tracked points on it, so that a
+  // side which is never seen takes no part, or its whole surface.
+  PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
+    if (at_rest_.triangle.size() == 0) return SimulatedSurface(nodes);
+    const BoundarySurface& boundary = motion_.body->boundary;
+    PointCloud points{offset_, {}};
+    for (Eigen::Index j = 0; j < offset_.cols(); ++j) {
+      const Eigen::Vector3i triangle = boundary.surface.triangles.col(at_rest_.triangle[j]);
+      for (int a = 0; a < 3; ++a)
+        points.points.col(j) += at_rest_.barycentric(a, j) * nodes.col(boundary.node[triangle[a]]);
+    }
+    return points;
+  }
+
   bool IsTracked(const FrameState& state) const {
     return study_.follow.use_identity && state.tracked.cols() > 0;
   }
@@ -239,7 +255,10 @@ class Follower {
     const CpdResult aligned = RegisterNonrigid(surface, StatePoints(state), study_.registration);
     Correspondence correspondence;
     correspondence.target = surface.points + aligned.field.Evaluate(surface.points);
-    correspondence.sigma = aligned.field.StandardDeviation(surface.points);
+    // A registration that failed says nothing.
+    correspondence.sigma = aligned.field.IsEmpty()
+                               ? Eigen::VectorXd::Constant(surface.Size(), kUnobserved)
+                               : aligned.field.StandardDeviation(surface.points);
     return correspondence;
   }
 
@@ -249,11 +268,14 @@ class Follower {
     if (IsTracked(state)) {
       return ObserveMarkers(boundary, at_rest_, state.tracked - offset_, motion_.noise);
     }
+    if (at_rest_.triangle.size() > 0) {
+      return ObserveMarkers(boundary, at_rest_, correspondence.target - offset_, motion_.noise);
+    }
     const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
     // Across the surface CPD is all there is; along its normal the scanned points say more where
     // there are any, so there CPD only guides.
-    Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(motion_.noise);
-    if (study_.follow.tangential_noise > 0) tangent.setConstant(study_.follow.tangential_noise);
+    Eigen::VectorXd tangent =
+        correspondence.sigma.cwiseMax(std::max(motion_.noise, study_.follow.tangential_noise));
     const Eigen::VectorXd normal = tangent.cwiseMax(5 * motion_.noise);
     const Observations registered =
         ObserveVertices(boundary, nodes, correspondence.target, normal, tangent);
@@ -265,8 +287,10 @@ class Follower {
   // align(p, S) − p of Eq. 1.
   Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
                                         const FrameState& state) const {
-    const PointCloud surface = SimulatedSurface(nodes);
-    return Registered(surface, StatePoints(state)).displaced - surface.points;
+    const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
+    const CpdResult aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
+    return aligned.field.IsEmpty() ? Eigen::Matrix3Xd::Zero(3, vertices.cols()).eval()
+                                   : aligned.field.Evaluate(vertices);
   }
 
   const ReconstructionStudy& study_;

@@ -49,7 +49,11 @@ CpdOptions ReadRegistration(const Config& config) {
   cpd.tangential_weight =
       config.Number("tangential_weight", {0, 1, true, false}, cpd.tangential_weight);
   cpd.outlier_weight = config.Number("outlier_weight", {0, 1, false, true}, cpd.outlier_weight);
+  cpd.estimate_outlier_weight = config.Flag("estimate_outlier_weight", cpd.estimate_outlier_weight);
   cpd.initial_sigma = config.Quantity("initial_sigma", kLength, kNotNegative, cpd.initial_sigma);
+  cpd.sigma_floor = config.Number("sigma_floor", kPositive, cpd.sigma_floor);
+  cpd.points_per_function =
+      config.Integer("points_per_function", 1, 100000, cpd.points_per_function);
   cpd.max_rank = config.Integer("max_rank", 1, 2000, cpd.max_rank);
   return cpd;
 }
@@ -80,8 +84,10 @@ ForceSettings ReadForces(const Config& config, const std::filesystem::path& data
 
 FollowSettings ReadFollow(const Config& config, const std::filesystem::path& data_folder) {
   FollowSettings follow;
-  if (const auto motion = config.OptionalChild("motion"))
+  if (const auto motion = config.OptionalChild("motion")) {
     follow.scheme = ReadTimeScheme(*motion, "implicit_euler");
+    follow.allow_inverted = motion->Flag("allow_inverted", follow.allow_inverted);
+  }
   if (const auto forces = config.OptionalChild("forces"))
     follow.forces = ReadForces(*forces, data_folder);
   if (const auto fit = config.OptionalChild("fit")) {
@@ -120,6 +126,7 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
   if (!entry) return;
   validation->hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
   if (validation->hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
+  validation->true_surfaces = entry->Path("true_surfaces", "");
   validation->true_positions = entry->Path("true_positions", "");
   validation->true_mesh = entry->Path("true_mesh", "");
   validation->true_forces = entry->Path("true_forces", "");

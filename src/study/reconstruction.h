@@ -38,10 +38,12 @@ struct ForceSettings {
 
 struct FollowSettings {
   TimeScheme scheme = TimeScheme::kImplicitEuler;
+  bool allow_inverted =
+      false;  // accept steps with inverted elements, as linear elasticity may need
   ForceSettings forces;
   ForceFitOptions fit;
   double noise = 0;             // m, standard deviation of a scanned point; 0: estimated
-  double tangential_noise = 0;  // m, of a correspondence across the normal; 0: CPD's own
+  double tangential_noise = 0;  // m, the least that a correspondence is uncertain across the normal
   int alignment_rounds = 3;     // correspondences are taken anew so often; more: slower, exacter
   // Scanned points farther than this from the simulated surface are somebody else's, in parts of
   // the object's size; larger: a worse start is forgiven, more foreign points are taken in.
@@ -55,6 +57,7 @@ struct FollowSettings {
 // fit.
 struct ValidationSettings {
   int hold_out_every = 0;  // every k-th tracked point is kept from the fit and predicted; 0: none
+  std::filesystem::path true_surfaces;   // the truth/ folder of a virtual scan
   std::filesystem::path true_positions;  // .npy, frames × points × 3, m
   std::filesystem::path true_mesh;       // the tet mesh whose nodes these points are
   std::filesystem::path true_forces;     // .npy, frames × 3, N, the resultant

@@ -17,12 +17,14 @@ SheetPosition PositionOf(SheetFace face) {
   return face == SheetFace::kFront ? SheetPosition::kTop : SheetPosition::kMiddle;
 }
 
-TriMesh ReferenceSurface(const ReconstructionStudy& study, const FrameState& first) {
+TriMesh ReferenceSurface(const ReconstructionStudy& study, const FrameState& first,
+                         std::vector<std::string>* notes) {
   const ReferenceShape& reference = study.recording.reference;
   if (reference.source == ReferenceSource::kMesh) {
-    TriMesh mesh = ReadTriMesh(reference.file).mesh;
-    mesh.vertices = reference.world_from_file * mesh.vertices;
-    return mesh;
+    TriMeshFile given = ReadTriMesh(reference.file);
+    notes->insert(notes->end(), given.notes.begin(), given.notes.end());
+    given.mesh.vertices = reference.world_from_file * given.mesh.vertices;
+    return given.mesh;
   }
   if (study.recording.tracked && study.recording.connectivity.cols() > 0) {
     const Frame frame = LoadFrame(study.recording, study.frames.front());
@@ -34,6 +36,24 @@ TriMesh ReferenceSurface(const ReconstructionStudy& study, const FrameState& fir
     return {frame.cloud.points, study.recording.connectivity};
   }
   return first.surface;
+}
+
+// Regions that list nodes mean the file's numbers; a reader that dropped nodes changed them.
+void RefuseRenumberedRegions(const ReconstructionStudy& study, const TetMeshFile& given) {
+  bool renumbered = false;
+  for (Eigen::Index i = 0; i < given.node_in_file.size(); ++i)
+    renumbered = renumbered || given.node_in_file[i] != i;
+  if (!renumbered) return;
+  std::vector<Region> regions = study.recording.fixed;
+  for (const RecordedGrip& grip : study.recording.grips) regions.push_back(grip.region);
+  if (study.follow.forces.region) regions.push_back(*study.follow.forces.region);
+  for (const Region& region : regions) {
+    if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
+    throw InputError(fmt::format(
+        "{}: has nodes that no tetrahedron uses, so the node numbers of region \"{}\" would shift; "
+        "remove them or describe the region by its shape",
+        study.recording.reference.file.string(), region.name));
+  }
 }
 
 MeshRecord Describe(const TetMesh& mesh) {
@@ -58,10 +78,11 @@ ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameSta
   if (reference.source == ReferenceSource::kTetMesh) {
     TetMeshFile given = ReadTetMesh(reference.file);
     given.mesh.nodes = reference.world_from_file * given.mesh.nodes;
+    RefuseRenumberedRegions(study, given);
     body.mesh = given.mesh;
     body.notes = given.notes;
   } else {
-    const TriMesh surface = ReferenceSurface(study, first);
+    const TriMesh surface = ReferenceSurface(study, first, &body.notes);
     if (surface.triangles.cols() == 0) {
       throw InputError(
           fmt::format("{}: the reference shape has no surface; give a mesh under "
@@ -78,6 +99,7 @@ ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameSta
                                      study.recording.file.string(), meshed.message));
       }
       body.mesh = meshed.mesh;
+      body.notes.insert(body.notes.end(), meshed.notes.begin(), meshed.notes.end());
     }
   }
   if (study.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);

@@ -14,6 +14,7 @@
 #include "geometry/nearest.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
+#include "scan/scan_writer.h"
 
 namespace lacuna {
 namespace {
@@ -74,6 +75,26 @@ void MeasureHeldOut(const ReconstructionStudy& study, const std::vector<FrameSta
   record->measures["held_out_points"] = static_cast<double>(rest.cols());
   record->measures["held_out_rms_max_m"] = worst;
   record->measures["held_out_spacing_m"] = MeanSpacing(rest, states.front().tracked);
+}
+
+void MeasureTrueSurfaces(const ReconstructionStudy& study, const FollowedMotion& motion,
+                         RunRecord* record) {
+  if (study.validation.true_surfaces.empty()) return;
+  double sum = 0, worst = 0;
+  int followed = 0;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    if (!motion.frames[k].solver.usable) continue;
+    const TriMesh truth =
+        ReadTrueSurface(study.validation.true_surfaces.parent_path(), study.frames[k]);
+    const TriMesh found = BoundaryAt(motion.body->boundary, motion.frames[k].position);
+    const double mean = DistanceToSurface(found, truth.vertices).mean;
+    sum += mean;
+    worst = std::max(worst, mean);
+    ++followed;
+  }
+  if (followed == 0) return;
+  record->measures["true_surface_distance_mean_m"] = sum / followed;
+  record->measures["true_surface_distance_max_m"] = worst;
 }
 
 void MeasureTruePositions(const ReconstructionStudy& study, const FollowedMotion& motion,
@@ -193,12 +214,11 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
     record.measures["residual_per_point_m"] = per_point_sum / followed;
     record.measures["surface_distance_mean_m"] = distance_sum / followed;
   }
-  const bool complete =
-      motion.frames.size() == states.size() && motion.frames.back().solver.usable;
-  record.stages["forces"] = {complete,
-                             complete ? "converged" : "no convergence",
+  const bool complete = motion.frames.size() == states.size() && motion.frames.back().solver.usable;
+  record.stages["forces"] = {complete, complete ? "converged" : "no convergence",
                              complete ? "" : motion.frames.back().solver.message, 0};
   MeasureHeldOut(study, states, motion, &record);
+  MeasureTrueSurfaces(study, motion, &record);
   MeasureTruePositions(study, motion, &record);
   MeasureTrueForces(study, motion, &record);
   return record;

@@ -21,6 +21,8 @@ namespace lacuna {
 //   surface_distance_mean_m        mean over the frames after the reference
 //   held_out_rms_max_m             the worst frame's RMS error of the held-out points
 //   held_out_spacing_m             their mean distance to the nearest other tracked point
+//   true_surface_distance_mean_m   of the true surface's vertices from the simulated surface, all
+//                                  frames after the reference together; ..._max_m the worst frame's
 //   true_position_mean_error       mean error of the true points over the largest displacement
 //   true_force_median_error        median over the frames of |F − F_true| / |F_true|
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
