@@ -204,16 +204,20 @@ class Follower {
 
   // The motion from state k − 1 to state k (the paper's displacement field between consecutive
   // surfaces). Before the first state stands the simulated surface.
-  DisplacementField RegisteredMotion(size_t k) const {
+  DisplacementField RegisteredMotion(size_t k) {
     const PointCloud from =
         k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(AsPoints(history_.position));
-    return Registered(from, StatePoints(states_[k])).field;
+    // Motions go on: the last one is where the search for the next begins.
+    last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
+    return last_motion_;
   }
 
   // A registration that has not quite settled still guides, with a warning; one that failed moves
   // nothing, and what depends on it shows.
-  CpdResult Registered(const PointCloud& source, const PointCloud& target) const {
-    CpdResult result = RegisterNonrigid(source, target, study_.registration);
+  CpdResult Registered(const PointCloud& source, const PointCloud& target,
+                       const DisplacementField* warm_start = nullptr) const {
+    if (warm_start != nullptr && warm_start->IsEmpty()) warm_start = nullptr;
+    CpdResult result = RegisterNonrigid(source, target, study_.registration, warm_start);
     if (!result.IsUsable()) {
       motion_.warnings.push_back(
           fmt::format("frame {}: registration: {}", study_.frames[frame_], result.message));
@@ -251,10 +255,10 @@ class Follower {
 
   Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
     if (IsTracked(state)) return {};
-    const PointCloud surface = SimulatedSurface(nodes);
-    const CpdResult aligned = RegisterNonrigid(surface, StatePoints(state), study_.registration);
+    const PointCloud surface = RegistrationPoints(nodes);
+    const CpdResult aligned = Registered(surface, StatePoints(state));
     Correspondence correspondence;
-    correspondence.target = surface.points + aligned.field.Evaluate(surface.points);
+    correspondence.target = aligned.displaced;
     // A registration that failed says nothing.
     correspondence.sigma = aligned.field.IsEmpty()
                                ? Eigen::VectorXd::Constant(surface.Size(), kUnobserved)
@@ -305,6 +309,7 @@ class Follower {
   SurfaceHits at_rest_;      // of the tracked points on the reference surface
   Eigen::Matrix3Xd offset_;  // and how far beside it they lie
   Eigen::Matrix3Xd previous_velocity_;
+  DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;
 };
 

@@ -193,6 +193,18 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
                 "has one frame, which would be the reference shape and the motion at once; give a "
                 "reference shape or more frames");
   }
+  if (!study.recording.forces.empty()) {
+    study.recording.warnings.push_back(
+        "the recording's measured forces are not used: a reconstruction fits its own");
+  }
+  const bool has_gravity =
+      std::any_of(study.effects.begin(), study.effects.end(),
+                  [](const auto& effect) { return effect->Card().type == "gravity"; });
+  if (study.recording.gravity && !has_gravity) {
+    study.recording.warnings.push_back(
+        "the recording was made in gravity, the model has none; sound where the reference shape "
+        "was scanned in the same gravity");
+  }
   study.configuration = config.Resolved();
   return study;
 }

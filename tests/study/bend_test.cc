@@ -30,7 +30,7 @@ std::filesystem::path WriteReducedBend(const TemporaryFolder& folder) {
   return folder / "bend.yaml";
 }
 
-RunRecord Run(const std::filesystem::path& experiment) {
+RunRecord RunExperiment(const std::filesystem::path& experiment) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
@@ -40,7 +40,7 @@ RunRecord Run(const std::filesystem::path& experiment) {
 TEST(Bend, TheModelFollowsTheScansToTheirNoise) {
   const TemporaryFolder folder;
   const std::filesystem::path experiment = WriteReducedBend(folder);
-  const RunRecord record = Run(experiment);
+  const RunRecord record = RunExperiment(experiment);
   ASSERT_TRUE(record.IsUsable());
   ASSERT_EQ(record.frames.size(), 4u);
   const double noise = 3e-4;  // of the virtual scanner, m: experiments/scenes/bend.yaml
@@ -54,7 +54,7 @@ TEST(Bend, TheModelFollowsTheScansToTheirNoise) {
 
   // The same command again reads the stages back and changes nothing.
   const std::string manifest = FileContent(folder / "run" / "manifest.json");
-  const RunRecord again = Run(experiment);
+  const RunRecord again = RunExperiment(experiment);
   EXPECT_EQ(FileContent(folder / "run" / "manifest.json"), manifest);
   EXPECT_EQ(again.animation_residual, record.animation_residual);
   EXPECT_TRUE(std::filesystem::exists(folder / "run/results/body.pvd"));
