@@ -34,10 +34,10 @@ void PrintSummary(const RunRecord& record, const std::filesystem::path& output) 
       100 * record.relative_animation_residual);
   for (const auto& [name, value] : record.measures) fmt::print("{:32} {:.6g}\n", name, value);
   for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
-  const std::filesystem::path results = output / "results";
   fmt::print(
       "\nThe run lies in {}\n"
       "  results/record.json, frames.csv         the numbers\n"
+      "  results/last_frame.png                   the model and the scan\n"
       "  results/body.pvd, surface.pvd, scan.pvd  open in ParaView\n"
       "  manifest.json                            what was run, on which inputs\n",
       output.string());

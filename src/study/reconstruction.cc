@@ -44,6 +44,7 @@ SurfaceOptions ReadSurface(const Config& config) {
 CpdOptions ReadRegistration(const Config& config) {
   CpdOptions cpd;
   cpd.beta = config.Number("beta", kPositive, cpd.beta);
+  cpd.fine_variance = config.Number("fine_variance", kNotNegative, cpd.fine_variance);
   cpd.lambda = config.Number("lambda", kPositive, cpd.lambda);
   cpd.rigidity = config.Number("rigidity", kNotNegative, cpd.rigidity);
   cpd.tangential_weight =

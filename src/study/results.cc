@@ -1,6 +1,7 @@
 #include "study/results.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include "geometry/mesh_io.h"
 #include "geometry/nearest.h"
 #include "record/csv_table.h"
+#include "report/surface_picture.h"
 #include "report/vtk_files.h"
 #include "scan/scan_writer.h"
 
@@ -151,6 +153,27 @@ void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& m
   record->measures["true_force_median_error"] = errors[errors.size() / 2];
 }
 
+// The model's surface at the last frame that was followed, coloured by |D|, with the scan's points.
+void DrawLastFrame(const ReconstructionStudy& study, const std::vector<FrameState>& states,
+                   const FollowedMotion& motion, const std::filesystem::path& file) {
+  size_t last = motion.frames.size();
+  while (last > 0 && !motion.frames[last - 1].solver.usable) --last;
+  if (last == 0) return;
+  const FollowedFrame& frame = motion.frames[last - 1];
+  SurfaceScene scene;
+  scene.mesh = BoundaryAt(motion.body->boundary, frame.position);
+  scene.vertex_values = 1e3 * frame.residual.colwise().norm().transpose();
+  scene.value_name = "|D| mm";
+  scene.points = states[last - 1].cloud.points;
+  scene.caption =
+      fmt::format("{}, frame {}: model and scanned points", study.name, study.frames[last - 1]);
+  PictureOptions options;
+  options.show_edges = true;
+  options.point_size = 2;
+  const PictureResult picture = RenderSurfacePng(file, scene, options);
+  if (!picture.IsUsable()) LOG(WARNING) << "no picture: " << picture.message;
+}
+
 double OrNotMeasured(bool measured, double value) { return measured ? value : kNotMeasured; }
 
 }  // namespace
@@ -257,6 +280,7 @@ void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>
              {{"distance_to_model_m", hits.distance.transpose()}});
     scans.push_back({frame.time, file("scan", "vtp")});
   }
+  DrawLastFrame(study, states, motion, folder / "last_frame.png");
   WritePvd(folder / "body.pvd", bodies);
   WritePvd(folder / "surface.pvd", surfaces);
   WritePvd(folder / "scan.pvd", scans);
