@@ -133,6 +133,15 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
   validation->true_forces = entry->Path("true_forces", "");
   if (validation->true_positions.empty() != validation->true_mesh.empty())
     entry->Fail("true_positions", "and true_mesh go together");
+  // Told now rather than after the computation that they would be compared with.
+  const auto require = [&entry](const char* key, const std::filesystem::path& path) {
+    if (!path.empty() && !std::filesystem::exists(path))
+      entry->Fail(key, "there is no " + path.string());
+  };
+  require("true_surfaces", validation->true_surfaces);
+  require("true_positions", validation->true_positions);
+  require("true_mesh", validation->true_mesh);
+  require("true_forces", validation->true_forces);
 }
 
 // What is hashed so that a changed input is noticed.

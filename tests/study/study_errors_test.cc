@@ -23,6 +23,7 @@ std::string MessageAfter(const std::string& from, const std::string& to) {
     EXPECT_NE(at, std::string::npos) << a;
     text.replace(at, a.size(), b);
   };
+  replace("recordings/bend/truth", (experiments / "recordings/bend/truth").string());
   replace(from, to);
   if (from.find("recording:") == std::string::npos)
     replace("recording: recordings/bend",
@@ -54,6 +55,8 @@ TEST(StudyErrors, NameTheLineAndTheField) {
               HasSubstr("schema_version: got \"2\""));
   EXPECT_THAT(MessageAfter("recording: recordings/bend", "recording: recordings/bent"),
               HasSubstr("bent"));
+  EXPECT_THAT(MessageAfter("recordings/bend/truth", "recordings/bend/lies"),
+              HasSubstr("validation.true_surfaces: there is no "));
   EXPECT_THAT(MessageAfter("{every: 1}", "{last: 0}"), HasSubstr("has one frame"));
 }
 
