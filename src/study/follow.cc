@@ -10,7 +10,8 @@
 #include "core/atomic_file.h"
 #include "core/interrupt.h"
 #include "core/npy.h"
-#include "registration/coherent_point_drift.h"
+#include "geometry/surface_tracks.h"
+#include "registration/surface_alignment.h"
 #include "study/grip_tracks.h"
 
 namespace lacuna {
@@ -80,7 +81,7 @@ double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& 
 
 // Where points of the body are in the state, by CPD.
 struct Correspondence {
-  Eigen::Matrix3Xd target;  // 3 × boundary vertices
+  Eigen::Matrix3Xd target;  // 3 × n
   Eigen::VectorXd sigma;    // m, of a target across the surface
 };
 
@@ -95,8 +96,7 @@ class Follower {
     forces_ = MakeForceModel(study, model_);
     history_ = RestHistory(model_);
     if (states.front().tracked.cols() > 0) {
-      at_rest_ = SurfaceSearch(motion_.body->boundary.surface).Nearest(states.front().tracked);
-      offset_ = states.front().tracked - at_rest_.point;
+      tracks_ = TrackOnSurface(motion_.body->boundary, states.front().tracked);
     }
     StepOptions options;
     options.scheme = study.follow.scheme;
@@ -214,16 +214,19 @@ class Follower {
 
   // A registration that has not quite settled still guides, with a warning; one that failed moves
   // nothing, and what depends on it shows.
-  CpdResult Registered(const PointCloud& source, const PointCloud& target,
-                       const DisplacementField* warm_start = nullptr) const {
-    if (warm_start != nullptr && warm_start->IsEmpty()) warm_start = nullptr;
-    CpdResult result = RegisterNonrigid(source, target, study_.registration, warm_start);
-    if (!result.IsUsable()) {
+  Alignment Registered(const PointCloud& source, const PointCloud& target,
+                       const DisplacementField* previous = nullptr) const {
+    if (previous != nullptr && previous->IsEmpty()) previous = nullptr;
+    Alignment alignment = Align(source, target, study_.registration, previous);
+    if (!alignment.IsUsable()) {
       motion_.warnings.push_back(
-          fmt::format("frame {}: registration: {}", study_.frames[frame_], result.message));
+          fmt::format("frame {}: registration: {}", study_.frames[frame_], alignment.message));
     }
-    if (result.displaced.cols() != source.Size()) result.displaced = source.points;
-    return result;
+    if (alignment.field.IsEmpty()) {
+      alignment.displacement = Eigen::Matrix3Xd::Zero(3, source.Size());
+      alignment.standard_deviation = Eigen::VectorXd::Constant(source.Size(), kUnobserved);
+    }
+    return alignment;
   }
 
   // v = d/dt, α = dv/dt, F = m α.
@@ -238,15 +241,8 @@ class Follower {
   // What stands for the model in a registration: the places of the tracked points on it, so that a
   // side which is never seen takes no part, or its whole surface.
   PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
-    if (at_rest_.triangle.size() == 0) return SimulatedSurface(nodes);
-    const BoundarySurface& boundary = motion_.body->boundary;
-    PointCloud points{offset_, {}};
-    for (Eigen::Index j = 0; j < offset_.cols(); ++j) {
-      const Eigen::Vector3i triangle = boundary.surface.triangles.col(at_rest_.triangle[j]);
-      for (int a = 0; a < 3; ++a)
-        points.points.col(j) += at_rest_.barycentric(a, j) * nodes.col(boundary.node[triangle[a]]);
-    }
-    return points;
+    if (tracks_.Count() == 0) return SimulatedSurface(nodes);
+    return {PointsAt(tracks_, motion_.body->boundary, nodes), {}};
   }
 
   bool IsTracked(const FrameState& state) const {
@@ -256,24 +252,20 @@ class Follower {
   Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
     if (IsTracked(state)) return {};
     const PointCloud surface = RegistrationPoints(nodes);
-    const CpdResult aligned = Registered(surface, StatePoints(state));
-    Correspondence correspondence;
-    correspondence.target = aligned.displaced;
-    // A registration that failed says nothing.
-    correspondence.sigma = aligned.field.IsEmpty()
-                               ? Eigen::VectorXd::Constant(surface.Size(), kUnobserved)
-                               : aligned.field.StandardDeviation(surface.points);
-    return correspondence;
+    const Alignment aligned = Registered(surface, StatePoints(state));
+    return {surface.points + aligned.displacement, aligned.standard_deviation};
   }
 
   Observations Observe(const Eigen::Matrix3Xd& nodes, const FrameState& state,
                        const Correspondence& correspondence) const {
     const BoundarySurface& boundary = motion_.body->boundary;
     if (IsTracked(state)) {
-      return ObserveMarkers(boundary, at_rest_, state.tracked - offset_, motion_.noise);
+      return ObserveMarkers(boundary, tracks_.at_rest, state.tracked - tracks_.offset,
+                            motion_.noise);
     }
-    if (at_rest_.triangle.size() > 0) {
-      return ObserveMarkers(boundary, at_rest_, correspondence.target - offset_, motion_.noise);
+    if (tracks_.Count() > 0) {
+      return ObserveMarkers(boundary, tracks_.at_rest, correspondence.target - tracks_.offset,
+                            motion_.noise);
     }
     const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
     // Across the surface CPD is all there is; along its normal the scanned points say more where
@@ -292,7 +284,7 @@ class Follower {
   Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
                                         const FrameState& state) const {
     const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
-    const CpdResult aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
+    const Alignment aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
     return aligned.field.IsEmpty() ? Eigen::Matrix3Xd::Zero(3, vertices.cols()).eval()
                                    : aligned.field.Evaluate(vertices);
   }
@@ -306,8 +298,7 @@ class Follower {
   ForceModel forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
-  SurfaceHits at_rest_;      // of the tracked points on the reference surface
-  Eigen::Matrix3Xd offset_;  // and how far beside it they lie
+  SurfaceTracks tracks_;  // of tracked points; empty where there are none
   Eigen::Matrix3Xd previous_velocity_;
   DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;

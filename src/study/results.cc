@@ -13,6 +13,7 @@
 #include "geometry/embedding.h"
 #include "geometry/mesh_io.h"
 #include "geometry/nearest.h"
+#include "geometry/surface_tracks.h"
 #include "record/csv_table.h"
 #include "report/surface_picture.h"
 #include "report/vtk_files.h"
@@ -24,30 +25,6 @@ namespace {
 size_t FirstFollowed(const ReconstructionStudy& study) {
   return FirstFrameIsReference(study) ? 1 : 0;
 }
-
-// Tracked points on the model's surface, followed from rest.
-class SurfaceTracks {
- public:
-  SurfaceTracks(const BoundarySurface& boundary, const Eigen::Matrix3Xd& at_rest)
-      : boundary_(boundary),
-        hits_(SurfaceSearch(boundary.surface).Nearest(at_rest)),
-        offset_(at_rest - hits_.point) {}
-
-  Eigen::Matrix3Xd At(const Eigen::Matrix3Xd& nodes) const {
-    Eigen::Matrix3Xd points = offset_;
-    for (Eigen::Index j = 0; j < points.cols(); ++j) {
-      const Eigen::Vector3i triangle = boundary_.surface.triangles.col(hits_.triangle[j]);
-      for (int a = 0; a < 3; ++a)
-        points.col(j) += hits_.barycentric(a, j) * nodes.col(boundary_.node[triangle[a]]);
-    }
-    return points;
-  }
-
- private:
-  const BoundarySurface& boundary_;
-  SurfaceHits hits_;
-  Eigen::Matrix3Xd offset_;
-};
 
 // Root mean square distance between columns that are both known.
 double RmsError(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& truth) {
@@ -68,11 +45,13 @@ void MeasureHeldOut(const ReconstructionStudy& study, const std::vector<FrameSta
                     const FollowedMotion& motion, RunRecord* record) {
   const Eigen::Matrix3Xd& rest = states.front().held_out;
   if (rest.cols() == 0) return;
-  const SurfaceTracks tracks(motion.body->boundary, rest);
+  const SurfaceTracks tracks = TrackOnSurface(motion.body->boundary, rest);
   double worst = 0;
   for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
     if (!motion.frames[k].solver.usable) continue;
-    worst = std::max(worst, RmsError(tracks.At(motion.frames[k].position), states[k].held_out));
+    worst =
+        std::max(worst, RmsError(PointsAt(tracks, motion.body->boundary, motion.frames[k].position),
+                                 states[k].held_out));
   }
   record->measures["held_out_points"] = static_cast<double>(rest.cols());
   record->measures["held_out_rms_max_m"] = worst;
