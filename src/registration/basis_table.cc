@@ -20,6 +20,12 @@ std::vector<Triple> AsTriples(const Eigen::Matrix3Xd& columns) {
   return triples;
 }
 
+// Whether single precision leaves too little of k(p, y) for the last of the functions.
+bool NeedsFunctions(const GaussianBasis& basis) {
+  constexpr double kSmallestShare = 1e-5;  // 1/L_KK up to 300: φ to 2e-5
+  return basis.SmallestPivot() < kSmallestShare * basis.Variance();
+}
+
 }  // namespace
 
 BasisTable::BasisTable(const GaussianBasis& basis, const BlockTree& points,
@@ -28,22 +34,48 @@ BasisTable::BasisTable(const GaussianBasis& basis, const BlockTree& points,
       kernels_(kernels),
       size_(points.Size()),
       rank_(basis.Rank()),
+      holds_functions_(NeedsFunctions(basis)),
       values_(static_cast<size_t>(points.QueryBlockCount()) * basis.Rank()) {
+  if (holds_functions_) {
+    FillWithFunctions(points);
+  } else {
+    FillWithKernels(points);
+  }
+}
+
+void BasisTable::FillWithKernels(const BlockTree& points) {
   std::vector<GaussianTerm> terms;
-  for (const KernelScale& scale : basis.Kernel()) {
+  for (const KernelScale& scale : basis_.Kernel()) {
     terms.push_back({static_cast<float>(0.5 / (scale.width * scale.width * std::numbers::ln2)),
                      static_cast<float>(scale.amplitude)});
   }
-  const std::vector<Triple> pivots = AsTriples(basis.Pivots());
+  const std::vector<Triple> pivots = AsTriples(basis_.Pivots());
   ParallelFor(points.QueryBlockCount(), kBlocksPerTask, [&](int64_t block) {
-    kernels.kernel_values(points.Queries(static_cast<int>(block)), pivots.data(), rank_,
-                          {terms.data(), static_cast<int>(terms.size())},
-                          values_.data() + block * rank_);
+    kernels_.kernel_values(points.Queries(static_cast<int>(block)), pivots.data(), rank_,
+                           {terms.data(), static_cast<int>(terms.size())},
+                           values_.data() + block * rank_);
   });
 }
 
+void BasisTable::FillWithFunctions(const BlockTree& points) {
+  Eigen::Matrix3Xd places(3, size_);
+  for (int i = 0; i < size_; ++i) {
+    const QueryBlock& block = points.Queries(i / kQueryBlock);
+    const int lane = i % kQueryBlock;
+    places.col(i) << block.x[lane], block.y[lane], block.z[lane];
+  }
+  const Eigen::MatrixXd functions = basis_.Values(places);
+  for (int i = 0; i < size_; ++i) {
+    LaneRow* rows = values_.data() + static_cast<int64_t>(i / kQueryBlock) * rank_;
+    for (int k = 0; k < rank_; ++k) {
+      rows[k].lane[i % kQueryBlock] = static_cast<float>(functions(k, i));
+    }
+  }
+}
+
 Eigen::Matrix3Xf BasisTable::Expand(const Eigen::Matrix3Xd& coefficients) const {
-  const std::vector<Triple> weights = AsTriples(basis_.KernelWeights(coefficients));
+  const std::vector<Triple> weights =
+      AsTriples(holds_functions_ ? coefficients : basis_.KernelWeights(coefficients));
   Eigen::Matrix3Xf displacements(3, size_);
   const int64_t blocks = (size_ + kQueryBlock - 1) / kQueryBlock;
   ParallelFor(blocks, kBlocksPerTask, [&](int64_t block) {
@@ -83,7 +115,7 @@ Eigen::Matrix3Xd BasisTable::Project(const Eigen::Matrix3Xf& forces) const {
   });
   Eigen::Matrix3Xd projection = Eigen::Matrix3Xd::Zero(3, rank_);
   for (const Eigen::Matrix3Xd& part : partial) projection += part;
-  return basis_.FromKernelSpace(projection);
+  return holds_functions_ ? projection : basis_.FromKernelSpace(projection);
 }
 
 }  // namespace lacuna

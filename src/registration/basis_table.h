@@ -13,7 +13,9 @@
 namespace lacuna {
 
 // Holds k(p, y) rather than φ(y) = L⁻¹ k(p, y), in single precision: L is applied to the few
-// coefficients, in double, instead of to the many points. Memory: 4 bytes × rank × points.
+// coefficients, in double, instead of to the many points. That magnifies the rounding of k by
+// 1/L_KK, so that a basis of fine tolerance is held as φ itself, which takes longer to fill in.
+// Memory: 4 bytes × rank × points.
 class BasisTable {
  public:
   // `points` in their places at construction; the basis and the kernels must outlive the table.
@@ -27,11 +29,14 @@ class BasisTable {
 
  private:
   const LaneRow* Values(int64_t block) const { return values_.data() + block * rank_; }
+  void FillWithKernels(const BlockTree& points);
+  void FillWithFunctions(const BlockTree& points);
 
   const GaussianBasis& basis_;
   const GaussianKernels& kernels_;
   int size_ = 0;
   int rank_ = 0;
+  bool holds_functions_ = false;
   std::vector<LaneRow> values_;  // rank rows per block of points
 };
 

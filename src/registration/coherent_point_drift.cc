@@ -68,17 +68,32 @@ GaussianBasis MakeBasis(const Eigen::Matrix3Xd& source, const CpdOptions& option
                        std::clamp(affordable, kLeastRank, options.max_rank));
 }
 
-// The coefficients of the field nearest to `field` on the source.
-Eigen::Matrix3Xd Coefficients(const GaussianBasis& basis, const NormalisedClouds& clouds,
-                              const DisplacementField& field) {
-  const Eigen::Matrix3Xd sample = BasisSample(clouds.source);
-  const Eigen::Matrix3Xd displacement =
-      field.Evaluate((clouds.scale * sample).colwise() + clouds.centre) / clouds.scale;
+// The coefficients of the field nearest to `displacement` at the points of `sample`.
+Eigen::Matrix3Xd Coefficients(const GaussianBasis& basis, const Eigen::Matrix3Xd& sample,
+                              const Eigen::Matrix3Xd& displacement) {
   const Eigen::MatrixXd values = basis.Values(sample);
   Eigen::MatrixXd gram = values * values.transpose();
   constexpr double kRidge = 1e-6;
   gram.diagonal().array() += kRidge * static_cast<double>(sample.cols());
   return gram.llt().solve(values * displacement.transpose()).transpose();
+}
+
+// Where the registration starts: the previous field, the match of the extents, or the rest.
+Eigen::Matrix3Xd FirstCoefficients(const GaussianBasis& basis, const NormalisedClouds& clouds,
+                                   const CpdOptions& options, const DisplacementField* previous) {
+  const Eigen::Matrix3Xd sample = BasisSample(clouds.source);
+  if (previous != nullptr) {
+    const Eigen::Matrix3Xd places = (clouds.scale * sample).colwise() + clouds.centre;
+    return Coefficients(basis, sample, previous->Evaluate(places) / clouds.scale);
+  }
+  if (options.match_extents) {
+    // In this frame the source's mean is 0 and its size 1.
+    const Eigen::Vector3d mean = clouds.target.rowwise().mean();
+    const double size = std::sqrt((clouds.target.colwise() - mean).squaredNorm() /
+                                  static_cast<double>(clouds.target.cols()));
+    return Coefficients(basis, sample, ((size - 1.0) * sample).colwise() + mean);
+  }
+  return Eigen::Matrix3Xd::Zero(3, basis.Rank());
 }
 
 std::vector<Level> MakeLevels(const NormalisedClouds& clouds, double sigma_floor) {
@@ -152,8 +167,7 @@ CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
 
   Drift drift;
   drift.outlier_weight = options.outlier_weight;
-  drift.coefficients.setZero(3, basis.Rank());
-  if (is_warm) drift.coefficients = Coefficients(basis, clouds, *warm_start);
+  drift.coefficients = FirstCoefficients(basis, clouds, options, is_warm ? warm_start : nullptr);
   if (options.initial_sigma > 0.0) {
     drift.sigma = options.initial_sigma / clouds.scale;
   } else {

@@ -51,6 +51,9 @@ struct CpdOptions {
   // How much a distance within the surface counts, of one along its normal, 0 … 1. Raise where
   // source and target hold the same points (tracked markers): 1 is plain CPD.
   double tangential_weight = 0.003;
+  // Start with the source moved onto the mean of the target and scaled to its size, where source
+  // and target both show all of the body; else in place. A warm start comes before it.
+  bool match_extents = false;
   // Probability that a target point belongs to nothing: at first, or throughout.
   double outlier_weight = 0.1;
   bool estimate_outlier_weight = true;
@@ -65,8 +68,9 @@ struct CpdOptions {
   int max_rank = 64;
   int points_per_function = 40;
   double rank_tolerance = 1e-4;
-  // Converged when an iteration moves the points by less than this, spacings (rms).
-  double tolerance = 0.004;
+  // Converged when an iteration moves the points by less than this (rms), in sigma_floor spacings
+  // of the source. Raise: fewer iterations.
+  double tolerance = 0.0057;
   int max_iterations = 60;  // per level
   std::function<void(const CpdProgress&)> progress;
   // The kernels to use; at first the fastest that the processor has.

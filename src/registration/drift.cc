@@ -77,28 +77,37 @@ Eigen::MatrixXd Covariance(const SourceSurface& surface, const Pull& pull,
           inverse.bottomRightCorner(rank, rank));
 }
 
-// The variance that the prior is weighed against. The distances that the motion leaves along the
-// normals tell how far a point may be trusted: clean scans less prior, noisy ones more than σ²
-// alone, which cannot fall below the spacing, would give them.
-double PriorVariance(double sigma, double residual) {
-  constexpr double kResidualShare =
-      8.0;  // residual / σ is about 0.06 for clean scans, 0.2 for noisy
-  constexpr double kLeast = 0.05, kMost = 4.0;
-  return sigma * sigma * std::clamp(kResidualShare * residual / sigma, kLeast, kMost);
-}
-
 // In the surface Σ p |d|² / Σ p is 2 σ² whatever σ is; what is left is the spread along the normal,
 // which estimates σ² in few steps. Where distances within the surface count (ε), it is Myronenko &
 // Song's mean over the three axes instead.
 double NormalVariance(const Posterior& posterior, double sigma) {
   return std::max(0.0, posterior.total_spread / posterior.total_weight - 2.0 * sigma * sigma);
 }
+double IsotropicVariance(const Posterior& posterior) {
+  return posterior.total_spread / (3.0 * posterior.total_weight);
+}
 double NextSigma(const Posterior& posterior, double sigma, double tangential_weight) {
-  const double isotropic = posterior.total_spread / (3.0 * posterior.total_weight);
   const double next = std::sqrt((1.0 - tangential_weight) * NormalVariance(posterior, sigma) +
-                                tangential_weight * isotropic);
+                                tangential_weight * IsotropicVariance(posterior));
   constexpr double kFastest = 0.7;
   return std::clamp(next, kFastest * sigma, sigma);
+}
+
+// The variance that the prior is weighed against. The distances that the motion leaves along the
+// normals tell how far a point may be trusted: clean scans less prior, noisy ones more than σ²
+// alone, which cannot fall below the spacing, would give them. Where distances within the surface
+// count (ε), Myronenko & Song's variance tells it, which the floor of σ does not hold up either.
+double PriorVariance(const Posterior& posterior, double sigma, double residual,
+                     double tangential_weight) {
+  constexpr double kResidualShare =
+      8.0;  // residual / σ is about 0.06 for clean scans, 0.2 for noisy
+  constexpr double kLeast = 0.05, kMost = 4.0;
+  constexpr double kLeastIsotropic = 1e-4;
+  const double variance = sigma * sigma;
+  const double directed = variance * std::clamp(kResidualShare * residual / sigma, kLeast, kMost);
+  const double isotropic =
+      std::clamp(IsotropicVariance(posterior), kLeastIsotropic * variance, variance);
+  return (1.0 - tangential_weight) * directed + tangential_weight * isotropic;
 }
 
 }  // namespace
@@ -113,7 +122,8 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
   const double volume = OutlierVolume(clouds.target);
   const double spacing =
       clouds.source_spacing * std::sqrt(static_cast<double>(level.source_stride));
-  const double tolerance = (level.is_last ? 1.0 : 10.0) * options.tolerance * spacing;
+  const double tolerance =
+      (level.is_last ? 1.0 : 10.0) * options.tolerance * options.sigma_floor * spacing;
 
   const BasisTable table(basis, source, *options.kernels);
   SourceSurface surface;
@@ -146,7 +156,8 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
         DeformationGradients(surface.patches, coefficients);
     objective.tangential_weight = options.tangential_weight;
     pull = PullOf(surface, gradients, drift->posterior, sigma, objective);
-    const double prior = target_count * PriorVariance(sigma, pull.residual);
+    const double prior = target_count * PriorVariance(drift->posterior, sigma, pull.residual,
+                                                      options.tangential_weight);
     objective.coherence = prior * options.lambda;
     objective.rigidity = prior * options.rigidity;
     // The Hessian sets the pace only, so that an old factor will do for a few steps.

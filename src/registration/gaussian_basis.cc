@@ -63,6 +63,10 @@ GaussianBasis::GaussianBasis(const Eigen::Matrix3Xd& points, std::vector<KernelS
 
 double GaussianBasis::Variance() const { return KernelAt(kernel_, 0.0); }
 
+double GaussianBasis::SmallestPivot() const {
+  return Rank() > 0 ? factor_(Rank() - 1, Rank() - 1) * factor_(Rank() - 1, Rank() - 1) : 0.0;
+}
+
 GaussianBasis GaussianBasis::Leading(int rank) const {
   GaussianBasis leading;
   leading.kernel_ = kernel_;

@@ -27,6 +27,8 @@ class GaussianBasis {
 
   int Rank() const { return static_cast<int>(pivots_.cols()); }
   double Variance() const;  // k(y, y)
+  // L_KK², the variance that the last function added: the smallest. That of an empty basis is 0.
+  double SmallestPivot() const;
   const std::vector<KernelScale>& Kernel() const { return kernel_; }
   const Eigen::Matrix3Xd& Pivots() const { return pivots_; }
 

@@ -78,5 +78,26 @@ TEST(BasisTableTest, AgreesWithTheBasisInDoublePrecision) {
   EXPECT_LT((table.Project(forces) - projected).norm() / projected.norm(), 1e-4);
 }
 
+// Of a fine tolerance, L⁻¹ is so large that kernel values in single precision would not do.
+TEST(BasisTableTest, AgreesWithAFineBasisToo) {
+  const Eigen::Matrix3Xd points = Body(333, 3).cast<float>().cast<double>();
+  const GaussianBasis basis(Body(300, 1), {{1.0, 1.0}}, 1e-9, 300);
+  const BlockTree tree(points.cast<float>());
+  const BasisTable table(basis, tree, BestKernels());
+  const Eigen::MatrixXd values = basis.Values(points);
+  const Eigen::Matrix3Xd coefficients = Eigen::Matrix3Xd::Random(3, basis.Rank());
+  // φ rounded to 6e-8.
+  EXPECT_LT((table.Expand(coefficients).cast<double>() - coefficients * values).norm() /
+                (coefficients * values).norm(),
+            1e-6);
+  const Eigen::Matrix3Xf forces = Eigen::Matrix3Xf::Random(3, points.cols());
+  const Eigen::Matrix3Xd projected = forces.cast<double>() * values.transpose();
+  // Function by function: those of the finest are the smallest.
+  for (int k = 0; k < basis.Rank(); ++k) {
+    EXPECT_LT((table.Project(forces) - projected).col(k).norm(),
+              1e-5 * values.row(k).norm() * std::sqrt(333.0));
+  }
+}
+
 }  // namespace
 }  // namespace lacuna
