@@ -14,11 +14,12 @@ CatalogueEntry NeoHookean();
 CatalogueEntry Gravity();
 CatalogueEntry MassDamping();
 CatalogueEntry StiffnessDamping();
+CatalogueEntry PlaneContact();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
       LinearElasticity(), CorotationalElasticity(), SaintVenantKirchhoff(), NeoHookean(), Gravity(),
-      MassDamping(),      StiffnessDamping(),
+      MassDamping(),      StiffnessDamping(),       PlaneContact(),
   };
   return entries;
 }

@@ -1,0 +1,306 @@
+// Contact with a half-space at rest, such as a floor: it pushes and never pulls, and may rub.
+//
+// Penalty. A boundary point at depth d = c − n·x below the plane n·x = c meets the pressure
+//   p(d) = k d²/(2s)  for 0 ≤ d ≤ s,   k (d − s/2)  beyond,   0 above the plane.
+// It grows from zero with its slope continuous, so that Newton's method sees one smooth equation
+// whichever nodes touch; unlike a cubic potential, its slope stays below k, which keeps the tangent
+// as well conditioned at a hard impact as at rest; and nothing is felt before the plane is reached.
+// k is a pressure per depth, so the law does not depend on the mesh. The penetration under a
+// pressure P is P/k + s/2 (√(2 s P/k) while that is below s): choose k some 10 E / element size.
+//
+// Quadrature is nodal, over the areas A_i of the boundary at rest: there is then a potential,
+// E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
+// face is zero, and could carry no penalty; so each such face counts as the four flat triangles
+// that its nodes make, a third of whose area falls on each of their corners: always positive.
+//
+// Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
+//   traction = −μ p u/√(|u|² + w²),
+// the gradient of the convex dissipation μ p √(|u|² + w²), hence smooth and never a source of
+// energy. A body that should stick under a tangential force of r times the limit creeps at
+// w r/√(1 − r²); one that slides at |u| ≫ w misses 1/2 (w/|u|)² of the limit. In statics there is
+// no velocity and so no friction. p is that of the end of the step, not lagged: exact at long steps
+// and at the first touch. The price is the unsymmetric ∂f/∂x = A p′ (−n + μ u/√…) nᵀ, of which
+// AddTangents takes the symmetric part; the definite stand-in keeps −A p′ n nᵀ, with which the
+// normal problem is solved exactly and the tangential one follows.
+#include <glog/logging.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// Pa/m: a pressure per depth.
+constexpr Dimension kPressurePerDepth{-2, 1, -2, 0, 0, "a pressure per depth", "100 MPa/m", "Pa/m"};
+
+// The pressure at a depth ≥ 0 and what belongs to it, all for k = 1.
+struct Penalty {
+  double potential;     // ∫ p dd
+  double pressure;      // p
+  double slope;         // ∂p/∂d
+  double by_smoothing;  // ∂p/∂s
+};
+
+Penalty PenaltyAt(double depth, double smoothing) {
+  const double d = depth, s = smoothing;
+  if (d <= s) return {d * d * d / (6 * s), d * d / (2 * s), d / s, -d * d / (2 * s * s)};
+  const double linear = d - s / 2;
+  return {linear * linear / 2 + s * s / 24, linear, 1, -0.5};
+}
+
+class PlaneContactEffect final : public Effect {
+ public:
+  enum Parameter { kStiffness, kNormal, kOffset = kNormal + 3, kFriction, kSlip, kSmoothing };
+  static constexpr int kParameters = kSmoothing + 1;
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit PlaneContactEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), kParameters);
+    CHECK_GT(values.segment<3>(kNormal).norm(), 0) << "a plane needs a normal";
+    CHECK_GT(values[kSlip], 0);
+    CHECK_GT(values[kSmoothing], 0);
+    parameters_ = values;
+    normal_ = values.segment<3>(kNormal).normalized();
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    ForEachContact(at, [&](const Contact& contact) {
+      force->segment<3>(3 * contact.node) +=
+          contact.area * Stiffness() * contact.penalty.pressure * Direction(contact);
+    });
+  }
+
+  void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
+                   bool convexify, BlockMatrix* tangent) const override {
+    const Eigen::Matrix3d tangential = Eigen::Matrix3d::Identity() - normal_ * normal_.transpose();
+    ForEachContact(at, [&](const Contact& contact) {
+      const double scale = contact.area * Stiffness();
+      const Eigen::Vector3d direction = convexify ? normal_ : Direction(contact);
+      Eigen::Matrix3d block = -0.5 * position_weight * scale * contact.penalty.slope *
+                              (direction * normal_.transpose() + normal_ * direction.transpose());
+      block -= velocity_weight * scale * contact.penalty.pressure * Friction() *
+               SlipDerivative(contact, tangential);
+      tangent->Block(tangent->pattern().diagonal[contact.node]) += block;
+    });
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter >= 0 && parameter < kParameters);
+    ForEachContact(at, [&](const Contact& contact) {
+      derivative->segment<3>(3 * contact.node) +=
+          contact.area * TractionDerivative(at, contact, parameter);
+    });
+  }
+
+  std::optional<double> Energy(const Kinematics& at) const override {
+    if (Friction() != 0) return std::nullopt;
+    double energy = 0;
+    ForEachContact(at, [&](const Contact& contact) {
+      energy += contact.area * Stiffness() * contact.penalty.potential;
+    });
+    return energy;
+  }
+
+ private:
+  // A boundary node below the plane.
+  struct Contact {
+    int node;
+    double area;           // m²
+    Penalty penalty;       // at its depth
+    Eigen::Vector3d slip;  // u, m/s
+    double slip_norm;      // √(|u|² + w²), m/s
+  };
+
+  static EffectCard MakeCard() {
+    constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+    EffectCard card{
+        .type = "plane_contact",
+        .title = "Contact with a plane, with Coulomb friction",
+        .equation =
+            "f_i = A_i p(d_i) (n − μ u_i/√(|u_i|² + w²)),  d = c − n·x,  u = (I − n nᵀ) v;  "
+            "p = k d²/(2s) for 0 ≤ d ≤ s, k (d − s/2) for d > s, else 0",
+        .citation =
+            "P. Wriggers, Computational Contact Mechanics, 2nd ed., Springer 2006, ch. 5 (penalty "
+            "method, regularised Coulomb law); C. A. de Coulomb, Théorie des machines simples, "
+            "1785",
+        .parameters = {},
+        .residual_when_missing =
+            "a push along one fixed direction, on the lowest boundary nodes only, that sets in at "
+            "touch and ends at lift-off; without it the body sinks through the plane. With contact "
+            "but no friction: a force within the touching face, against its slip",
+        .separating_experiment =
+            "lift the body off the plane: contact ends at once, gravity and damping stay; for "
+            "friction, push it at two speeds: Coulomb's force is the same, mass-proportional "
+            "damping doubles, and only friction grows with a weight laid on top",
+        .look_alikes = {"gravity", "mass_damping"},
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    card.parameters.push_back({.name = "stiffness",
+                               .meaning = "pressure per depth of penetration, k",
+                               .dimension = kPressurePerDepth,
+                               .bounds = kNotNegative,
+                               .null_value = 0,
+                               .plausible_min = 1e6,
+                               .plausible_max = 1e10,
+                               .default_value = kMustBeGiven,
+                               .log_scale = true});
+    for (const char* axis : {"x", "y", "z"}) {
+      card.parameters.push_back(
+          {.name = std::string("normal_") + axis,
+           .meaning =
+               std::string("direction away from the half-space, of any length, along ") + axis,
+           .dimension = kDimensionless,
+           .bounds = kAnyValue,
+           .null_value = kNoNull,
+           .plausible_min = -1,
+           .plausible_max = 1,
+           .default_value = axis[0] == 'z' ? 1.0 : 0.0,
+           .log_scale = false});
+    }
+    card.parameters.push_back({.name = "offset",
+                               .meaning = "height of the plane along its unit normal, c = n·x",
+                               .dimension = kLength,
+                               .bounds = kAnyValue,
+                               .null_value = kNoNull,
+                               .plausible_min = -1,
+                               .plausible_max = 1,
+                               .default_value = 0,
+                               .log_scale = false});
+    card.parameters.push_back({.name = "friction",
+                               .meaning = "coefficient of friction, μ",
+                               .dimension = kDimensionless,
+                               .bounds = kNotNegative,
+                               .null_value = 0,
+                               .plausible_min = 0,
+                               .plausible_max = 1.5,
+                               .default_value = 0,
+                               .log_scale = false});
+    card.parameters.push_back({.name = "slip_velocity",
+                               .meaning = "slip at which friction reaches 71 % of its limit, w",
+                               .dimension = kVelocity,
+                               .bounds = kPositive,
+                               .null_value = kNoNull,
+                               .plausible_min = 1e-5,
+                               .plausible_max = 1e-2,
+                               .default_value = 1e-3,
+                               .log_scale = true});
+    card.parameters.push_back({.name = "smoothing",
+                               .meaning = "depth over which the push becomes proportional, s",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNoNull,
+                               .plausible_min = 1e-6,
+                               .plausible_max = 1e-3,
+                               .default_value = 1e-4,
+                               .log_scale = true});
+    return card;
+  }
+
+  double Stiffness() const { return parameters_[kStiffness]; }
+  double Friction() const { return parameters_[kFriction]; }
+
+  template <typename Visit>
+  void ForEachContact(const Kinematics& at, const Visit& visit) const {
+    const BoundarySurface& boundary = at.body.boundary;
+    const Eigen::VectorXd areas = VertexAreas(boundary.surface);
+    for (Eigen::Index i = 0; i < areas.size(); ++i) {
+      const int node = boundary.node[i];
+      const double depth = parameters_[kOffset] - normal_.dot(at.position.segment<3>(3 * node));
+      if (depth <= 0) continue;
+      const Eigen::Vector3d velocity = at.velocity.segment<3>(3 * node);
+      const Eigen::Vector3d slip = velocity - normal_.dot(velocity) * normal_;
+      visit(Contact{node, areas[i], PenaltyAt(depth, parameters_[kSmoothing]), slip,
+                    std::hypot(slip.norm(), parameters_[kSlip])});
+    }
+  }
+
+  // Of the traction, relative to the pressure.
+  Eigen::Vector3d Direction(const Contact& contact) const {
+    return normal_ - Friction() * contact.slip / contact.slip_norm;
+  }
+
+  // The change of u/√(|u|² + w²) with changes of u (columns).
+  template <typename Changes>
+  static Changes SlipDerivative(const Contact& contact, const Changes& changes) {
+    const Eigen::Vector3d direction = contact.slip / contact.slip_norm;
+    return (changes - direction * (direction.transpose() * changes)) / contact.slip_norm;
+  }
+
+  Eigen::Vector3d TractionDerivative(const Kinematics& at, const Contact& contact,
+                                     int parameter) const {
+    const Penalty& penalty = contact.penalty;
+    const double pressure = Stiffness() * penalty.pressure;
+    const double slope = Stiffness() * penalty.slope;
+    switch (parameter) {
+      case kStiffness:
+        return penalty.pressure * Direction(contact);
+      case kOffset:
+        return slope * Direction(contact);
+      case kFriction:
+        return -pressure * contact.slip / contact.slip_norm;
+      case kSlip:
+        return pressure * Friction() * parameters_[kSlip] / std::pow(contact.slip_norm, 3) *
+               contact.slip;
+      case kSmoothing:
+        return Stiffness() * penalty.by_smoothing * Direction(contact);
+      default:
+        break;
+    }
+    const Eigen::Vector3d turn =
+        (Eigen::Vector3d::Unit(parameter - kNormal) - normal_[parameter - kNormal] * normal_) /
+        parameters_.segment<3>(kNormal).norm();
+    const Eigen::Vector3d position = at.position.segment<3>(3 * contact.node);
+    const Eigen::Vector3d velocity = at.velocity.segment<3>(3 * contact.node);
+    const Eigen::Vector3d slip_change =
+        -turn * normal_.dot(velocity) - normal_ * turn.dot(velocity);
+    return -slope * turn.dot(position) * Direction(contact) +
+           pressure * (turn - Friction() * SlipDerivative(contact, slip_change));
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+  Eigen::Vector3d normal_;      // unit
+};
+
+// `normal: [0, 0, 1]`; the rest by their own names.
+Eigen::VectorXd ReadPlane(const EffectCard& card, const Config& config, const Effect*) {
+  Eigen::VectorXd values(PlaneContactEffect::kParameters);
+  const Eigen::Vector3d normal = config.Vector("normal", kDimensionless, Eigen::Vector3d::UnitZ());
+  if (normal.norm() == 0) config.Fail("normal", "expected a direction other than 0");
+  for (int k = 0; k < values.size(); ++k) {
+    const ParameterCard& parameter = card.parameters[k];
+    if (k >= PlaneContactEffect::kNormal && k < PlaneContactEffect::kNormal + 3) {
+      values[k] = normal[k - PlaneContactEffect::kNormal];
+    } else if (std::isnan(parameter.default_value)) {
+      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
+    } else {
+      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
+                                  parameter.default_value);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+CatalogueEntry PlaneContact() {
+  return {&PlaneContactEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<PlaneContactEffect>(parameters);
+          },
+          &ReadPlane};
+}
+
+}  // namespace lacuna
