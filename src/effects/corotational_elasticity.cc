@@ -90,17 +90,17 @@ class CorotationalLaw {
     return lame_.mu * (F - R).squaredNorm() + 0.5 * lame_.lambda * trace * trace;
   }
 
-  Eigen::Matrix3d Stress(const Eigen::Matrix3d& F) const {
-    const Eigen::Matrix3d R = PolarRotation(F);
+  Eigen::Matrix3d Stress(const Eigen::Matrix3d& F, const Eigen::Matrix3d& R) const {
     const double trace = R.cwiseProduct(F).sum() - 3;
     return 2 * lame_.mu * F + (lame_.lambda * trace - 2 * lame_.mu) * R;
   }
 
-  CorotationalTangent Tangent(const Eigen::Matrix3d& F, bool convexify) const {
+  CorotationalTangent Tangent(const Eigen::Matrix3d& F, const Eigen::Matrix3d& R,
+                              bool convexify) const {
     CorotationalTangent tangent;
     tangent.lame = lame_;
-    tangent.rotation = PolarRotation(F);
-    Eigen::Matrix3d V = F.lazyProduct(tangent.rotation.transpose());
+    tangent.rotation = R;
+    Eigen::Matrix3d V = F.lazyProduct(R.transpose());
     V = (0.5 * (V + V.transpose())).eval();
     const double trace = V.trace();
     const double c = lame_.lambda * (trace - 3) - 2 * lame_.mu;

@@ -6,12 +6,9 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "fem/target_clones.h"
 
 extern "C" void spotrf_(const char* uplo, const int* n, float* a, const int* lda, int* info);
-
-// Compiled for three generations of processors, chosen when the program starts.
-#define LACUNA_FOR_EACH_PROCESSOR \
-  __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
 
 namespace lacuna {
 namespace {
@@ -20,9 +17,10 @@ namespace {
 constexpr float kCertainlyNegative = -1e-3f;
 constexpr int kEliminationBlock = 192;   // columns eliminated before the rest is updated
 constexpr int kTile = 256;               // columns of an update that one thread does at a time
-constexpr int kSubstitutionBlock = 128;  // columns substituted before the rest is updated
+constexpr int kSubstitutionBlock = 128;  // the same in a substitution by several threads
 constexpr int kRowsPerTask = 1024;       // of a forward substitution
-constexpr int kGroup = 8;                // columns that one pass over a vector deals with
+// Columns that one pass over a vector deals with; all blocks above are multiples of it.
+constexpr int kGroup = 8;
 
 // update ← update − rows · rowsᵀ (lower triangle), rows: n × k.
 void SubtractOuterProduct(int n, int k, const float* rows, int rows_stride, float* update,
@@ -38,102 +36,104 @@ void SubtractOuterProduct(int n, int k, const float* rows, int rows_stride, floa
   });
 }
 
-// y ← y − Σ_c columns(:, c) · factor[c] over a group of columns.
-LACUNA_FOR_EACH_PROCESSOR
-void SubtractColumns(int rows, const float* columns, int stride, const float* factor, float* y) {
-  const float *c0 = columns, *c1 = c0 + stride, *c2 = c1 + stride, *c3 = c2 + stride,
-              *c4 = c3 + stride, *c5 = c4 + stride, *c6 = c5 + stride, *c7 = c6 + stride;
+// y ← y − Σ_c columns(:, c) · factor[c] over a group of up to kGroup columns. Where there are
+// fewer, the last one stands in for the missing ones, with a factor of 0.
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void SubtractColumns(int rows, int width, const float* columns, int stride, const float* factor,
+                     float* y) {
+  const float* c[kGroup];
+  float f[kGroup] = {};
+  for (int k = 0; k < kGroup; ++k)
+    c[k] = columns + static_cast<int64_t>(std::min(k, width - 1)) * stride;
+  for (int k = 0; k < width; ++k) f[k] = factor[k];
 #pragma omp simd
   for (int i = 0; i < rows; ++i) {
-    y[i] -= ((c0[i] * factor[0] + c1[i] * factor[1]) + (c2[i] * factor[2] + c3[i] * factor[3])) +
-            ((c4[i] * factor[4] + c5[i] * factor[5]) + (c6[i] * factor[6] + c7[i] * factor[7]));
+    y[i] -= ((c[0][i] * f[0] + c[1][i] * f[1]) + (c[2][i] * f[2] + c[3][i] * f[3])) +
+            ((c[4][i] * f[4] + c[5][i] * f[5]) + (c[6][i] * f[6] + c[7][i] * f[7]));
   }
 }
 
-// sum[c] = columns(:, c) · y over a group of columns.
-LACUNA_FOR_EACH_PROCESSOR
-void DotColumns(int rows, const float* columns, int stride, const float* y, float* sum) {
-  const float *c0 = columns, *c1 = c0 + stride, *c2 = c1 + stride, *c3 = c2 + stride,
-              *c4 = c3 + stride, *c5 = c4 + stride, *c6 = c5 + stride, *c7 = c6 + stride;
+// sum[c] = columns(:, c) · y over a group of columns; the last one again stands in.
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void DotColumns(int rows, int width, const float* columns, int stride, const float* y, float* sum) {
+  const float* c[kGroup];
+  for (int k = 0; k < kGroup; ++k)
+    c[k] = columns + static_cast<int64_t>(std::min(k, width - 1)) * stride;
   float s0 = 0, s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0, s6 = 0, s7 = 0;
 #pragma omp simd reduction(+ : s0, s1, s2, s3, s4, s5, s6, s7)
   for (int i = 0; i < rows; ++i) {
-    s0 += c0[i] * y[i];
-    s1 += c1[i] * y[i];
-    s2 += c2[i] * y[i];
-    s3 += c3[i] * y[i];
-    s4 += c4[i] * y[i];
-    s5 += c5[i] * y[i];
-    s6 += c6[i] * y[i];
-    s7 += c7[i] * y[i];
+    s0 += c[0][i] * y[i];
+    s1 += c[1][i] * y[i];
+    s2 += c[2][i] * y[i];
+    s3 += c[3][i] * y[i];
+    s4 += c[4][i] * y[i];
+    s5 += c[5][i] * y[i];
+    s6 += c[6][i] * y[i];
+    s7 += c[7][i] * y[i];
   }
   sum[0] = s0, sum[1] = s1, sum[2] = s2, sum[3] = s3;
   sum[4] = s4, sum[5] = s5, sum[6] = s6, sum[7] = s7;
 }
 
-// The same two for fewer columns than a group has.
-void SubtractColumn(int rows, const float* column, float factor, float* y) {
-  for (int i = 0; i < rows; ++i) y[i] -= column[i] * factor;
-}
-
-float DotColumn(int rows, const float* column, const float* y) {
-  float sum = 0;
-  for (int i = 0; i < rows; ++i) sum += column[i] * y[i];
-  return sum;
-}
-
-// Substitutes columns [begin, end), at most a block, and updates y up to row `end`.
-void ForwardWithinBlock(int m, int begin, int end, const float* panel, float* y) {
-  const auto at = [&](int i, int j) { return panel + i + static_cast<int64_t>(j) * m; };
-  for (int j = begin; j < end; j += kGroup) {
-    const int width = std::min(kGroup, end - j);
-    for (int c = j; c < j + width; ++c) {
-      y[c] *= *at(c, c);
-      SubtractColumn(j + width - c - 1, at(c + 1, c), y[c], y + c + 1);
-    }
-    const int below = j + width;
-    if (width == kGroup) {
-      SubtractColumns(end - below, at(below, j), m, y + j, y + below);
-    } else {
-      for (int c = j; c < j + width; ++c)
-        SubtractColumn(end - below, at(below, c), y[c], y + below);
+// Replaces the lower triangle of a group's rows by its inverse, and the rest by 0.
+void InvertGroup(int width, float* group, int stride) {
+  const auto at = [&](int i, int j) -> float& {
+    return group[i + static_cast<int64_t>(j) * stride];
+  };
+  for (int j = 0; j < width; ++j) {
+    at(j, j) = 1 / at(j, j);
+    for (int i = 0; i < j; ++i) at(i, j) = 0;
+    for (int i = j + 1; i < width; ++i) {
+      // Column j of the inverse above row i is known, row i of the triangle is still there.
+      float sum = 0;
+      for (int k = j; k < i; ++k) sum += at(i, k) * at(k, j);
+      at(i, j) = -sum / at(i, i);
     }
   }
 }
 
-// y(begin…end) −= columns [begin, end) over rows [from, m), dotted with y(from…m).
-void SubtractDots(int m, int begin, int end, int from, const float* panel, float* y) {
-  float sum[kGroup];
+// y ← G y and y ← Gᵀ y, G the inverse that a group holds.
+void MultiplyByGroup(int width, const float* group, int stride, float* y) {
+  float product[kGroup] = {};
+  for (int j = 0; j < width; ++j) {
+    const float* column = group + static_cast<int64_t>(j) * stride;
+    for (int i = j; i < width; ++i) product[i] += column[i] * y[j];
+  }
+  std::copy_n(product, width, y);
+}
+
+void MultiplyByTransposedGroup(int width, const float* group, int stride, float* y) {
+  for (int j = 0; j < width; ++j) {
+    const float* column = group + static_cast<int64_t>(j) * stride;
+    float sum = 0;
+    for (int i = j; i < width; ++i) sum += column[i] * y[i];
+    y[j] = sum;
+  }
+}
+
+// Substitutes columns [begin, end) and updates y up to row `end`.
+void ForwardWithinBlock(int m, int begin, int end, const float* panel, float* y) {
   for (int j = begin; j < end; j += kGroup) {
-    const float* columns = panel + from + static_cast<int64_t>(j) * m;
-    const int width = std::min(kGroup, end - j);
-    if (width == kGroup) {
-      DotColumns(m - from, columns, m, y + from, sum);
-    } else {
-      for (int c = 0; c < width; ++c) {
-        sum[c] = DotColumn(m - from, columns + static_cast<int64_t>(c) * m, y + from);
-      }
-    }
-    for (int c = 0; c < width; ++c) y[j + c] -= sum[c];
+    const int width = std::min(kGroup, end - j), below = j + width;
+    const float* group = panel + j + static_cast<int64_t>(j) * m;
+    MultiplyByGroup(width, group, m, y + j);
+    SubtractColumns(end - below, width, group + width, m, y + j, y + below);
   }
 }
 
 void BackwardWithinBlock(int m, int begin, int end, const float* panel, float* y) {
-  const auto at = [&](int i, int j) { return panel + i + static_cast<int64_t>(j) * m; };
-  const int last = begin + (end - begin - 1) / kGroup * kGroup;
-  for (int j = last; j >= begin; j -= kGroup) {
-    const int stop = std::min(j + kGroup, end);
-    float sum[kGroup] = {};
-    if (stop - j == kGroup) {
-      DotColumns(end - stop, at(stop, j), m, y + stop, sum);
-    } else {
-      for (int c = j; c < stop; ++c) sum[c - j] = DotColumn(end - stop, at(stop, c), y + stop);
-    }
-    for (int c = stop - 1; c >= j; --c) {
-      y[c] = (y[c] - sum[c - j] - DotColumn(stop - c - 1, at(c + 1, c), y + c + 1)) * *at(c, c);
-    }
+  for (int j = begin + (end - begin - 1) / kGroup * kGroup; j >= begin; j -= kGroup) {
+    const int width = std::min(kGroup, end - j), below = j + width;
+    const float* group = panel + j + static_cast<int64_t>(j) * m;
+    float sum[kGroup];
+    DotColumns(end - below, width, group + width, m, y + below, sum);
+    for (int c = 0; c < width; ++c) y[j + c] -= sum[c];
+    MultiplyByTransposedGroup(width, group, m, y + j);
   }
 }
+
+// Columns substituted before the rest is updated: all of a front that is not for several threads.
+int ColumnsPerBlock(int m, int p) { return m > kRowsPerTask ? kSubstitutionBlock : p; }
 
 }  // namespace
 
@@ -165,42 +165,39 @@ Pivots EliminateColumns(int m, int p, float* panel, float* update) {
     });
   }
   if (m > p) SubtractOuterProduct(m - p, p, panel + p, m, update, m - p);
-  for (int j = 0; j < p; ++j) {
-    float& pivot = panel[j + static_cast<int64_t>(j) * m];
-    pivot = 1 / pivot;
+  for (int j = 0; j < p; j += kGroup) {
+    InvertGroup(std::min(kGroup, p - j), panel + j + static_cast<int64_t>(j) * m, m);
   }
   return Pivots::kPositive;
 }
 
 void ForwardSubstitute(int m, int p, const float* panel, float* y) {
-  for (int begin = 0; begin < p; begin += kSubstitutionBlock) {
-    const int end = std::min(p, begin + kSubstitutionBlock);
+  const int block = ColumnsPerBlock(m, p);
+  for (int begin = 0; begin < p; begin += block) {
+    const int end = std::min(p, begin + block);
     ForwardWithinBlock(m, begin, end, panel, y);
     ParallelBlocks(m - end, kRowsPerTask, [&](int64_t first, int64_t last) {
       const int rows = static_cast<int>(last - first), from = end + static_cast<int>(first);
       for (int j = begin; j < end; j += kGroup) {
-        const float* columns = panel + from + static_cast<int64_t>(j) * m;
-        if (end - j >= kGroup) {
-          SubtractColumns(rows, columns, m, y + j, y + from);
-        } else {
-          for (int c = j; c < end; ++c) {
-            SubtractColumn(rows, columns + static_cast<int64_t>(c - j) * m, y[c], y + from);
-          }
-        }
+        SubtractColumns(rows, std::min(kGroup, end - j), panel + from + static_cast<int64_t>(j) * m,
+                        m, y + j, y + from);
       }
     });
   }
 }
 
 void BackwardSubstitute(int m, int p, const float* panel, float* y) {
-  const int last = (p - 1) / kSubstitutionBlock * kSubstitutionBlock;
-  for (int begin = last; begin >= 0; begin -= kSubstitutionBlock) {
-    const int end = std::min(p, begin + kSubstitutionBlock);
-    const int columns_per_task =
-        m - end > kRowsPerTask ? kSubstitutionBlock / 4 : kSubstitutionBlock;
-    ParallelBlocks(end - begin, columns_per_task, [&](int64_t first, int64_t stop) {
-      SubtractDots(m, begin + static_cast<int>(first), begin + static_cast<int>(stop), end, panel,
-                   y);
+  const int block = ColumnsPerBlock(m, p);
+  for (int begin = (p - 1) / block * block; begin >= 0; begin -= block) {
+    const int end = std::min(p, begin + block);
+    const int columns_per_task = m - end > kRowsPerTask ? block / 4 : block;
+    ParallelBlocks(end - begin, columns_per_task, [&](int64_t first, int64_t last) {
+      float sum[kGroup];
+      for (int64_t j = begin + first; j < begin + last; j += kGroup) {
+        const int width = static_cast<int>(std::min<int64_t>(kGroup, begin + last - j));
+        DotColumns(m - end, width, panel + end + j * m, m, y + end, sum);
+        for (int c = 0; c < width; ++c) y[j + c] -= sum[c];
+      }
     });
     BackwardWithinBlock(m, begin, end, panel, y);
   }

@@ -15,8 +15,8 @@ enum class Pivots {
   kNegative,  // one was more negative than rounding can explain: the matrix is not definite
 };
 
-// panel ← [L₁₁; L₂₁] with L₁₁ L₁₁ᵀ = its upper part, update ← update − L₂₁ L₂₁ᵀ. The diagonal of
-// L₁₁ is stored inverted. Stops at the first pivot that is not positive.
+// panel ← [L₁₁; L₂₁] with L₁₁ L₁₁ᵀ = its upper part, update ← update − L₂₁ L₂₁ᵀ. Blocks of a few
+// columns on the diagonal of L₁₁ are stored inverted. Stops at the first pivot that is not positive.
 Pivots EliminateColumns(int m, int p, float* panel, float* update);
 
 // y ← [z; y₂ − L₂₁ z] with z = L₁₁⁻¹ y₁; y of length m.

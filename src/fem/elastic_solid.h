@@ -11,8 +11,10 @@
 //   Eigen::Matrix3d Stress(const Matrix3d& F) const;               P, Pa
 //   <tangent> Tangent(const Matrix3d& F, bool convexify) const;    ∂P/∂F, Pa: a StressTangent, or a
 //                                type of its own for which AddStiffness(tangent, …) is overloaded
-// Because of the linearity ∂P/∂E and ∂P/∂ν are the stresses of the law with ∂(λ, μ)/∂E and
-// ∂(λ, μ)/∂ν in place of (λ, μ).
+// A law that needs the rotation R nearest to F has Stress(F, R) and Tangent(F, R, convexify)
+// instead: rotations are cheaper when they are found for many points at a time. Because of the
+// linearity ∂P/∂E and ∂P/∂ν are the stresses of the law with ∂(λ, μ)/∂E and ∂(λ, μ)/∂ν in place of
+// (λ, μ).
 #ifndef LACUNA_FEM_ELASTIC_SOLID_H_
 #define LACUNA_FEM_ELASTIC_SOLID_H_
 
@@ -27,6 +29,52 @@
 #include "fem/stress_tangent.h"
 
 namespace lacuna {
+
+template <typename Law>
+concept NeedsRotation = requires(const Law& law, const Eigen::Matrix3d& F) {
+  law.Stress(F, F);
+};
+
+// What a law is evaluated for at the quadrature points of consecutive elements [begin, end), at
+// most a batch. `k` counts them from the first one's.
+template <typename Law, int kNodes>
+class BatchOfPoints {
+ public:
+  BatchOfPoints(const Kinematics& at, int begin, int end) {
+    int points = 0;
+    for (int element = begin; element < end; ++element) {
+      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
+      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+        const int q = element * QuadraturePoints<kNodes>() + p;
+        gradient_[points] = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q));
+        if constexpr (NeedsRotation<Law>) rotation_[points] = gradient_[points];
+        ++points;
+      }
+    }
+    if constexpr (NeedsRotation<Law>) ReplaceByRotations(points, rotation_);
+  }
+
+  Eigen::Matrix3d Stress(const Law& law, int k) const {
+    if constexpr (NeedsRotation<Law>) {
+      return law.Stress(gradient_[k], rotation_[k]);
+    } else {
+      return law.Stress(gradient_[k]);
+    }
+  }
+
+  auto Tangent(const Law& law, int k, bool convexify) const {
+    if constexpr (NeedsRotation<Law>) {
+      return law.Tangent(gradient_[k], rotation_[k], convexify);
+    } else {
+      return law.Tangent(gradient_[k], convexify);
+    }
+  }
+
+ private:
+  static constexpr int kPoints = ElementSchedule::kElementsPerBatch * QuadraturePoints<kNodes>();
+  Eigen::Matrix3d gradient_[kPoints];  // F
+  Eigen::Matrix3d rotation_[NeedsRotation<Law> ? kPoints : 1];
+};
 
 template <typename Law>
 class ElasticSolid final : public Effect {
@@ -88,16 +136,18 @@ class ElasticSolid final : public Effect {
                              Eigen::VectorXd* force) {
     const Law law(constants);
     const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
-      Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
-      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-        const int q = element * QuadraturePoints<kNodes>() + p;
-        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
-        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-        nodal.noalias() -= (body.weight[q] * law.Stress(F)).lazyProduct(g.transpose());
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachBatch(*body.schedule, [&](int begin, int end) {
+      const BatchOfPoints<Law, kNodes> points(at, begin, end);
+      for (int element = begin; element < end; ++element) {
+        Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+        for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
+          const Eigen::Matrix3d stress = points.Stress(law, q - begin * kPoints);
+          nodal.noalias() -=
+              (body.weight[q] * stress).lazyProduct(ShapeGradient<kNodes>(body, q).transpose());
+        }
+        ScatterNodes<kNodes>(body, element, nodal, force);
       }
-      ScatterNodes<kNodes>(body, element, nodal, force);
     });
   }
 
@@ -106,17 +156,19 @@ class ElasticSolid final : public Effect {
                           BlockMatrix* tangent) const {
     const Law law(LameFromYoung(young_modulus_, poisson_ratio_));
     const Body& body = at.body;
-    ForEachElement(*body.schedule, [&](int element) {
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
-      ElementStiffness<kNodes> stiffness;
-      stiffness.SetZero();
-      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-        const int q = element * QuadraturePoints<kNodes>() + p;
-        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
-        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-        AddStiffness<kNodes>(law.Tangent(F, convexify), g, -weight * body.weight[q], &stiffness);
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachBatch(*body.schedule, [&](int begin, int end) {
+      const BatchOfPoints<Law, kNodes> points(at, begin, end);
+      for (int element = begin; element < end; ++element) {
+        ElementStiffness<kNodes> stiffness;
+        stiffness.SetZero();
+        for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
+          AddStiffness<kNodes>(points.Tangent(law, q - begin * kPoints, convexify),
+                               ShapeGradient<kNodes>(body, q), -weight * body.weight[q],
+                               &stiffness);
+        }
+        ScatterStiffness<kNodes>(body, element, stiffness, tangent);
       }
-      ScatterStiffness<kNodes>(body, element, stiffness, tangent);
     });
   }
 

@@ -28,6 +28,7 @@ struct ElementSchedule {
   std::vector<int> block;
 
   static constexpr int kElementsPerChunk = 128;
+  static constexpr int kElementsPerBatch = 16;
   int ChunkCount() const { return static_cast<int>(chunk.size()); }
   int ColourCount() const { return static_cast<int>(colour_begin.size()) - 1; }
   int ChunkBegin(int c) const { return c * kElementsPerChunk; }
@@ -41,16 +42,28 @@ std::vector<int> ElementsAlongCurve(const TetMesh& mesh);
 // For elements in the order of `mesh`.
 ElementSchedule MakeElementSchedule(const TetMesh& mesh, const BlockPattern& pattern);
 
-// Calls visit(element) for each element, as described above.
+// Calls visit(begin, end) for batches of consecutive elements that together are all, as described
+// above.
 template <typename Visit>
-void ForEachElement(const ElementSchedule& schedule, const Visit& visit) {
+void ForEachBatch(const ElementSchedule& schedule, const Visit& visit) {
   for (int colour = 0; colour < schedule.ColourCount(); ++colour) {
     const int first = schedule.colour_begin[colour];
     ParallelFor(schedule.colour_begin[colour + 1] - first, 1, [&](int64_t k) {
       const int chunk = schedule.chunk[first + k];
-      for (int e = schedule.ChunkBegin(chunk); e < schedule.ChunkEnd(chunk); ++e) visit(e);
+      const int end = schedule.ChunkEnd(chunk);
+      for (int e = schedule.ChunkBegin(chunk); e < end; e += ElementSchedule::kElementsPerBatch) {
+        visit(e, std::min(end, e + ElementSchedule::kElementsPerBatch));
+      }
     });
   }
+}
+
+// Calls visit(element) for each element, as described above.
+template <typename Visit>
+void ForEachElement(const ElementSchedule& schedule, const Visit& visit) {
+  ForEachBatch(schedule, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) visit(e);
+  });
 }
 
 // The sum of value(element) over all elements, independent of the number of threads.

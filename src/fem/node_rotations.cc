@@ -1,5 +1,7 @@
 #include "fem/node_rotations.h"
 
+#include <cmath>
+
 #include "core/parallel.h"
 #include "fem/element_kinematics.h"
 #include "fem/polar_decomposition.h"
@@ -34,9 +36,12 @@ std::vector<Eigen::Matrix3d> NodeRotations(const Body& body, const Eigen::Vector
   } else {
     AddDeformationGradients<10>(body, position, &rotations);
   }
-  ParallelFor(body.NodeCount(), kNodesPerTask, [&](int64_t i) {
-    const double size = rotations[i].norm();
-    rotations[i] = PolarRotation(size > 0 ? Eigen::Matrix3d(rotations[i] / size) : rotations[i]);
+  ParallelBlocks(body.NodeCount(), kNodesPerTask, [&](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) {
+      const double size = rotations[i].norm();
+      if (size > 0) rotations[i] *= std::sqrt(3.0) / size;
+    }
+    ReplaceByRotations(static_cast<int>(end - begin), &rotations[begin]);
   });
   return rotations;
 }

@@ -18,6 +18,10 @@ SignedSvd ComputeSignedSvd(const Eigen::Matrix3d& F);
 // (Higham 1986), which is several times faster than an SVD, where det F is well above zero.
 Eigen::Matrix3d PolarRotation(const Eigen::Matrix3d& F);
 
+// Replaces each of `count` matrices by the rotation nearest to it. Several are dealt with at a time
+// by vector instructions, so that each costs a fraction of a call of the above.
+void ReplaceByRotations(int count, Eigen::Matrix3d* matrices);
+
 // ∂(det F)/∂F.
 inline Eigen::Matrix3d Cofactor(const Eigen::Matrix3d& F) {
   Eigen::Matrix3d cofactor;

@@ -64,7 +64,7 @@ class SupernodalFactor {
   double flops_ = 0;
   float scale_ = 1;  // of the matrix, so that its entries are of order one
 
-  // Front s of m rows and p columns: L as an m × p column-major panel whose diagonal is inverted.
+  // Front s of m rows and p columns: L as an m × p column-major panel (dense_front.h).
   std::vector<float> factor_;
   std::vector<float> updates_;        // Schur complements on their way to the parent
   std::vector<float> front_vectors_;  // right-hand sides on theirs
