@@ -18,12 +18,16 @@ std::string Length(double metres) {
 void PrintFrames(const RunRecord& record) {
   fmt::print(
       "\n  frame    time s   |D| m      |D| per point   scan to surface: mean   max"
-      "         force N   fit\n");
+      "         force N (sd)        factors  fit\n");
   for (const FrameRecord& frame : record.frames) {
-    fmt::print("  {:5} {:9.3f}   {:<9.4g}  {:>13}   {:>21} {:>9}   {:9.4g}   {}\n", frame.frame,
-               frame.time, frame.residual, Length(frame.residual_mean),
-               Length(frame.surface_distance_mean), Length(frame.surface_distance_max),
-               frame.force_resultant.norm(), frame.solver.status);
+    const double deviation = frame.force_resultant_deviation.norm();
+    const std::string force =
+        fmt::format("{:.3g}{}", frame.force_resultant.norm(),
+                    std::isnan(deviation) ? "" : fmt::format(" ({:.2g})", deviation));
+    fmt::print("  {:5} {:9.3f}   {:<9.4g}  {:>13}   {:>21} {:>9}   {:>17}   {:>7}  {}\n",
+               frame.frame, frame.time, frame.residual, Length(frame.residual_mean),
+               Length(frame.surface_distance_mean), Length(frame.surface_distance_max), force,
+               frame.solver.iterations, frame.solver.status);
   }
 }
 

@@ -123,6 +123,13 @@ Body MakeBody(const TetMesh& mesh, double density) {
   return body;
 }
 
+Eigen::VectorXd NodeBoundaryAreas(const Body& body) {
+  const Eigen::VectorXd areas = VertexAreas(body.boundary.surface);
+  Eigen::VectorXd node_areas = Eigen::VectorXd::Zero(body.NodeCount());
+  node_areas(body.boundary.node) = areas;
+  return node_areas;
+}
+
 int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
   return body.mesh.Order() == 1 ? FirstInverted<4>(body, position)
                                 : FirstInverted<10>(body, position);

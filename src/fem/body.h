@@ -41,6 +41,10 @@ struct Body {
 // density is not positive.
 Body MakeBody(const TetMesh& mesh, double density);
 
+// Boundary area around each node (n, m²; 0 inside): a third of each boundary triangle's, the four
+// that a quadratic face is split into counting as triangles.
+Eigen::VectorXd NodeBoundaryAreas(const Body& body);
+
 // An element that is inside out or flat (det ∂x/∂X ≤ 0 at a quadrature point) when the nodes are at
 // `position` (3n), by its number in the mesh that was given; −1 when there is none.
 int FindInvertedElement(const Body& body, const Eigen::VectorXd& position);

@@ -4,6 +4,8 @@
 #include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <cmath>
 #include <vector>
 
@@ -28,19 +30,24 @@ LinearSolverOptions Solving(double tolerance) {
 class BalancedMotion : public ceres::EvaluationCallback {
  public:
   BalancedMotion(const Model& model, const StepEquation& equation, const ForceModel& force_model,
-                 const Eigen::VectorXd& start, const Eigen::VectorXd* coefficients)
+                 const Eigen::VectorXd& position, const Eigen::VectorXd* coefficients)
       : equation_(equation),
         basis_(force_model.basis),
         coefficients_(coefficients),
         fixed_(GrippedNodes(model)),
-        gripped_place_(start),
+        gripped_place_(position),
         newton_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
         sensitivity_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
         tangent_(model.body->pattern),
-        balanced_position_(start),
-        position_(start) {}
+        differentiated_position_(position),
+        position_(position) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    if (IsDifferentiatedHere()) {
+      position_ = differentiated_position_;
+      is_balanced_ = true;
+      return;
+    }
     if (new_evaluation_point) is_balanced_ = Balance();
     if (evaluate_jacobians && is_balanced_) is_balanced_ = Differentiate();
   }
@@ -53,14 +60,18 @@ class BalancedMotion : public ceres::EvaluationCallback {
   }
 
  private:
-  // From the last balanced place along the tangent; where that fails, in ever smaller parts.
+  bool IsDifferentiatedHere() const {
+    return sensitivity_.size() > 0 && *coefficients_ == differentiated_coefficients_;
+  }
+
+  // From the last differentiated place along the tangent; where that fails, in ever smaller parts.
   bool Balance() {
     for (int parts = 1; parts <= kMaxLoadParts; parts *= 2) {
-      position_ = balanced_position_;
+      position_ = differentiated_position_;
       if (sensitivity_.size() > 0 && parts == 1)
-        position_ += sensitivity_ * (*coefficients_ - balanced_coefficients_);
-      const Eigen::VectorXd from = balanced_coefficients_.size() > 0
-                                       ? balanced_coefficients_
+        position_ += sensitivity_ * (*coefficients_ - differentiated_coefficients_);
+      const Eigen::VectorXd from = differentiated_coefficients_.size() > 0
+                                       ? differentiated_coefficients_
                                        : Eigen::VectorXd::Zero(coefficients_->size());
       bool solved = true;
       for (int part = 1; part <= parts && solved; ++part) {
@@ -85,8 +96,8 @@ class BalancedMotion : public ceres::EvaluationCallback {
       if (!sensitivity_solver_.Solve(tangent_, load, &column).IsUsable()) return false;
       sensitivity_.col(k) = column;
     }
-    balanced_position_ = position_;
-    balanced_coefficients_ = *coefficients_;
+    differentiated_position_ = position_;
+    differentiated_coefficients_ = *coefficients_;
     return true;
   }
 
@@ -95,10 +106,11 @@ class BalancedMotion : public ceres::EvaluationCallback {
   const Eigen::VectorXd* coefficients_;
   std::vector<char> fixed_;
   Eigen::VectorXd gripped_place_;
+  // Two, because a factor lives longer where few systems are solved with each matrix.
   LinearSolver newton_solver_;
   LinearSolver sensitivity_solver_;
   BlockMatrix tangent_;
-  Eigen::VectorXd balanced_position_, balanced_coefficients_;  // where ∂x/∂c was last taken
+  Eigen::VectorXd differentiated_position_, differentiated_coefficients_;  // where ∂x/∂c was taken
   Eigen::VectorXd position_;
   Eigen::MatrixXd sensitivity_;  // 3n × K
   bool is_balanced_ = false;
@@ -143,17 +155,53 @@ class ReducedObservationCost : public ceres::CostFunction {
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
 };
 
+// (JᵀJ)⁻¹ of all residuals, prior and loss included, where the problem stands.
+Eigen::MatrixXd Covariance(ceres::Problem* problem, Eigen::Index count) {
+  ceres::CRSMatrix sparse;
+  problem->Evaluate({}, nullptr, nullptr, nullptr, &sparse);
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const Eigen::Map<const Rows> jacobian(
+      sparse.num_rows, sparse.num_cols, static_cast<Eigen::Index>(sparse.values.size()),
+      sparse.rows.data(), sparse.cols.data(), sparse.values.data());
+  const Eigen::MatrixXd dense(jacobian);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  information.selfadjointView<Eigen::Lower>().rankUpdate(dense.transpose());
+  return information.selfadjointView<Eigen::Lower>().llt().solve(
+      Eigen::MatrixXd::Identity(count, count));
+}
+
 }  // namespace
 
-ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
-                         const ForceModel& force_model, const Observations& observations,
-                         const ForceFitStart& start, const ForceFitPrior& prior,
-                         const ForceFitOptions& options) {
+struct CoefficientFitter::Implementation {
+  Implementation(const Model& model, const StepEquation& equation, const ForceModel& force_model,
+                 const Eigen::VectorXd& position, const Eigen::VectorXd& start)
+      : coefficients(start),
+        basis(force_model.basis),
+        motion(model, equation, force_model, position, &coefficients) {}
+
+  Eigen::VectorXd coefficients;
+  const Eigen::SparseMatrix<double, Eigen::RowMajor>& basis;
+  BalancedMotion motion;
+};
+
+CoefficientFitter::CoefficientFitter(const Model& model, const StepEquation& equation,
+                                     const ForceModel& force_model, const Eigen::VectorXd& position,
+                                     const Eigen::VectorXd& coefficients)
+    : implementation_(
+          std::make_unique<Implementation>(model, equation, force_model, position, coefficients)) {
   for (const char free : force_model.free) CHECK(!free);
+}
+
+CoefficientFitter::~CoefficientFitter() = default;
+
+ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFitPrior& prior,
+                                const ForceFitOptions& options) {
+  BalancedMotion& motion = implementation_->motion;
+  Eigen::VectorXd& coefficients = implementation_->coefficients;
+  const Eigen::Index count = coefficients.size();
+  const int factorisations_before = motion.factorisations();
   ForceFit fit;
-  fit.coefficients = start.coefficients;
-  fit.multiplier = Eigen::VectorXd::Zero(start.position.size());
-  BalancedMotion motion(model, equation, force_model, start.position, &fit.coefficients);
+  fit.multiplier = Eigen::VectorXd::Zero(motion.position().size());
 
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &motion;
@@ -163,13 +211,11 @@ ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
     ceres::LossFunction* loss =
         options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
     observed.push_back(problem.AddResidualBlock(
-        new ReducedObservationCost(motion, observations, j, fit.coefficients.size()), loss,
-        fit.coefficients.data()));
+        new ReducedObservationCost(motion, observations, j, count), loss, coefficients.data()));
   }
-  const Eigen::Index count = fit.coefficients.size();
   problem.AddResidualBlock(
       new ceres::NormalPrior(Eigen::MatrixXd::Identity(count, count), prior.coefficients), nullptr,
-      fit.coefficients.data());
+      coefficients.data());
 
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
@@ -180,7 +226,7 @@ ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
 
-  fit.factorisations = motion.factorisations();
+  fit.factorisations = motion.factorisations() - factorisations_before;
   fit.initial_cost = summary.initial_cost;
   fit.final_cost = summary.final_cost;
   fit.message = summary.message;
@@ -194,8 +240,10 @@ ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
   // Also brings the motion back to the best coefficients, which need not be the last ones tried.
   if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
   fit.weighted_rms = RootMeanSquare(residuals);
+  fit.covariance = Covariance(&problem, count);
   fit.position = motion.position();
-  fit.force = force_model.basis * fit.coefficients;
+  fit.coefficients = coefficients;
+  fit.force = implementation_->basis * coefficients;
   if (summary.termination_type == ceres::CONVERGENCE) fit.status = ForceFit::Status::kConverged;
   return fit;
 }

@@ -11,14 +11,23 @@ namespace lacuna {
 //   ½ Σ_j ρ(‖W_j (N_j x(c) − y_j)‖²) + ½ ‖c − c₀‖²        with        r(x(c)) = B c
 //
 // solved by Newton's method at each c; the derivative comes from the implicit function theorem,
-// ∂x/∂c = (∂r/∂x)⁻¹ B, one back-substitution per coefficient with the factor that Newton's method
-// ends with. Cost and memory grow with coefficients × nodes.
-//
-// The force model must have no free nodes; `start` and `prior` must have their full sizes.
-ForceFit FitCoefficients(const Model& model, const StepEquation& equation,
-                         const ForceModel& force_model, const Observations& observations,
-                         const ForceFitStart& start, const ForceFitPrior& prior,
-                         const ForceFitOptions& options);
+// ∂x/∂c = (∂r/∂x)⁻¹ B, one back-substitution per coefficient with one factor. Cost and memory grow
+// with coefficients × nodes. The force model must have no free nodes.
+class CoefficientFitter {
+ public:
+  // Sizes are full here: `position` 3n, `coefficients` K.
+  CoefficientFitter(const Model& model, const StepEquation& equation, const ForceModel& force_model,
+                    const Eigen::VectorXd& position, const Eigen::VectorXd& coefficients);
+  ~CoefficientFitter();
+
+  // From where the last fit ended.
+  ForceFit Fit(const Observations& observations, const ForceFitPrior& prior,
+               const ForceFitOptions& options);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace lacuna
 

@@ -18,16 +18,40 @@ Eigen::VectorXd OrZero(const Eigen::VectorXd& given, Eigen::Index size) {
 
 }  // namespace
 
-ForceFit FitStepForces(const Model& model, const StepEquation& equation,
-                       const ForceModel& force_model, const Observations& observations,
-                       const ForceFitStart& start, const ForceFitPrior& prior,
-                       const ForceFitOptions& options) {
+struct StepForceFitter::Implementation {
+  const Model& model;
+  const StepEquation& equation;
+  const ForceModel& force_model;
+  PositionFitStart start;                           // of the next fit
+  std::unique_ptr<CoefficientFitter> coefficients;  // without free nodes
+};
+
+StepForceFitter::StepForceFitter(const Model& model, const StepEquation& equation,
+                                 const ForceModel& force_model, const Eigen::VectorXd& position,
+                                 const Eigen::VectorXd& coefficients) {
   const Eigen::Index unknowns = 3 * model.body->NodeCount();
-  CHECK_EQ(start.position.size(), unknowns);
+  CHECK_EQ(position.size(), unknowns);
+  const PositionFitStart start{position, OrZero(coefficients, force_model.CoefficientCount()),
+                               Eigen::VectorXd::Zero(unknowns)};
+  implementation_ = std::make_unique<Implementation>(
+      Implementation{model, equation, force_model, start, nullptr});
+  const bool has_free_nodes =
+      std::any_of(force_model.free.begin(), force_model.free.end(), [](char free) { return free; });
+  if (!has_free_nodes && force_model.HasUnknowns()) {
+    implementation_->coefficients = std::make_unique<CoefficientFitter>(
+        model, equation, force_model, start.position, start.coefficients);
+  }
+}
+
+StepForceFitter::~StepForceFitter() = default;
+
+ForceFit StepForceFitter::Fit(const Observations& observations, const ForceFitPrior& prior,
+                              const ForceFitOptions& options) {
+  Implementation& kept = *implementation_;
   ForceFit fit;
-  fit.position = start.position;
-  fit.force = Eigen::VectorXd::Zero(unknowns);
-  if (!force_model.HasUnknowns()) {
+  fit.position = kept.start.position;
+  fit.force = Eigen::VectorXd::Zero(kept.start.position.size());
+  if (!kept.force_model.HasUnknowns()) {
     fit.status = ForceFit::Status::kNoUnknowns;
     fit.message = "the force model has no unknown forces";
     return fit;
@@ -37,15 +61,13 @@ ForceFit FitStepForces(const Model& model, const StepEquation& equation,
     fit.message = "no observation reaches the model's surface";
     return fit;
   }
-  const Eigen::Index coefficients = force_model.CoefficientCount();
-  const ForceFitStart full_start{start.position, OrZero(start.coefficients, coefficients),
-                                 OrZero(start.multiplier, unknowns)};
-  const ForceFitPrior full_prior{OrZero(prior.force, unknowns),
-                                 OrZero(prior.coefficients, coefficients)};
-  const bool has_free_nodes =
-      std::any_of(force_model.free.begin(), force_model.free.end(), [](char free) { return free; });
-  const auto fit_by = has_free_nodes ? &FitPositions : &FitCoefficients;
-  return fit_by(model, equation, force_model, observations, full_start, full_prior, options);
+  const ForceFitPrior full_prior{OrZero(prior.force, kept.start.position.size()),
+                                 OrZero(prior.coefficients, kept.force_model.CoefficientCount())};
+  if (kept.coefficients) return kept.coefficients->Fit(observations, full_prior, options);
+  fit = FitPositions(kept.model, kept.equation, kept.force_model, observations, kept.start,
+                     full_prior, options);
+  if (fit.IsUsable()) kept.start = {fit.position, fit.coefficients, fit.multiplier};
+  return fit;
 }
 
 std::vector<char> GrippedNodes(const Model& model) {

@@ -9,6 +9,7 @@
 #define LACUNA_FIT_FORCE_FIT_H_
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,7 +42,11 @@ struct ForceFit {
   Eigen::VectorXd position;      // 3n, m: the fitted end of the step
   Eigen::VectorXd force;         // 3n, N: the fitted outer forces; 0 where the model has none
   Eigen::VectorXd coefficients;  // K
-  Eigen::VectorXd multiplier;    // 3n, N: of the balance constraint, see ForceFitStart
+  // K × K: what the observations and the prior leave open of the coefficients, if the observations'
+  // standard deviations are right and the problem is linear on that scale (Gauss–Newton). Empty
+  // where the positions are the unknowns.
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd multiplier;  // 3n, N: of the balance constraint, where the positions are unknowns
   int factorisations = 0;
   double initial_cost = 0, final_cost = 0;
   double weighted_rms = 0;  // of the observations, in their standard deviations
@@ -49,22 +54,30 @@ struct ForceFit {
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
-// Where the search begins. The nearer, the fewer iterations.
-struct ForceFitStart {
-  Eigen::VectorXd position;      // 3n, m; gripped nodes where their grip puts them
-  Eigen::VectorXd coefficients;  // K; empty: 0
-  Eigen::VectorXd multiplier;    // 3n, N: that of an earlier fit of the same step; empty: 0
-};
 // What the forces are expected to be, for example those of the step before.
 struct ForceFitPrior {
   Eigen::VectorXd force;         // 3n, N, read at free nodes; empty: 0
   Eigen::VectorXd coefficients;  // K; empty: 0
 };
 
-ForceFit FitStepForces(const Model& model, const StepEquation& equation,
-                       const ForceModel& force_model, const Observations& observations,
-                       const ForceFitStart& start, const ForceFitPrior& prior,
-                       const ForceFitOptions& options = {});
+// Fits the forces of one step, again and again as the observations are improved. Keeps what can be
+// kept between the fits: each begins where the last one ended, with its derivatives and factors.
+class StepForceFitter {
+ public:
+  // `position` (3n, m): where the search begins, gripped nodes where their grip puts them; the
+  // nearer, the fewer iterations. `coefficients` (K): likewise; empty: 0. The model, the equation
+  // and the force model must outlive the fitter.
+  StepForceFitter(const Model& model, const StepEquation& equation, const ForceModel& force_model,
+                  const Eigen::VectorXd& position, const Eigen::VectorXd& coefficients = {});
+  ~StepForceFitter();
+
+  ForceFit Fit(const Observations& observations, const ForceFitPrior& prior = {},
+               const ForceFitOptions& options = {});
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 // n: the nodes that a grip holds.
 std::vector<char> GrippedNodes(const Model& model);

@@ -6,19 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/prescribed_force.h"
+
 namespace lacuna {
 namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 using Basis = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
-// Boundary area of each mesh node, m²; 0 inside.
-Eigen::VectorXd NodeAreas(const Body& body) {
-  const Eigen::VectorXd areas = VertexAreas(body.boundary.surface);
-  Eigen::VectorXd node_areas = Eigen::VectorXd::Zero(body.NodeCount());
-  for (Eigen::Index v = 0; v < areas.size(); ++v) node_areas[body.boundary.node[v]] = areas[v];
-  return node_areas;
-}
 
 // L with L Lᵀ ≈ the correlation matrix exp(−d²/2ℓ²) of the points, the residual variance of each
 // point below `tolerance`. Rows belong to points; as many columns as needed.
@@ -60,13 +54,10 @@ ForceModel FreeForces(const Body& body, const Eigen::VectorXi& nodes) {
 
 ForceModel FootprintForce(const Body& body, const Eigen::VectorXi& nodes, double force_scale) {
   ForceModel model = NoForces(body);
-  const Eigen::VectorXd areas = NodeAreas(body);
-  const double total = areas(nodes).sum();
-  CHECK_GT(total, 0) << "a footprint without boundary area";
+  const Eigen::VectorXd share = BoundaryShares(body, nodes);
   Triplets entries;
   for (const int node : nodes)
-    for (int k = 0; k < 3; ++k)
-      entries.emplace_back(3 * node + k, k, force_scale * areas[node] / total);
+    for (int k = 0; k < 3; ++k) entries.emplace_back(3 * node + k, k, force_scale * share[node]);
   model.basis.resize(3 * body.NodeCount(), 3);
   model.basis.setFromTriplets(entries.begin(), entries.end());
   return model;
@@ -87,7 +78,7 @@ ForceModel SmoothForces(const Body& body, const Eigen::VectorXi& nodes, double l
   CHECK_GT(length, 0);
   constexpr double kResidualVariance = 1e-3;
   ForceModel model = NoForces(body);
-  const Eigen::VectorXd areas = NodeAreas(body);
+  const Eigen::VectorXd areas = NodeBoundaryAreas(body);
   const Eigen::Matrix3Xd points = body.mesh.nodes(Eigen::all, nodes);
   const Eigen::MatrixXd factor = PivotedCholesky(points, length, kResidualVariance);
   Triplets entries;
@@ -125,6 +116,15 @@ ForceModel HoldNetForceAndTorque(const Body& body, const ForceModel& model) {
   const Eigen::MatrixXd reduced = Eigen::MatrixXd(model.basis) * q.rightCols(count - qr.rank());
   held.basis = reduced.sparseView();
   return held;
+}
+
+Eigen::Vector3d NetForceDeviation(const ForceModel& model, const Eigen::MatrixXd& covariance) {
+  CHECK_EQ(covariance.rows(), model.CoefficientCount());
+  Eigen::MatrixXd net = Eigen::MatrixXd::Zero(3, model.CoefficientCount());
+  for (Eigen::Index row = 0; row < model.basis.rows(); ++row)
+    for (decltype(model.basis)::InnerIterator entry(model.basis, row); entry; ++entry)
+      net(row % 3, entry.col()) += entry.value();
+  return (net * covariance * net.transpose()).diagonal().cwiseSqrt();
 }
 
 NetForce NetForceOf(const Eigen::VectorXd& nodal_force, const Eigen::VectorXd& position,

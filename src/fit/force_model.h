@@ -60,6 +60,10 @@ struct NetForce {
 NetForce NetForceOf(const Eigen::VectorXd& nodal_force, const Eigen::VectorXd& position,
                     const Eigen::Vector3d& centre);
 
+// Standard deviation of each component of the net force (N) of coefficients with this covariance
+// (K × K).
+Eigen::Vector3d NetForceDeviation(const ForceModel& model, const Eigen::MatrixXd& covariance);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_FIT_FORCE_MODEL_H_

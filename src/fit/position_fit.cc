@@ -141,7 +141,7 @@ int WeightedNodes(const Observations& observations, Eigen::Index j) {
 
 ForceFit FitPositions(const Model& model, const StepEquation& equation,
                       const ForceModel& force_model, const Observations& observations,
-                      const ForceFitStart& start, const ForceFitPrior& prior,
+                      const PositionFitStart& start, const ForceFitPrior& prior,
                       const ForceFitOptions& options) {
   const Body& body = *model.body;
   const int nodes = body.NodeCount();

@@ -17,9 +17,14 @@ namespace lacuna {
 // Row i of the Jacobian holds only the nodes that share an element with node i.
 //
 // All of `start` and `prior` must have their full sizes.
+struct PositionFitStart {
+  Eigen::VectorXd position;      // 3n, m; gripped nodes where their grip puts them
+  Eigen::VectorXd coefficients;  // K
+  Eigen::VectorXd multiplier;    // 3n, N: that of an earlier fit of the same step, or 0
+};
 ForceFit FitPositions(const Model& model, const StepEquation& equation,
                       const ForceModel& force_model, const Observations& observations,
-                      const ForceFitStart& start, const ForceFitPrior& prior,
+                      const PositionFitStart& start, const ForceFitPrior& prior,
                       const ForceFitOptions& options);
 
 }  // namespace lacuna

@@ -69,6 +69,7 @@ json FromFrame(const FrameRecord& frame) {
     value[number.name] = FromNumber(frame.*number.value);
   }
   value["force_resultant_N"] = FromVector(frame.force_resultant);
+  value["force_resultant_deviation_N"] = FromVector(frame.force_resultant_deviation);
   value["torque_resultant_Nm"] = FromVector(frame.torque_resultant);
   value["solver"] = FromStatus(frame.solver);
   return value;
@@ -80,6 +81,7 @@ FrameRecord ToFrame(const json& value) {
     frame.*number.value = ToNumber(value.at(number.name));
   }
   frame.force_resultant = ToVector(value.at("force_resultant_N"));
+  frame.force_resultant_deviation = ToVector(value.at("force_resultant_deviation_N"));
   frame.torque_resultant = ToVector(value.at("torque_resultant_Nm"));
   frame.solver = ToStatus(value.at("solver"));
   return frame;
@@ -115,6 +117,10 @@ CsvTable FrameTable(const std::vector<FrameRecord>& frames) {
   for (int k = 0; k < 3; ++k) {
     table.push_back(column(fmt::format("force_{}_N", "xyz"[k]),
                            [k](const FrameRecord& f) { return f.force_resultant[k]; }));
+  }
+  for (int k = 0; k < 3; ++k) {
+    table.push_back(column(fmt::format("force_{}_deviation_N", "xyz"[k]),
+                           [k](const FrameRecord& f) { return f.force_resultant_deviation[k]; }));
   }
   for (int k = 0; k < 3; ++k) {
     table.push_back(column(fmt::format("torque_{}_Nm", "xyz"[k]),

@@ -39,6 +39,9 @@ struct FrameRecord {
   double relative_surface_distance = kNotMeasured;  // the mean, divided by object_size
   // Of the nodal forces, in N, and of their torques about the centre of mass, in N m.
   Eigen::Vector3d force_resultant = Eigen::Vector3d::Constant(kNotMeasured);
+  // Standard deviation of the force resultant as the fit sees it; NaN where it was not a fit's
+  // coefficients that made it.
+  Eigen::Vector3d force_resultant_deviation = Eigen::Vector3d::Constant(kNotMeasured);
   Eigen::Vector3d torque_resultant = Eigen::Vector3d::Constant(kNotMeasured);
   SolverStatus solver;
 };

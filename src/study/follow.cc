@@ -13,6 +13,7 @@
 #include "geometry/surface_tracks.h"
 #include "registration/surface_alignment.h"
 #include "study/grip_tracks.h"
+#include "study/outer_forces.h"
 
 namespace lacuna {
 namespace {
@@ -23,52 +24,6 @@ Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
 
 Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
   return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
-}
-
-// The force model that the settings describe: on boundary nodes of the region that no grip holds,
-// where a force would move nothing.
-ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body) {
-  const ForceSettings& settings = study.follow.forces;
-  const Body& body = *grips_and_body.body;
-  const std::vector<char> gripped = GrippedNodes(grips_and_body);
-  std::vector<char> selectable(body.NodeCount(), 0);
-  for (const int node : body.boundary.node) selectable[node] = !gripped[node];
-  std::vector<int> nodes;
-  if (settings.region) {
-    nodes = SelectNodes(*settings.region, body.mesh.nodes);
-  } else {
-    nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
-  }
-  std::erase_if(nodes, [&](int node) { return !selectable[node]; });
-  if (nodes.empty() && settings.kind != ForceSettings::Kind::kNone) {
-    throw InputError(
-        fmt::format("{}: forces.region: no free node of the boundary lies in it", study.name));
-  }
-  const Eigen::VectorXi where =
-      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
-  ForceModel model = NoForces(body);
-  switch (settings.kind) {
-    case ForceSettings::Kind::kNone:
-      break;
-    case ForceSettings::Kind::kFree:
-      model = FreeForces(body, where);
-      break;
-    case ForceSettings::Kind::kFootprint:
-      model = FootprintForce(body, where, settings.force_scale);
-      break;
-    case ForceSettings::Kind::kNodal:
-      model = NodalForces(body, where, settings.force_scale);
-      break;
-    case ForceSettings::Kind::kSmooth: {
-      const double size = BoundingBoxDiagonal(body.mesh.nodes);
-      const double young_modulus = study.effects.front()->Parameters()[0];
-      model =
-          SmoothForces(body, where, settings.length > 0 ? settings.length : 0.25 * size,
-                       settings.traction_scale > 0 ? settings.traction_scale : 0.1 * young_modulus);
-      break;
-    }
-  }
-  return settings.hold_net_force ? HoldNetForceAndTorque(body, model) : model;
 }
 
 double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
@@ -94,6 +49,8 @@ class Follower {
     model_ = {motion_.body, study.effects, {}};
     grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
     forces_ = MakeForceModel(study, model_);
+    known_forces_ = MakeKnownForces(study, *motion_.body);
+    model_.effects.insert(model_.effects.end(), known_forces_.begin(), known_forces_.end());
     history_ = RestHistory(model_);
     if (states.front().tracked.cols() > 0) {
       tracks_ = TrackOnSurface(motion_.body->boundary, states.front().tracked);
@@ -138,8 +95,8 @@ class Follower {
     frame.pseudo_force = PseudoForce(shift, time_step);
     grips_->Extend(state.time, before, before + shift, state.tracked);
 
-    ForceFitStart start{Stacked(before + shift), coefficients_, {}};
-    grips_->Place(state.time, &start.position);
+    Eigen::VectorXd start = Stacked(before + shift);
+    grips_->Place(state.time, &start);
     MotionHistory from = history_;
     if (time_step == 0) from.time = state.time;
     const StepEquation equation(model_, from, study_.follow.scheme, time_step);
@@ -147,18 +104,22 @@ class Follower {
     ForceFit fit;
     int iterations = 0;
     if (forces_.HasUnknowns()) {
-      const Correspondence correspondence = Register(AsPoints(start.position), state);
+      const Correspondence correspondence = Register(AsPoints(start), state);
+      StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
       for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
         ThrowIfInterrupted();
-        const Observations seen = Observe(AsPoints(start.position), state, correspondence);
+        const Observations seen = Observe(AsPoints(start), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
         // Free forces are expected to go on as they were. Coefficients are expected to be small: as
         // a random walk, what the scans do not see of them would drift away.
-        fit =
-            FitStepForces(model_, equation, forces_, seen, start, {force_, {}}, study_.follow.fit);
+        ForceFitOptions options = study_.follow.fit;
+        // Correspondences that will be taken anew need no exact fit.
+        const bool is_last = round + 1 == study_.follow.alignment_rounds;
+        if (!is_last) options.function_tolerance = std::max(options.function_tolerance, 1e-2);
+        fit = fitter.Fit(seen, {force_, {}}, options);
         iterations += fit.factorisations;
         if (!fit.IsUsable()) break;
-        start = {fit.position, fit.coefficients, fit.multiplier};
+        start = fit.position;
       }
       if (!fit.IsUsable()) return Fail("forces", fit.message, iterations, &frame);
       frame.weighted_rms = fit.weighted_rms;
@@ -178,7 +139,9 @@ class Follower {
     coefficients_ = fit.coefficients;
 
     frame.position = AsPoints(history_.position);
-    frame.force = AsPoints(fit.force);
+    frame.force = AsPoints(fit.force + KnownForces());
+    if (fit.covariance.size() > 0)
+      frame.force_deviation = NetForceDeviation(forces_, fit.covariance);
     frame.residual = ResidualDisplacement(frame.position, state);
     frame.solver = {true, "converged", "", iterations};
     motion_.frames.push_back(std::move(frame));
@@ -235,7 +198,20 @@ class Follower {
     const Eigen::Matrix3Xd velocity = shift / time_step;
     const Eigen::Matrix3Xd acceleration = (velocity - previous_velocity_) / time_step;
     previous_velocity_ = velocity;
+    if (study_.follow.forces.unit_pseudo_mass) return acceleration;
     return acceleration * motion_.body->node_mass.asDiagonal();
+  }
+
+  // Where the step has led (3n, N).
+  Eigen::VectorXd KnownForces() const {
+    Eigen::VectorXd known = Eigen::VectorXd::Zero(history_.position.size());
+    const Eigen::VectorXd no_memory;
+    for (const auto& force : known_forces_) {
+      force->AddForce(
+          {*model_.body, history_.position, history_.velocity, history_.time, 0, no_memory},
+          &known);
+    }
+    return known;
   }
 
   // What stands for the model in a registration: the places of the tracked points on it, so that a
@@ -270,8 +246,9 @@ class Follower {
     const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
     // Across the surface CPD is all there is; along its normal the scanned points say more where
     // there are any, so there CPD only guides.
-    Eigen::VectorXd tangent =
-        correspondence.sigma.cwiseMax(std::max(motion_.noise, study_.follow.tangential_noise));
+    const double slip =
+        study_.follow.tangential_noise > 0 ? study_.follow.tangential_noise : 0.03 * size;
+    const Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(std::max(motion_.noise, slip));
     const Eigen::VectorXd normal = tangent.cwiseMax(5 * motion_.noise);
     const Observations registered =
         ObserveVertices(boundary, nodes, correspondence.target, normal, tangent);
@@ -296,6 +273,7 @@ class Follower {
   Model model_;
   std::unique_ptr<GripTracks> grips_;
   ForceModel forces_;
+  std::vector<std::shared_ptr<Effect>> known_forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
   SurfaceTracks tracks_;  // of tracked points; empty where there are none
@@ -303,6 +281,16 @@ class Follower {
   DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;
 };
+
+// JSON has no NaN: null stands for it.
+nlohmann::json ToJson(const Eigen::Vector3d& v) {
+  return v.hasNaN() ? nlohmann::json() : nlohmann::json{v.x(), v.y(), v.z()};
+}
+Eigen::Vector3d FromJson(const nlohmann::json& value) {
+  if (value.is_null()) return Eigen::Vector3d::Constant(kNotMeasured);
+  return Eigen::Vector3d(value.at(0).get<double>(), value.at(1).get<double>(),
+                         value.at(2).get<double>());
+}
 
 nlohmann::json ReadJson(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -348,6 +336,7 @@ void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::pat
     index["frames"].push_back({{"time_s", frame.time},
                                {"weighted_rms", frame.weighted_rms},
                                {"observations", frame.observations},
+                               {"force_deviation_N", ToJson(frame.force_deviation)},
                                {"usable", frame.solver.usable},
                                {"status", frame.solver.status},
                                {"message", frame.solver.message},
@@ -372,6 +361,7 @@ FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const Refere
     frame.time = entry.at("time_s");
     frame.weighted_rms = entry.at("weighted_rms");
     frame.observations = entry.at("observations");
+    frame.force_deviation = FromJson(entry.at("force_deviation_N"));
     frame.solver = {entry.at("usable"), entry.at("status"), entry.at("message"),
                     entry.at("iterations")};
     const size_t k = motion.frames.size();

@@ -19,9 +19,11 @@ namespace lacuna {
 struct FollowedFrame {
   double time = 0;            // s
   Eigen::Matrix3Xd position;  // m, the simulated nodes under `force`
-  Eigen::Matrix3Xd force;     // N, the fitted outer forces
+  Eigen::Matrix3Xd force;     // N, the outer forces, fitted or known
+  // Of the fitted forces' resultant, N; NaN where they are no coefficients of a basis.
+  Eigen::Vector3d force_deviation = Eigen::Vector3d::Constant(kNotMeasured);
   // The paper's first guess of the forces, m α with v = d/dt and α = dv/dt from the registered
-  // displacements, m the nodes' masses.
+  // displacements, m the nodes' masses or 1 kg.
   Eigen::Matrix3Xd pseudo_force;
   // align(p, S) − p of Eq. 1: from each boundary vertex to where the state has it, after the step.
   Eigen::Matrix3Xd residual;  // 3 × boundary vertices, m

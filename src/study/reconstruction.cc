@@ -19,8 +19,8 @@ namespace {
 // Raised when the stage's code changes so that its result does.
 constexpr int kStatesVersion = 1;
 constexpr int kReferenceVersion = 1;
-constexpr int kMotionVersion = 1;
-constexpr int kResultsVersion = 1;
+constexpr int kMotionVersion = 2;
+constexpr int kResultsVersion = 2;
 
 FilterOptions ReadFilter(const Config& config) {
   FilterOptions filter;
@@ -49,13 +49,15 @@ CpdOptions ReadRegistration(const Config& config) {
   cpd.rigidity = config.Number("rigidity", kNotNegative, cpd.rigidity);
   cpd.tangential_weight =
       config.Number("tangential_weight", {0, 1, true, false}, cpd.tangential_weight);
+  cpd.match_extents = config.Flag("match_extents", cpd.match_extents);
   cpd.outlier_weight = config.Number("outlier_weight", {0, 1, false, true}, cpd.outlier_weight);
   cpd.estimate_outlier_weight = config.Flag("estimate_outlier_weight", cpd.estimate_outlier_weight);
   cpd.initial_sigma = config.Quantity("initial_sigma", kLength, kNotNegative, cpd.initial_sigma);
   cpd.sigma_floor = config.Number("sigma_floor", kPositive, cpd.sigma_floor);
   cpd.points_per_function =
       config.Integer("points_per_function", 1, 100000, cpd.points_per_function);
-  cpd.max_rank = config.Integer("max_rank", 1, 2000, cpd.max_rank);
+  cpd.max_rank = config.Integer("max_rank", 4, 2000, cpd.max_rank);
+  cpd.rank_tolerance = config.Number("rank_tolerance", {0, 1, true, false}, cpd.rank_tolerance);
   return cpd;
 }
 
@@ -64,6 +66,7 @@ ForceSettings ReadForces(const Config& config, const std::filesystem::path& data
   ForceSettings forces;
   forces.kind = config.Choice<Kind>("model",
                                     {{"none", Kind::kNone},
+                                     {"known", Kind::kKnown},
                                      {"free", Kind::kFree},
                                      {"smooth", Kind::kSmooth},
                                      {"footprint", Kind::kFootprint},
@@ -77,6 +80,8 @@ ForceSettings ReadForces(const Config& config, const std::filesystem::path& data
   forces.traction_scale =
       config.Quantity("traction_scale", kPressure, kNotNegative, forces.traction_scale);
   forces.force_scale = config.Quantity("force_scale", kForce, kPositive, forces.force_scale);
+  forces.unit_pseudo_mass =
+      config.Choice<bool>("pseudo_mass", {{"lumped", false}, {"unit", true}}, "lumped");
   forces.hold_net_force = config.Flag("hold_net_force", forces.hold_net_force);
   if (forces.hold_net_force && forces.kind == Kind::kFree)
     config.Fail("hold_net_force", "goes with smooth forces; free ones have no basis to restrict");
@@ -144,6 +149,35 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
   require("true_forces", validation->true_forces);
 }
 
+// Known forces need a place and must cover the frames; others are told apart from them.
+void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
+  Recording& recording = study->recording;
+  if (study->follow.forces.kind != ForceSettings::Kind::kKnown) {
+    if (!recording.forces.empty()) {
+      recording.warnings.push_back(
+          "the recording's measured forces are not used: forces.model is not known");
+    }
+    return;
+  }
+  const Config forces = config.Child("forces");
+  if (recording.forces.empty())
+    forces.Fail("model", "known forces, but the recording has no forces");
+  const double first = recording.times[study->frames.front()];
+  const double last = recording.times[study->frames.back()];
+  const double slack = 1e-9 * (last - first);
+  for (const MeasuredForce& force : recording.forces) {
+    if (!force.region)
+      forces.Fail("model", fmt::format("the recording does not tell where {} acts (its region)",
+                                       force.name));
+    const bool is_constant = force.file.empty();
+    const double from = force.times[0], to = force.times[force.times.size() - 1];
+    if (!is_constant && (from > first + slack || to < last - slack)) {
+      forces.Fail("model", fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                                       force.file.string(), from, to, first, last));
+    }
+  }
+}
+
 // What is hashed so that a changed input is noticed.
 std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
   std::map<std::string, std::string> hashes;
@@ -203,10 +237,7 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
                 "has one frame, which would be the reference shape and the motion at once; give a "
                 "reference shape or more frames");
   }
-  if (!study.recording.forces.empty()) {
-    study.recording.warnings.push_back(
-        "the recording's measured forces are not used: a reconstruction fits its own");
-  }
+  CheckMeasuredForces(config, &study);
   const bool has_gravity =
       std::any_of(study.effects.begin(), study.effects.end(),
                   [](const auto& effect) { return effect->Card().type == "gravity"; });

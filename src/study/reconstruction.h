@@ -27,13 +27,16 @@ namespace lacuna {
 
 // Where unknown forces may act, and how they may vary (fit/force_model.h).
 struct ForceSettings {
-  enum class Kind { kNone, kFree, kSmooth, kFootprint, kNodal };
-  Kind kind = Kind::kSmooth;
+  enum class Kind { kNone, kKnown, kFree, kSmooth, kFootprint, kNodal };
+  Kind kind = Kind::kSmooth;     // kKnown: the recording's measured forces, nothing is fitted
   std::optional<Region> region;  // absent: the whole boundary; a footprint needs one
   double length = 0;             // m, of smooth forces; 0: a quarter of the object's diagonal
   double traction_scale = 0;     // Pa, of smooth forces; 0: a tenth of Young's modulus
   double force_scale = 1;        // N, of a footprint or of each node
   bool hold_net_force = false;   // no net force, no net torque
+  // Masses of the pseudo-acceleration forces (F = m α): the FEM's lumped ones, or 1 kg at each node
+  // as in the paper.
+  bool unit_pseudo_mass = false;
 };
 
 struct FollowSettings {
@@ -42,9 +45,12 @@ struct FollowSettings {
       false;  // accept steps with inverted elements, as linear elasticity may need
   ForceSettings forces;
   ForceFitOptions fit;
-  double noise = 0;             // m, standard deviation of a scanned point; 0: estimated
-  double tangential_noise = 0;  // m, the least that a correspondence is uncertain across the normal
-  int alignment_rounds = 3;     // correspondences are taken anew so often; more: slower, exacter
+  double noise = 0;  // m, standard deviation of a scanned point; 0: estimated
+  // m, the least that a correspondence found by CPD is uncertain across the normal: points of two
+  // scans have no partners, so that CPD slides along a surface without features by more than its
+  // own deviation tells. 0: 3 % of the object's size. Larger: forces along the surface shrink.
+  double tangential_noise = 0;
+  int alignment_rounds = 3;  // correspondences are taken anew so often; more: slower, exacter
   // Scanned points farther than this from the simulated surface are somebody else's, in parts of
   // the object's size; larger: a worse start is forgiven, more foreign points are taken in.
   double reach = 0.1;

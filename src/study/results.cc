@@ -194,6 +194,7 @@ RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& refe
           frame.position * motion.body->node_mass / motion.body->node_mass.sum();
       const NetForce net = NetForceOf(force, position, centre);
       entry.force_resultant = net.force;
+      entry.force_resultant_deviation = frame.force_deviation;
       entry.torque_resultant = net.torque;
       if (k >= FirstFollowed(study)) {
         residuals.push_back(residual);

@@ -39,6 +39,7 @@ RunRecord Example() {
     frame.surface_distance_max = 3e-4;
     frame.relative_surface_distance = 8e-4;
     frame.force_resultant = Eigen::Vector3d(1, 2, 3 + k);
+    frame.force_resultant_deviation = Eigen::Vector3d(0.1, 0.2, 0.3 * k);
     frame.torque_resultant = {4, 5, 6};
     frame.solver = {true, "converged", "in frame " + std::to_string(k), 5 + k};
     record.frames.push_back(frame);
@@ -78,6 +79,7 @@ TEST(RunRecordTest, ComesBackWhole) {
     EXPECT_EQ(a.surface_distance_max, b.surface_distance_max);
     EXPECT_EQ(a.relative_surface_distance, b.relative_surface_distance);
     EXPECT_EQ(a.force_resultant, b.force_resultant);
+    EXPECT_EQ(a.force_resultant_deviation, b.force_resultant_deviation);
     EXPECT_EQ(a.torque_resultant, b.torque_resultant);
     EXPECT_EQ(a.solver.usable, b.solver.usable);
     EXPECT_EQ(a.solver.status, b.solver.status);

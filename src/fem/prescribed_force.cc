@@ -1,0 +1,61 @@
+#include "fem/prescribed_force.h"
+
+#include <glog/logging.h>
+
+#include <utility>
+
+namespace lacuna {
+
+Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes) {
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(body.NodeCount());
+  share(nodes) = NodeBoundaryAreas(body)(nodes);
+  CHECK_GT(share.sum(), 0) << "a force on nodes without boundary area";
+  return share / share.sum();
+}
+
+PrescribedForce::PrescribedForce(Eigen::VectorXd share,
+                                 std::function<Eigen::Vector3d(double)> force)
+    : share_(std::move(share)), force_(std::move(force)) {}
+
+const EffectCard& PrescribedForce::Card() const {
+  static const EffectCard card{
+      .type = "prescribed_force",
+      .title = "Known outer force",
+      .equation = "f_i = gain · share_i · F(t)",
+      .citation = "the recording's own measurement",
+      .parameters = {{.name = "gain",
+                      .meaning = "true force per measured force",
+                      .dimension = kDimensionless,
+                      .bounds = kAnyValue,
+                      .null_value = 0,
+                      .plausible_min = 0.8,
+                      .plausible_max = 1.25,
+                      .default_value = 1,
+                      .log_scale = false}},
+      .residual_when_missing =
+          "the model does not answer when the load changes; the unexplained force lies where the "
+          "load acts and has its size and direction",
+      .separating_experiment = "unload: what stays is not the load",
+      .look_alikes = {},
+      .conserves_momentum = false,
+      .conserves_angular_momentum = false};
+  return card;
+}
+
+void PrescribedForce::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
+  CHECK_EQ(share_.size(), at.body.NodeCount());
+  force->reshaped(3, share_.size()) += gain_ * force_(at.time) * share_.transpose();
+}
+
+void PrescribedForce::AddParameterDerivative(const Kinematics& at, int parameter,
+                                             Eigen::VectorXd* derivative) const {
+  CHECK_EQ(parameter, 0);
+  derivative->reshaped(3, share_.size()) += force_(at.time) * share_.transpose();
+}
+
+std::optional<double> PrescribedForce::Energy(const Kinematics& at) const {
+  const auto displacement = at.position.reshaped(3, share_.size()) - at.body.mesh.nodes;
+  return -gain_ * force_(at.time).dot(displacement * share_);
+}
+
+}  // namespace lacuna

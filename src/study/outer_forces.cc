@@ -1,0 +1,76 @@
+#include "study/outer_forces.h"
+
+#include <fmt/format.h>
+
+#include "fem/prescribed_force.h"
+
+namespace lacuna {
+
+ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body) {
+  const ForceSettings& settings = study.follow.forces;
+  const Body& body = *grips_and_body.body;
+  const std::vector<char> gripped = GrippedNodes(grips_and_body);
+  std::vector<char> selectable(body.NodeCount(), 0);
+  for (const int node : body.boundary.node) selectable[node] = !gripped[node];
+  std::vector<int> nodes;
+  if (settings.region) {
+    nodes = SelectNodes(*settings.region, body.mesh.nodes);
+  } else {
+    nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
+  }
+  std::erase_if(nodes, [&](int node) { return !selectable[node]; });
+  const bool fits_forces =
+      settings.kind != ForceSettings::Kind::kNone && settings.kind != ForceSettings::Kind::kKnown;
+  if (nodes.empty() && fits_forces) {
+    throw InputError(
+        fmt::format("{}: forces.region: no free node of the boundary lies in it", study.name));
+  }
+  const Eigen::VectorXi where =
+      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  ForceModel model = NoForces(body);
+  switch (settings.kind) {
+    case ForceSettings::Kind::kNone:
+    case ForceSettings::Kind::kKnown:
+      break;
+    case ForceSettings::Kind::kFree:
+      model = FreeForces(body, where);
+      break;
+    case ForceSettings::Kind::kFootprint:
+      model = FootprintForce(body, where, settings.force_scale);
+      break;
+    case ForceSettings::Kind::kNodal:
+      model = NodalForces(body, where, settings.force_scale);
+      break;
+    case ForceSettings::Kind::kSmooth: {
+      const double size = BoundingBoxDiagonal(body.mesh.nodes);
+      const double young_modulus = study.effects.front()->Parameters()[0];
+      model =
+          SmoothForces(body, where, settings.length > 0 ? settings.length : 0.25 * size,
+                       settings.traction_scale > 0 ? settings.traction_scale : 0.1 * young_modulus);
+      break;
+    }
+  }
+  return settings.hold_net_force ? HoldNetForceAndTorque(body, model) : model;
+}
+
+std::vector<std::shared_ptr<Effect>> MakeKnownForces(const ReconstructionStudy& study,
+                                                     const Body& body) {
+  std::vector<std::shared_ptr<Effect>> loads;
+  if (study.follow.forces.kind != ForceSettings::Kind::kKnown) return loads;
+  for (const MeasuredForce& force : study.recording.forces) {
+    std::vector<int> nodes = SelectNodes(*force.region, body.mesh.nodes);
+    const Eigen::VectorXd areas = NodeBoundaryAreas(body);
+    std::erase_if(nodes, [&areas](int node) { return areas[node] == 0; });
+    if (nodes.empty()) {
+      throw InputError(fmt::format("{}: {} acts on no boundary node: its region is too small",
+                                   study.recording.file.string(), force.name));
+    }
+    const Eigen::VectorXi where =
+        Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+    loads.push_back(std::make_shared<PrescribedForce>(
+        BoundaryShares(body, where), [force](double time) { return ForceAt(force, time); }));
+  }
+  return loads;
+}
+
+}  // namespace lacuna

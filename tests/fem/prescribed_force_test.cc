@@ -1,0 +1,52 @@
+#include "fem/prescribed_force.h"
+
+#include <gtest/gtest.h>
+
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
+  for (const int order : {1, 2}) {
+    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.03}, {3, 2, 2}, order), 1000);
+    std::vector<int> tip;
+    for (int i = 0; i < body.NodeCount(); ++i)
+      if (body.mesh.nodes(0, i) > 0.1 - 1e-9) tip.push_back(i);
+    const Eigen::VectorXi nodes =
+        Eigen::Map<const Eigen::VectorXi>(tip.data(), static_cast<Eigen::Index>(tip.size()));
+    PrescribedForce force(BoundaryShares(body, nodes),
+                          [](double time) { return Eigen::Vector3d(time, 0, -2 * time); });
+    const Eigen::VectorXd position = body.mesh.nodes.reshaped();
+    const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
+    Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
+    force.AddForce({body, position, velocity, 3.0, 0, state}, &total);
+    const Eigen::Matrix3Xd at_nodes = total.reshaped(3, body.NodeCount());
+    EXPECT_LT((at_nodes.rowwise().sum() - Eigen::Vector3d(3, 0, -6)).norm(), 1e-12);
+    // Spread evenly over the end: its centre of action is the face's.
+    const Eigen::Vector3d centre =
+        body.mesh.nodes * at_nodes.row(2).transpose() / at_nodes.row(2).sum();
+    EXPECT_LT((centre - Eigen::Vector3d(0.1, 0.015, 0.015)).norm(), 1e-12);
+  }
+}
+
+TEST(PrescribedForce, ItsEnergyAndGainAreThoseOfADeadLoad) {
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.03}, {3, 2, 2}, 1), 1000);
+  const int nodes = body.NodeCount();
+  PrescribedForce force(BoundaryShares(body, Eigen::VectorXi::LinSpaced(nodes, 0, nodes - 1)),
+                        [](double time) { return Eigen::Vector3d(1 + time, 2, -3 * time); });
+  force.SetParameters(Eigen::VectorXd::Constant(1, 0.7));
+  const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
+  const Eigen::VectorXd shift = 0.01 * Eigen::VectorXd::LinSpaced(rest.size(), -1, 1);
+  const Eigen::VectorXd moved = rest + shift, velocity = Eigen::VectorXd::Zero(rest.size()), state;
+  const Kinematics at{body, moved, velocity, 0.5, 0, state};
+  Eigen::VectorXd acting = Eigen::VectorXd::Zero(rest.size()), per_gain = acting;
+  force.AddForce(at, &acting);
+  force.AddParameterDerivative(at, 0, &per_gain);
+  EXPECT_LT((acting - 0.7 * per_gain).norm(), 1e-15);
+  EXPECT_GT(acting.norm(), 0.1);
+  EXPECT_NEAR(*force.Energy(at), -acting.dot(shift), 1e-15);
+}
+
+}  // namespace
+}  // namespace lacuna
