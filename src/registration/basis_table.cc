@@ -20,12 +20,6 @@ std::vector<Triple> AsTriples(const Eigen::Matrix3Xd& columns) {
   return triples;
 }
 
-// Whether single precision leaves too little of k(p, y) for the last of the functions.
-bool NeedsFunctions(const GaussianBasis& basis) {
-  constexpr double kSmallestShare = 1e-5;  // 1/L_KK up to 300: φ to 2e-5
-  return basis.SmallestPivot() < kSmallestShare * basis.Variance();
-}
-
 }  // namespace
 
 BasisTable::BasisTable(const GaussianBasis& basis, const BlockTree& points,
@@ -34,7 +28,7 @@ BasisTable::BasisTable(const GaussianBasis& basis, const BlockTree& points,
       kernels_(kernels),
       size_(points.Size()),
       rank_(basis.Rank()),
-      holds_functions_(NeedsFunctions(basis)),
+      holds_functions_(basis.IsFine()),
       values_(static_cast<size_t>(points.QueryBlockCount()) * basis.Rank()) {
   if (holds_functions_) {
     FillWithFunctions(points);

@@ -160,9 +160,10 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
                                                       options.tangential_weight);
     objective.coherence = prior * options.lambda;
     objective.rigidity = prior * options.rigidity;
-    // The Hessian sets the pace only, so that an old factor will do for a few steps.
-    constexpr int kOldestFactor = 4;
-    if (factor_age == kOldestFactor || std::abs(sigma - factor_sigma) > 0.1 * sigma) {
+    // The Hessian sets the pace only, so that an old factor will do for a few steps; but not where
+    // the functions are so local that one point which found its target makes up their curvature.
+    const int oldest_factor = basis.IsFine() ? 1 : 4;
+    if (factor_age == oldest_factor || std::abs(sigma - factor_sigma) > 0.1 * sigma) {
       factor_sigma = sigma;
       factor_age = 0;
       hessian = Factor(MotionHessian(surface, pull, rigidity_hessian, objective));

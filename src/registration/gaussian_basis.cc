@@ -63,8 +63,11 @@ GaussianBasis::GaussianBasis(const Eigen::Matrix3Xd& points, std::vector<KernelS
 
 double GaussianBasis::Variance() const { return KernelAt(kernel_, 0.0); }
 
-double GaussianBasis::SmallestPivot() const {
-  return Rank() > 0 ? factor_(Rank() - 1, Rank() - 1) * factor_(Rank() - 1, Rank() - 1) : 0.0;
+bool GaussianBasis::IsFine() const {
+  constexpr double kSmallestShare = 1e-5;  // 1/L_KK up to 300: φ to 2e-5
+  if (Rank() == 0) return false;
+  const double smallest = factor_(Rank() - 1, Rank() - 1);
+  return smallest * smallest < kSmallestShare * Variance();
 }
 
 GaussianBasis GaussianBasis::Leading(int rank) const {

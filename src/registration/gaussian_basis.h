@@ -27,8 +27,9 @@ class GaussianBasis {
 
   int Rank() const { return static_cast<int>(pivots_.cols()); }
   double Variance() const;  // k(y, y)
-  // L_KK², the variance that the last function added: the smallest. That of an empty basis is 0.
-  double SmallestPivot() const;
+  // Whether the last of the functions is so small that single precision leaves too little of
+  // k(p, y) = L φ(y), and of the functions' products, for it.
+  bool IsFine() const;
   const std::vector<KernelScale>& Kernel() const { return kernel_; }
   const Eigen::Matrix3Xd& Pivots() const { return pivots_; }
 

@@ -57,28 +57,45 @@ Pull PullOf(const SourceSurface& source, const std::vector<Eigen::Matrix3d>& def
   return pull;
 }
 
+namespace {
+
+// Σ_q w_q φ̄_q φ̄_qᵀ for the six entries of the patches' weights, lower halves.
+template <typename Real>
+void SumWeightedProducts(const Patches& patches, const Pull& pull, Eigen::MatrixXd blocks[6]) {
+  using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+  const Matrix basis = patches.mean_basis.cast<Real>();
+  const Eigen::Index rank = basis.rows();
+  ParallelFor(6, 1, [&](int64_t entry) {
+    Eigen::Matrix<Real, 1, Eigen::Dynamic> weights(patches.Count());
+    for (int q = 0; q < patches.Count(); ++q) {
+      weights[q] = static_cast<Real>(pull.weights[q][entry]);
+    }
+    const Matrix weighted = basis * weights.asDiagonal();
+    Matrix product = Matrix::Zero(rank, rank);
+    product.template triangularView<Eigen::Lower>() = basis * weighted.transpose();
+    blocks[entry] = product.template cast<double>();
+  });
+}
+
+}  // namespace
+
 Eigen::MatrixXd MotionHessian(const SourceSurface& source, const Pull& pull,
                               const Eigen::MatrixXd& rigidity_hessian,
                               const MotionObjective& objective) {
-  const Eigen::MatrixXf basis = source.patches.mean_basis.cast<float>();
-  const Eigen::Index rank = basis.rows();
-  Eigen::MatrixXf blocks[6];
-  ParallelFor(6, 1, [&](int64_t entry) {
-    Eigen::RowVectorXf weights(source.patches.Count());
-    for (int q = 0; q < source.patches.Count(); ++q) {
-      weights[q] = static_cast<float>(pull.weights[q][entry]);
-    }
-    const Eigen::MatrixXf weighted = basis * weights.asDiagonal();
-    blocks[entry].setZero(rank, rank);
-    blocks[entry].triangularView<Eigen::Lower>() = basis * weighted.transpose();
-  });
+  const Eigen::Index rank = source.patches.mean_basis.rows();
+  Eigen::MatrixXd blocks[6];
+  if (source.patches.is_fine) {
+    SumWeightedProducts<double>(source.patches, pull, blocks);
+  } else {
+    SumWeightedProducts<float>(source.patches, pull, blocks);
+  }
   Eigen::MatrixXd hessian = objective.rigidity * rigidity_hessian;
   hessian.diagonal().array() += objective.coherence;
   int entry = 0;
   for (int b = 0; b < 3; ++b) {
     for (int a = b; a < 3; ++a, ++entry) {
-      const Eigen::MatrixXf block = blocks[entry].selfadjointView<Eigen::Lower>();
-      hessian.block(a * rank, b * rank, rank, rank) += block.cast<double>();
+      const Eigen::MatrixXd block = blocks[entry].selfadjointView<Eigen::Lower>();
+      hessian.block(a * rank, b * rank, rank, rank) += block;
     }
   }
   return hessian;

@@ -12,7 +12,8 @@ Patches MakePatches(const GaussianBasis& basis, const Eigen::Matrix3Xd& points) 
   constexpr int kFewestPatches = 400;
   const Eigen::Index count = points.cols();
   Patches patches;
-  while (count >= 2 * patches.size * kFewestPatches) patches.size *= 2;
+  patches.is_fine = basis.IsFine();
+  while (!patches.is_fine && count >= 2 * patches.size * kFewestPatches) patches.size *= 2;
   const Eigen::Index patch_count = (count + patches.size - 1) / patches.size;
 
   // The mean of φ over a patch to second order: φ at the centroid of four of its points would do,

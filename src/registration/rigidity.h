@@ -12,13 +12,15 @@ namespace lacuna {
 // Runs of `size` consecutive points (in spatial order) with the basis at their centres.
 struct Patches {
   int size = 1;
+  bool is_fine = false;        // of a basis that needs double precision
   Eigen::MatrixXd mean_basis;  // K × Q: the mean of φ over each patch's points
   Eigen::MatrixXd gradient[3];  // K × Q each: ∂φ/∂x, ∂φ/∂y, ∂φ/∂z at the patch's centre
 
   int Count() const { return static_cast<int>(mean_basis.cols()); }
 };
 
-// Between 400 and 800 patches, fewer for fewer points.
+// Between 400 and 800 patches, fewer for fewer points; one per point for a fine basis, of which
+// means over points would hide the curvature.
 Patches MakePatches(const GaussianBasis& basis, const Eigen::Matrix3Xd& points);
 
 // F = I + ∇u of each patch, for coefficients 3 × K.
