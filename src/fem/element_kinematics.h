@@ -42,14 +42,12 @@ Eigen::Map<const Eigen::Matrix<double, kNodes, 3>> ShapeGradient(const Body& bod
 
 // Σ_a u_a ⊗ g_a: the deformation gradient when u are positions, its rate when they are velocities.
 // Differences to the first node keep it exact to rounding far from the origin (Σ g_a = 0).
-template <int kNodes>
-Eigen::Matrix3d FieldGradient(const Eigen::Matrix<double, 3, kNodes>& nodal,
-                              const Eigen::Matrix<double, kNodes, 3>& gradient) {
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  for (int a = 1; a < kNodes; ++a) {
-    result.noalias() += (nodal.col(a) - nodal.col(0)) * gradient.row(a);
-  }
-  return result;
+template <int kNodes, typename Gradient>
+EIGEN_STRONG_INLINE Eigen::Matrix3d FieldGradient(const Eigen::Matrix<double, 3, kNodes>& nodal,
+                                                  const Gradient& gradient) {
+  const Eigen::Matrix<double, 3, kNodes - 1> edges =
+      nodal.template rightCols<kNodes - 1>().colwise() - nodal.col(0);
+  return edges.lazyProduct(gradient.template bottomRows<kNodes - 1>());
 }
 
 // tangent += K for both triangles of the symmetric element matrix; only inside ForEachElement.
