@@ -13,6 +13,12 @@
 namespace lacuna {
 namespace {
 
+Eigen::Vector3d ReadAxis(const Config& config, const Eigen::Vector3d& default_axis) {
+  const Eigen::Vector3d axis = config.Vector("axis", kDimensionless, default_axis);
+  if (axis.norm() == 0) config.Fail("axis", "expected a direction other than 0");
+  return axis.normalized();
+}
+
 BarShape ReadBar(const Config& config) {
   BarShape bar;
   bar.centre = config.Vector("centre", kLength, bar.centre);
@@ -22,16 +28,24 @@ BarShape ReadBar(const Config& config) {
                                     {0, 0.5 * bar.size.minCoeff(), false, false}, bar.edge_radius);
   bar.edge_length = config.Quantity("edge_length", kLength, {0, bar.size.maxCoeff(), true, false},
                                     bar.edge_length);
+  bar.axis = ReadAxis(config, bar.axis);
+  bar.angle = config.Quantity("angle", kAngle, kAnyValue, bar.angle);
   return bar;
+}
+
+TriMesh BarSurface(const BarShape& bar) {
+  TriMesh surface = RoundedBox(bar.centre, bar.size, bar.edge_radius, bar.edge_length);
+  if (bar.angle == 0) return surface;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(bar.angle, bar.axis).toRotationMatrix();
+  surface.vertices = (turn * (surface.vertices.colwise() - bar.centre)).colwise() + bar.centre;
+  return surface;
 }
 
 SceneGrip ReadGrip(const Config& config, int index) {
   SceneGrip grip;
   grip.region = ReadRegion(config.Child("region"), {}, fmt::format("grip {}", index));
   grip.translation = config.Vector("translation", kLength, grip.translation);
-  grip.axis = config.Vector("axis", kDimensionless, grip.axis);
-  if (grip.axis.norm() == 0) config.Fail("axis", "expected a direction other than 0");
-  grip.axis.normalize();
+  grip.axis = ReadAxis(config, grip.axis);
   grip.centre = config.Vector("centre", kLength, grip.centre);
   grip.angle = config.Quantity("angle", kAngle, kAnyValue, grip.angle);
   grip.profile = ReadProfile(config);
@@ -112,8 +126,7 @@ Scene ReadScene(const Config& config) {
 
 SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   SceneMotion motion;
-  const TriMesh surface =
-      RoundedBox(scene.bar.centre, scene.bar.size, scene.bar.edge_radius, scene.bar.edge_length);
+  const TriMesh surface = BarSurface(scene.bar);
   TetOptions tet_options = scene.mesh.tets;
   tet_options.order = scene.mesh.order;
   const MeshResult meshed = MeshTetrahedra(surface, tet_options);

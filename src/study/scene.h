@@ -24,6 +24,8 @@ struct BarShape {
   Eigen::Vector3d size = Eigen::Vector3d(0.1, 0.03, 0.03);  // m
   double edge_radius = 0.004;                               // m
   double edge_length = 0.006;  // of the surface triangles, m; smaller: finer and slower
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // it is turned about its centre
+  double angle = 0;                                 // rad
 };
 
 // A force spread over the boundary nodes of a region in proportion to area.
