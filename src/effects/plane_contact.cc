@@ -5,13 +5,15 @@
 // It grows from zero with its slope continuous, so that Newton's method sees one smooth equation
 // whichever nodes touch; unlike a cubic potential, its slope stays below k, which keeps the tangent
 // as well conditioned at a hard impact as at rest; and nothing is felt before the plane is reached.
-// k is a pressure per depth, so the law does not depend on the mesh. The penetration under a
+// k is a pressure per depth, so the law refers to no mesh. The penetration under a
 // pressure P is P/k + s/2 (√(2 s P/k) while that is below s): choose k some 10 E / element size.
 //
 // Quadrature is nodal, over the areas A_i of the boundary at rest: there is then a potential,
 // E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
 // face is zero, and could carry no penalty; so each such face counts as the four flat triangles
 // that its nodes make, a third of whose area falls on each of their corners: always positive.
+// A node on a sharp edge carries a share of the other face too, and so is stiffer than the law says,
+// the less the finer the mesh.
 //
 // Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
 //   traction = −μ p u/√(|u|² + w²),
