@@ -12,8 +12,8 @@
 // E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
 // face is zero, and could carry no penalty; so each such face counts as the four flat triangles
 // that its nodes make, a third of whose area falls on each of their corners: always positive.
-// A node on a sharp edge carries a share of the other face too, and so is stiffer than the law says,
-// the less the finer the mesh.
+// A node on a sharp edge carries a share of the other face too, and so is stiffer than the law
+// says, the less the finer the mesh.
 //
 // Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
 //   traction = −μ p u/√(|u|² + w²),
