@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "core/error.h"
+#include "core/suggestion.h"
 #include "effects/catalogue.h"
 
 namespace lacuna {
@@ -29,8 +30,10 @@ int Effects(const std::string& type) {
   if (!type.empty()) {
     const CatalogueEntry* entry = FindEntry(type);
     if (entry == nullptr) {
-      throw InputError(
-          fmt::format("no effect is called \"{}\"; `lacuna effects` lists them", type));
+      std::vector<std::string> known;
+      for (const CatalogueEntry& each : Catalogue()) known.push_back(each.card->type);
+      throw InputError(fmt::format("no effect is called \"{}\"{}; `lacuna effects` lists them",
+                                   type, Suggestion(type, known)));
     }
     PrintCard(*entry->card);
     return 0;

@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "app/commands.h"
 #include "core/blas_kernels.h"
@@ -14,6 +15,7 @@
 #include "core/interrupt.h"
 #include "core/logging.h"
 #include "core/parallel.h"
+#include "core/suggestion.h"
 #include "record/library_versions.h"
 
 namespace {
@@ -30,6 +32,13 @@ Exit status: 0 done; 1 a result is not usable (the record says why); 2 unusable 
 
 constexpr int kUnusableInput = 2;
 
+std::string UnknownCommand(const CLI::App& app, const std::string& given) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  return fmt::format("there is no command \"{}\"{}; lacuna --help lists them", given,
+                     lacuna::Suggestion(given, known));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -42,7 +51,7 @@ int main(int argc, char** argv) {
       "it."};
   app.footer(kFooter);
   app.set_version_flag("--version", lacuna::ProgramVersion());
-  app.require_subcommand(1);
+  app.allow_extras();  // told below, with what was meant
   int threads = 0;
   bool verbose = false;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
@@ -59,6 +68,17 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
     return app.exit(problem) == 0 ? 0 : kUnusableInput;
+  }
+  if (!app.remaining(true).empty()) {
+    const std::string unexpected = app.remaining(true).front();
+    fmt::print(stderr, "lacuna: {}\n",
+               command ? fmt::format("\"{}\" was not expected; --help tells what is", unexpected)
+                       : UnknownCommand(app, unexpected));
+    return kUnusableInput;
+  }
+  if (!command) {
+    fmt::print("{}", app.help());
+    return kUnusableInput;
   }
   if (threads > 0) lacuna::SetThreadCount(threads);
   if (verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);

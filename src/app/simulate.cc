@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
@@ -21,7 +22,6 @@ struct Arguments {
 
 // The trajectory for ParaView, and the loads as a table.
 void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
   std::vector<TimedFile> series;
   Eigen::MatrixXd loads(static_cast<Eigen::Index>(motion.times.size()), 4);
   for (size_t k = 0; k < motion.times.size(); ++k) {
@@ -47,6 +47,10 @@ int Simulate(const Arguments& arguments) {
   const Scene scene = ReadScene(Config::Load(arguments.scene));
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no scanner to make a recording with");
+  const std::filesystem::path output =
+      arguments.output.empty() ? "results/" + scene.name + "_simulation" : arguments.output;
+  MakeFolder(output);
+  if (!arguments.recording.empty()) MakeFolder(arguments.recording);
   Progress progress;
   const SceneMotion motion = SimulateScene(scene, &progress);
   if (!motion.IsUsable()) {
@@ -61,8 +65,6 @@ int Simulate(const Arguments& arguments) {
                                     (nodes - motion.body->mesh.nodes).colwise().norm().maxCoeff());
                return 1e3 * largest;
              }());
-  const std::filesystem::path output =
-      arguments.output.empty() ? "results/" + scene.name + "_simulation" : arguments.output;
   WriteSimulation(motion, output);
   fmt::print("The trajectory lies in {}\n", (output / "body.pvd").string());
   if (!arguments.recording.empty()) {

@@ -81,6 +81,14 @@ void WriteFileAtomically(const fs::path& file, std::string_view content) {
   output.Commit();
 }
 
+void MakeFolder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) throw InputError({folder.string()}, "cannot be made: " + problem.message());
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw InputError({folder.string()}, "cannot be written to");
+}
+
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;

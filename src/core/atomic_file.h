@@ -36,6 +36,10 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+// Makes the folder, and those above it, where they are not there. Throws InputError naming it when
+// that cannot be done or nothing can be written into it.
+void MakeFolder(const std::filesystem::path& folder);
+
 // Asks the disk to hold the entries of `folder`: names created, renamed or removed in it.
 void SyncFolder(const std::filesystem::path& folder);
 

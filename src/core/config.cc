@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <sstream>
+
+#include "core/suggestion.h"
 
 namespace lacuna {
 
@@ -86,35 +88,6 @@ std::string Describe(const Bounds& bounds, const std::string& unit) {
 bool Inside(const Bounds& bounds, double value) {
   return (bounds.open_min ? value > bounds.min : value >= bounds.min) &&
          (bounds.open_max ? value < bounds.max : value <= bounds.max);
-}
-
-int EditDistance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const int substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
-// The nearest of `names`, when it is near enough to be what was meant.
-std::string Suggestion(const std::string& name, const std::vector<std::string>& names) {
-  const std::string* nearest = nullptr;
-  int distance = static_cast<int>(name.size()) / 2 + 2;
-  for (const std::string& candidate : names) {
-    const int d = EditDistance(name, candidate);
-    if (d < distance) {
-      distance = d;
-      nearest = &candidate;
-    }
-  }
-  return nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "";
 }
 
 // "${NAME}" replaced by the environment variable of that name.

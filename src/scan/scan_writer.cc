@@ -19,12 +19,6 @@ std::string FrameName(const char* prefix, size_t i, const char* extension) {
   return fmt::format("{}{:03d}{}", prefix, i, extension);
 }
 
-void MakeFolder(const std::filesystem::path& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem) throw InputError({folder.string()}, "cannot be made: " + problem.message());
-}
-
 std::string Row(const Eigen::Matrix4d& m) {
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = m;
   return fmt::format("[{}]", fmt::join(rows.data(), rows.data() + 16, ", "));

@@ -1,0 +1,154 @@
+// The program as a user meets it: what it prints, and how it ends.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Ending {
+  int status = -1;
+  std::string said;  // standard output and error
+};
+
+Ending Lacuna(const std::string& arguments) {
+  const std::string command = std::string(LACUNA_PROGRAM) + " " + arguments + " 2>&1";
+  FILE* pipe = popen(command.c_str(), "r");
+  Ending ending;
+  std::array<char, 4096> buffer;
+  while (const size_t count = fread(buffer.data(), 1, buffer.size(), pipe))
+    ending.said.append(buffer.data(), count);
+  const int status = pclose(pipe);
+  ending.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ending;
+}
+
+std::string Experiment(const std::string& name) {
+  return std::string(LACUNA_SOURCE_DIR) + "/experiments/" + name;
+}
+
+// A bar of few elements that is bent in two frames and scanned.
+std::string WriteSmallScene(const TemporaryFolder& folder) {
+  const std::filesystem::path file = folder / "scene.yaml";
+  std::ofstream(file) << R"(schema_version: 1
+name: small
+bar: {size: [100 mm, 30 mm, 30 mm], edge_radius: 5 mm, edge_length: 10 mm}
+mesh: {max_volume: 500 mm^3}
+density: 1000 kg/m^3
+material: {law: corotational, young_modulus: 0.1 MPa, poisson_ratio: 0.4}
+grips: [{region: {name: clamp, half_space: {point: [-40 mm, 0 mm, 0 mm], normal: [-1, 0, 0]}}}]
+loads: [{region: {half_space: {point: [40 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}, force: [0 N, 0 N, -0.3 N]}]
+motion: {frame_rate: 20 Hz, frames: 3, steps_per_frame: 1}
+scanner: {cameras: 2, look_at: [0 m, 0 m, 0 m], distance: 0.4 m, field_of_view: 24 deg, noise: 0.3 mm}
+)";
+  return file;
+}
+
+TEST(CommandLine, HelpNamesEveryCommand) {
+  const Ending help = Lacuna("--help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* command : {"reconstruct", "simulate", "info", "validate", "effects"})
+    EXPECT_THAT(help.said, HasSubstr(command));
+  EXPECT_EQ(Lacuna("--version").status, 0);
+}
+
+TEST(CommandLine, TellsAnUnknownCommandAndWhatWasMeant) {
+  const Ending ending = Lacuna("recontruct x.yaml");
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("did you mean \"reconstruct\"?"));
+  EXPECT_THAT(Lacuna("info --bogus " + Experiment("bend.yaml")).said, HasSubstr("\"--bogus\""));
+  EXPECT_THAT(Lacuna("effects gravty").said, HasSubstr("did you mean \"gravity\"?"));
+}
+
+TEST(CommandLine, AnAbsentFileIsNamed) {
+  for (const char* command : {"reconstruct", "simulate", "info", "validate"}) {
+    const Ending ending = Lacuna(std::string(command) + " /nowhere/e.yaml");
+    EXPECT_EQ(ending.status, 2) << command;
+    EXPECT_THAT(ending.said, HasSubstr("/nowhere/e.yaml")) << command;
+  }
+}
+
+TEST(CommandLine, ValidatesTheBundledExperimentsAndScenes) {
+  for (const char* file : {"bend.yaml", "scenes/bend.yaml", "scenes/twist.yaml", "recordings/bend"})
+    EXPECT_EQ(Lacuna("validate " + Experiment(file)).status, 0) << file;
+  EXPECT_THAT(Lacuna("validate " + Experiment("bend.yaml") + " --show").said,
+              HasSubstr("young_modulus"));
+}
+
+TEST(CommandLine, EveryEffectTellsOfItself) {
+  const Ending list = Lacuna("effects");
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.said, HasSubstr("gravity"));
+  EXPECT_THAT(Lacuna("effects gravity").said, HasSubstr("to tell it apart"));
+}
+
+TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {
+  const TemporaryFolder folder;
+  const std::string scan = (folder / "scan").string();
+  const Ending made = Lacuna("simulate " + WriteSmallScene(folder) + " -o " +
+                             (folder / "run").string() + " --recording " + scan);
+  ASSERT_EQ(made.status, 0) << made.said;
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/body.pvd"));
+  EXPECT_EQ(Lacuna("validate " + scan).status, 0);
+  const Ending info = Lacuna("info " + scan);
+  EXPECT_EQ(info.status, 0);
+  EXPECT_THAT(info.said, HasSubstr("3 point clouds"));
+}
+
+TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "occupied") << "a file";
+  const Ending ending =
+      Lacuna("simulate " + WriteSmallScene(folder) + " -o " + (folder / "occupied/run").string());
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("occupied"));
+  EXPECT_THAT(ending.said, Not(HasSubstr("largest displacement")));
+}
+
+TEST(CommandLine, CtrlCStopsAndLeavesNothingThatLooksFinished) {
+  const TemporaryFolder folder;
+  std::string text = FileContent(Experiment("bend.yaml"));
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("recording: recordings/bend", "recording: " + Experiment("recordings/bend"));
+  replace("validation: {true_surfaces: recordings/bend/truth}", "");
+  replace("output: ../results/bend", "output: " + (folder / "run").string());
+  std::ofstream(folder / "bend.yaml") << text;
+  const pid_t child = fork();
+  if (child == 0) {
+    (void)!freopen("/dev/null", "w", stdout);
+    (void)!freopen("/dev/null", "w", stderr);
+    execl(LACUNA_PROGRAM, LACUNA_PROGRAM, "reconstruct", (folder / "bend.yaml").c_str(), nullptr);
+    _exit(127);
+  }
+  // From the manifest on, the run is in its first stage: all of them take half a minute.
+  while (!std::filesystem::exists(folder / "run/manifest.json") &&
+         waitpid(child, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  kill(child, SIGINT);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/results"));
+  EXPECT_THAT(Lacuna("info " + (folder / "run").string()).said, HasSubstr("not finished"));
+}
+
+}  // namespace
+}  // namespace lacuna
