@@ -91,19 +91,32 @@ std::string FormatDepthFrames(size_t count, const std::vector<VirtualCamera>& ca
   return yaml;
 }
 
+void WriteSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,
+                 const Eigen::Matrix3Xd& values) {
+  std::string csv = "time,x,y,z\n";
+  for (Eigen::Index k = 0; k < times.size(); ++k)
+    csv += fmt::format("{},{},{},{}\n", times[k], values(0, k), values(1, k), values(2, k));
+  WriteFileAtomically(file, csv);
+}
+
+std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce& force,
+                       size_t number) {
+  const std::string name = fmt::format("force{}.csv", number + 1);
+  WriteSeries(folder / name, force.times, force.forces);
+  const std::string region =
+      force.region ? fmt::format(", region: {}", FormatRegion(*force.region)) : "";
+  return fmt::format("{{name: \"{}\", file: {}, time: time, x: x, y: y, z: z, unit: N{}}}",
+                     force.name, name, region);
+}
+
 // The path of a grip becomes a CSV of its own.
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
                       size_t number) {
   CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
   std::string item = FormatRegion(grip.region);
   if (grip.motion == GripMotion::kFollowsScan) return item;
-  std::string csv = "time,x,y,z\n";
-  for (Eigen::Index k = 0; k < grip.times.size(); ++k) {
-    const Eigen::Vector3d d = grip.displacements.col(k);
-    csv += fmt::format("{},{},{},{}\n", grip.times[k], d.x(), d.y(), d.z());
-  }
   const std::string name = fmt::format("grip{}.csv", number + 1);
-  WriteFileAtomically(folder / name, csv);
+  WriteSeries(folder / name, grip.times, grip.displacements);
   item.pop_back();
   return item + fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z}}}}", name);
 }
@@ -144,6 +157,10 @@ void WriteScan(const std::filesystem::path& folder, const ScannedObject& object,
   if (!object.grips.empty()) yaml += "gripped:\n";
   for (size_t i = 0; i < object.grips.size(); ++i) {
     yaml += "  - " + WriteGrip(folder, object.grips[i], i) + "\n";
+  }
+  if (!object.forces.empty()) yaml += "forces:\n";
+  for (size_t i = 0; i < object.forces.size(); ++i) {
+    yaml += "  - " + WriteForce(folder, object.forces[i], i) + "\n";
   }
   WriteTruth(folder / "truth", surfaces);
   WriteFileAtomically(folder / "recording.yaml", yaml);

@@ -25,6 +25,7 @@ struct ScannedObject {
   std::optional<Eigen::Vector3d> gravity;  // m/s²
   std::vector<Region> fixed;
   std::vector<RecordedGrip> grips;  // following the scan, or along a given path
+  std::vector<MeasuredForce> forces;
 };
 
 // Scans surface i at times[i] (s, ascending) and writes `folder`: recording.yaml, the frames, and

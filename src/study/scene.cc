@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/interrupt.h"
-#include "fit/force_model.h"
+#include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
 #include "scan/scan_writer.h"
 
@@ -111,7 +111,8 @@ Scene ReadScene(const Config& config) {
   for (const Config& item : config.Items("grips")) scene.grips.push_back(ReadGrip(item, index++));
   for (const Config& item : config.Items("loads")) {
     scene.loads.push_back({ReadRegion(item.Child("region"), {}, "load"),
-                           item.Vector("force", kForce), ReadProfile(item)});
+                           item.Vector("force", kForce), ReadProfile(item),
+                           item.Flag("measured", false)});
   }
   const Config motion = config.Child("motion");
   scene.step.scheme = ReadTimeScheme(motion, "bdf2");
@@ -144,10 +145,11 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
     if (!IsHeld(grip)) held.motion = Motion(grip, body->mesh.nodes(Eigen::all, held.nodes));
     model.grips.push_back(std::move(held));
   }
-  // A load is spread by area over the boundary nodes of its region, 1 N per component.
-  std::vector<ForceModel> spread;
-  for (const SceneLoad& load : scene.loads)
-    spread.push_back(FootprintForce(*body, NodesIn(load.region, body->mesh.nodes), 1.0));
+  for (const SceneLoad& load : scene.loads) {
+    model.effects.push_back(std::make_shared<PrescribedForce>(
+        BoundaryShares(*body, NodesIn(load.region, body->mesh.nodes)),
+        [&load](double time) -> Eigen::Vector3d { return load.profile.At(time) * load.force; }));
+  }
 
   MotionHistory history = RestHistory(model);
   Stepper stepper(model, scene.step);
@@ -156,12 +158,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   for (int frame = 0; frame < scene.frames; ++frame) {
     for (int k = 0; frame > 0 && k < scene.steps_per_frame; ++k) {
       ThrowIfInterrupted();
-      Eigen::VectorXd force = Eigen::VectorXd::Zero(3 * body->NodeCount());
-      for (size_t i = 0; i < scene.loads.size(); ++i) {
-        force += spread[i].basis *
-                 (scene.loads[i].profile.At(history.time + time_step) * scene.loads[i].force);
-      }
-      const StepSummary step = stepper.Step(time_step, force, &history);
+      const StepSummary step = stepper.Step(time_step, {}, &history);
       if (!step.IsUsable()) {
         motion.status = SceneMotion::Status::kStepFailed;
         motion.message = fmt::format("frame {}: {}", frame, step.message);
@@ -191,6 +188,16 @@ void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
     if (IsHeld(grip)) object.fixed.push_back(grip.region);
   for (const auto& effect : scene.effects)
     if (effect->Card().type == "gravity") object.gravity = effect->Parameters();
+  for (const SceneLoad& load : scene.loads) {
+    if (!load.measured) continue;
+    MeasuredForce force{load.region.name, load.region, {}, {}, {}};
+    force.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
+                                                    static_cast<Eigen::Index>(motion.times.size()));
+    force.forces.resize(3, force.times.size());
+    for (Eigen::Index k = 0; k < force.times.size(); ++k)
+      force.forces.col(k) = load.profile.At(force.times[k]) * load.force;
+    object.forces.push_back(force);
+  }
   std::vector<TriMesh> surfaces;
   for (const Eigen::Matrix3Xd& nodes : motion.positions)
     surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));

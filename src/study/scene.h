@@ -33,6 +33,7 @@ struct SceneLoad {
   Region region;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in total
   Profile profile;
+  bool measured = false;  // the recording tells it, as if there had been a load cell
 };
 
 // Nodes held, or moved as a rigid body: turned about an axis and shifted, both times the profile.
