@@ -50,10 +50,17 @@ constexpr char kStl[] =
     "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 1 0.5\n"
     "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
 
-class TriFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+struct TextFile {
+  const char* name;
+  const char* content;
+};
+// Names the test; GoogleTest's own printer would put the strings' addresses there.
+void PrintTo(const TextFile& file, std::ostream* out) { *out << file.name; }
+
+class TriFormat : public ::testing::TestWithParam<TextFile> {};
 INSTANTIATE_TEST_SUITE_P(All, TriFormat,
-                         ::testing::Values(std::pair("a.off", kOff), std::pair("a.obj", kObj),
-                                           std::pair("a.ply", kPly), std::pair("a.STL", kStl)));
+                         ::testing::Values(TextFile{"a.off", kOff}, TextFile{"a.obj", kObj},
+                                           TextFile{"a.ply", kPly}, TextFile{"a.STL", kStl}));
 
 TEST_P(TriFormat, GivesTheSameSquare) {
   const TemporaryFolder folder;
@@ -175,16 +182,16 @@ constexpr char kMedit[] =
 constexpr char kNode[] = "# nodes\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
 constexpr char kEle[] = "2 4 0\n1 1 2 3 4\n2 2 3 4 5 # the other\n";
 
-class TetFormat : public ::testing::TestWithParam<std::pair<const char*, const char*>> {};
+class TetFormat : public ::testing::TestWithParam<TextFile> {};
 INSTANTIATE_TEST_SUITE_P(All, TetFormat,
-                         ::testing::Values(std::pair("a.msh", kMsh), std::pair("a.tet", kTet),
-                                           std::pair("a.txt", kTxt), std::pair("a.mesh", kMedit),
-                                           std::pair("a.ele", kEle)));
+                         ::testing::Values(TextFile{"a.msh", kMsh}, TextFile{"a.tet", kTet},
+                                           TextFile{"a.txt", kTxt}, TextFile{"a.mesh", kMedit},
+                                           TextFile{"a.ele", kEle}));
 
 TEST_P(TetFormat, GivesTheSameTwoTetrahedra) {
   const TemporaryFolder folder;
   Write(folder / "a.node", kNode);
-  const TetMeshFile read = ReadTetMesh(Write(folder / GetParam().first, GetParam().second));
+  const TetMeshFile read = ReadTetMesh(Write(folder / GetParam().name, GetParam().content));
   EXPECT_EQ(read.mesh.NodeCount(), 5);
   ASSERT_EQ(read.mesh.TetCount(), 2);
   EXPECT_DOUBLE_EQ(TetVolumes(read.mesh)(0), 1.0 / 6);
