@@ -1,12 +1,13 @@
 #include "fem/cholmod_factor.h"
 
 #include <glog/logging.h>
-#include <omp.h>
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "core/serial_openmp.h"
 
 namespace lacuna {
 namespace {
@@ -15,19 +16,6 @@ namespace {
 // from in the values of a block matrix.
 struct LowerTriangle {
   std::vector<int> begin, row, source;
-};
-
-// CHOLMOD opens four OpenMP threads for each small copy between supernodes, whatever the machine:
-// on two cores the factorisation is two to four times slower with them than without.
-class SerialOpenMp {
- public:
-  SerialOpenMp() { omp_set_max_active_levels(0); }
-  ~SerialOpenMp() { omp_set_max_active_levels(levels_); }
-  SerialOpenMp(const SerialOpenMp&) = delete;
-  SerialOpenMp& operator=(const SerialOpenMp&) = delete;
-
- private:
-  int levels_ = omp_get_max_active_levels();
 };
 
 LowerTriangle LowerTriangleOf(const BlockPattern& pattern, const EliminationOrder& order) {

@@ -25,6 +25,9 @@ struct Model {
   std::vector<Grip> grips;
 };
 
+// n: 1 at nodes that a grip holds.
+std::vector<char> GrippedNodes(const Model& model);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_FEM_MODEL_H_

@@ -3,12 +3,22 @@
 #include <glog/logging.h>
 
 #include <utility>
+#include <vector>
 
 namespace lacuna {
 
 Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes) {
+  const BoundarySurface& boundary = body.boundary;
+  std::vector<char> chosen(body.NodeCount(), 0);
+  for (const int node : nodes) chosen[node] = 1;
+  const Eigen::VectorXd areas = TriangleAreas(boundary.surface);
   Eigen::VectorXd share = Eigen::VectorXd::Zero(body.NodeCount());
-  share(nodes) = NodeBoundaryAreas(body)(nodes);
+  for (Eigen::Index t = 0; t < areas.size(); ++t) {
+    const Eigen::Vector3i corner = boundary.node(boundary.surface.triangles.col(t));
+    if (chosen[corner[0]] && chosen[corner[1]] && chosen[corner[2]])
+      for (const int node : corner) share[node] += areas[t];
+  }
+  if (share.sum() == 0) share(nodes) = NodeBoundaryAreas(body)(nodes);
   CHECK_GT(share.sum(), 0) << "a force on nodes without boundary area";
   return share / share.sum();
 }

@@ -4,19 +4,18 @@
 #include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCore>
 #include <cmath>
 #include <vector>
 
 #include "fem/linear_solver.h"
 #include "fem/newton.h"
+#include "fit/force_response.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kBalanceTolerance = 1e-10;  // of Newton's method, relative to the forces at work
-constexpr double kSensitivityTolerance = 1e-7;  // of ∂x/∂c; only the search direction depends on it
+constexpr double kSolverTolerance = 1e-7;    // of a Newton step
 constexpr int kNewtonIterations = 30;
 constexpr int kMaxLoadParts = 8;
 
@@ -31,13 +30,13 @@ class BalancedMotion : public ceres::EvaluationCallback {
  public:
   BalancedMotion(const Model& model, const StepEquation& equation, const ForceModel& force_model,
                  const Eigen::VectorXd& position, const Eigen::VectorXd* coefficients)
-      : equation_(equation),
-        basis_(force_model.basis),
+      : model_(model),
+        force_model_(force_model),
+        equation_(equation),
         coefficients_(coefficients),
         fixed_(GrippedNodes(model)),
         gripped_place_(position),
-        newton_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
-        sensitivity_solver_(model.body->pattern, fixed_, Solving(kSensitivityTolerance)),
+        newton_solver_(model.body->pattern, fixed_, Solving(kSolverTolerance)),
         tangent_(model.body->pattern),
         differentiated_position_(position),
         position_(position) {}
@@ -55,9 +54,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
   bool is_balanced() const { return is_balanced_; }
   const Eigen::VectorXd& position() const { return position_; }
   const Eigen::MatrixXd& sensitivity() const { return sensitivity_; }
-  int factorisations() const {
-    return newton_solver_.factorisations() + sensitivity_solver_.factorisations();
-  }
+  int factorisations() const { return newton_solver_.factorisations() + response_factorisations_; }
 
  private:
   bool IsDifferentiatedHere() const {
@@ -76,7 +73,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
       bool solved = true;
       for (int part = 1; part <= parts && solved; ++part) {
         const double share = static_cast<double>(part) / parts;
-        const Eigen::VectorXd force = basis_ * (from + share * (*coefficients_ - from));
+        const Eigen::VectorXd force = force_model_.basis * (from + share * (*coefficients_ - from));
         const NewtonProblem problem{equation_, force, fixed_, kBalanceTolerance, kNewtonIterations};
         solved = SolveByNewton(problem, gripped_place_, &newton_solver_, &tangent_, &position_)
                      .IsUsable();
@@ -87,28 +84,23 @@ class BalancedMotion : public ceres::EvaluationCallback {
   }
 
   bool Differentiate() {
-    equation_.Tangent(position_, /*convexify=*/false, &tangent_);
-    sensitivity_solver_.DropFactor();
-    sensitivity_.resize(position_.size(), coefficients_->size());
-    Eigen::VectorXd column;
-    for (Eigen::Index k = 0; k < coefficients_->size(); ++k) {
-      const Eigen::VectorXd load = basis_.col(k);
-      if (!sensitivity_solver_.Solve(tangent_, load, &column).IsUsable()) return false;
-      sensitivity_.col(k) = column;
-    }
+    ForceResponse response = RespondToForces(model_, equation_, force_model_, position_);
+    response_factorisations_ += response.factorisations;
+    if (!response.IsUsable()) return false;
+    sensitivity_ = std::move(response.sensitivity);
     differentiated_position_ = position_;
     differentiated_coefficients_ = *coefficients_;
     return true;
   }
 
+  const Model& model_;
+  const ForceModel& force_model_;
   const StepEquation& equation_;
-  const Eigen::SparseMatrix<double> basis_;  // column-major: a load is a column
   const Eigen::VectorXd* coefficients_;
   std::vector<char> fixed_;
   Eigen::VectorXd gripped_place_;
-  // Two, because a factor lives longer where few systems are solved with each matrix.
   LinearSolver newton_solver_;
-  LinearSolver sensitivity_solver_;
+  int response_factorisations_ = 0;
   BlockMatrix tangent_;
   Eigen::VectorXd differentiated_position_, differentiated_coefficients_;  // where ∂x/∂c was taken
   Eigen::VectorXd position_;
@@ -154,21 +146,6 @@ class ReducedObservationCost : public ceres::CostFunction {
   Eigen::Vector3d weight_, target_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
 };
-
-// (JᵀJ)⁻¹ of all residuals, prior and loss included, where the problem stands.
-Eigen::MatrixXd Covariance(ceres::Problem* problem, Eigen::Index count) {
-  ceres::CRSMatrix sparse;
-  problem->Evaluate({}, nullptr, nullptr, nullptr, &sparse);
-  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const Eigen::Map<const Rows> jacobian(
-      sparse.num_rows, sparse.num_cols, static_cast<Eigen::Index>(sparse.values.size()),
-      sparse.rows.data(), sparse.cols.data(), sparse.values.data());
-  const Eigen::MatrixXd dense(jacobian);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
-  information.selfadjointView<Eigen::Lower>().rankUpdate(dense.transpose());
-  return information.selfadjointView<Eigen::Lower>().llt().solve(
-      Eigen::MatrixXd::Identity(count, count));
-}
 
 }  // namespace
 
@@ -240,7 +217,6 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   // Also brings the motion back to the best coefficients, which need not be the last ones tried.
   if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
   fit.weighted_rms = RootMeanSquare(residuals);
-  fit.covariance = Covariance(&problem, count);
   fit.position = motion.position();
   fit.coefficients = coefficients;
   fit.force = implementation_->basis * coefficients;

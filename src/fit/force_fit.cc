@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fit/coefficient_fit.h"
+#include "fit/force_response.h"
 #include "fit/position_fit.h"
 
 namespace lacuna {
@@ -14,6 +15,13 @@ namespace {
 Eigen::VectorXd OrZero(const Eigen::VectorXd& given, Eigen::Index size) {
   CHECK(given.size() == size || given.size() == 0);
   return given.size() == size ? given : Eigen::VectorXd::Zero(size);
+}
+
+// More coefficients than these are cheaper to fit beside the positions.
+constexpr Eigen::Index kMaxEliminated = 12;
+
+bool HasFreeNodes(const ForceModel& model) {
+  return std::any_of(model.free.begin(), model.free.end(), [](char free) { return free; });
 }
 
 }  // namespace
@@ -35,9 +43,8 @@ StepForceFitter::StepForceFitter(const Model& model, const StepEquation& equatio
                                Eigen::VectorXd::Zero(unknowns)};
   implementation_ = std::make_unique<Implementation>(
       Implementation{model, equation, force_model, start, nullptr});
-  const bool has_free_nodes =
-      std::any_of(force_model.free.begin(), force_model.free.end(), [](char free) { return free; });
-  if (!has_free_nodes && force_model.HasUnknowns()) {
+  const Eigen::Index count = force_model.CoefficientCount();
+  if (!HasFreeNodes(force_model) && count > 0 && count <= kMaxEliminated) {
     implementation_->coefficients = std::make_unique<CoefficientFitter>(
         model, equation, force_model, start.position, start.coefficients);
   }
@@ -70,11 +77,14 @@ ForceFit StepForceFitter::Fit(const Observations& observations, const ForceFitPr
   return fit;
 }
 
-std::vector<char> GrippedNodes(const Model& model) {
-  std::vector<char> gripped(model.body->NodeCount(), 0);
-  for (const Grip& grip : model.grips)
-    for (const int node : grip.nodes) gripped[node] = 1;
-  return gripped;
+Eigen::MatrixXd StepForceFitter::Covariance(const ForceFit& fit, const Observations& observations,
+                                            const ForceFitOptions& options) const {
+  const Implementation& kept = *implementation_;
+  if (HasFreeNodes(kept.force_model)) return {};
+  const ForceResponse response =
+      RespondToForces(kept.model, kept.equation, kept.force_model, fit.position);
+  if (!response.IsUsable()) return {};
+  return CoefficientCovariance(response, observations, fit.position, options.robust_threshold);
 }
 
 double RootMeanSquare(const std::vector<double>& values) {

@@ -2,9 +2,11 @@
 //
 // Ceres minimises the displacement residual of Eq. 1 over the forces that a force model allows,
 // subject to the equation of motion of the step (fem/step_equation.h). Two formulations, by what
-// grows: with few coefficients the positions are eliminated, which leaves a small dense problem
-// (fit/coefficient_fit.h); with unknown forces at many nodes the positions are the unknowns, which
-// keeps the Jacobian sparse (fit/position_fit.h).
+// grows: eliminating the positions leaves a small dense problem but takes a back-substitution for
+// each coefficient in each iteration (fit/coefficient_fit.h); with the positions as unknowns the
+// Jacobian is sparse, and an iteration costs about six factorisations of the step's own matrix
+// however many forces there are (fit/position_fit.h). The first is the cheaper one up to some
+// dozen coefficients (tests/benchmark/README.md).
 #ifndef LACUNA_FIT_FORCE_FIT_H_
 #define LACUNA_FIT_FORCE_FIT_H_
 
@@ -21,17 +23,18 @@
 namespace lacuna {
 
 struct ForceFitOptions {
-  // With free nodes only: a nodal force out of balance is measured by the length that it would move
-  // its node alone (force over the node's own stiffness). Imbalances of this length cost as much as
-  // a residual of one standard deviation, m; larger: easier steps, more fits until the multiplier
-  // has settled.
-  double balance_tolerance = 1e-5;
+  // With the positions as unknowns: a nodal force out of balance is measured by the length that it
+  // would move its node alone (force over the node's own stiffness). Imbalances of this length cost
+  // as much as a residual of one standard deviation, m. Smaller: better balanced, harder
+  // numerically (below 1e-7 of the object's size iterations multiply); larger: more fits until the
+  // multiplier has settled, above 1e-4 of the size it may not.
+  double balance_tolerance = 1e-6;
   // Expected size of a free node's force (less the previous step's), as such a length, m; larger:
   // follows the data more closely, noise included.
   double free_force_scale = 1e-3;
   // Residuals beyond this many standard deviations count linearly (Huber); 0: all squared.
   double robust_threshold = 3;
-  int max_iterations = 25;           // of Levenberg–Marquardt, each one sparse factorisation
+  int max_iterations = 100;           // of Levenberg–Marquardt, each one sparse factorisation
   double function_tolerance = 1e-6;  // relative decrease that ends the iteration
 };
 
@@ -42,10 +45,6 @@ struct ForceFit {
   Eigen::VectorXd position;      // 3n, m: the fitted end of the step
   Eigen::VectorXd force;         // 3n, N: the fitted outer forces; 0 where the model has none
   Eigen::VectorXd coefficients;  // K
-  // K × K: what the observations and the prior leave open of the coefficients, if the observations'
-  // standard deviations are right and the problem is linear on that scale (Gauss–Newton). Empty
-  // where the positions are the unknowns.
-  Eigen::MatrixXd covariance;
   Eigen::VectorXd multiplier;  // 3n, N: of the balance constraint, where the positions are unknowns
   int factorisations = 0;
   double initial_cost = 0, final_cost = 0;
@@ -74,13 +73,15 @@ class StepForceFitter {
   ForceFit Fit(const Observations& observations, const ForceFitPrior& prior = {},
                const ForceFitOptions& options = {});
 
+  // Covariance of the coefficients (K × K) where a fit ended (fit/force_response.h); empty where
+  // they cannot be had, or the force model has free nodes: those have no coefficients.
+  Eigen::MatrixXd Covariance(const ForceFit& fit, const Observations& observations,
+                             const ForceFitOptions& options = {}) const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
-
-// n: the nodes that a grip holds.
-std::vector<char> GrippedNodes(const Model& model);
 
 double RootMeanSquare(const std::vector<double>& values);
 

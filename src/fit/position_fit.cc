@@ -8,6 +8,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/serial_openmp.h"
+
 namespace lacuna {
 namespace {
 
@@ -213,7 +215,10 @@ ForceFit FitPositions(const Model& model, const StepEquation& equation,
   solver.num_threads = 1;                     // Ceres sums over threads in no fixed order
   solver.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
+  {
+    const SerialOpenMp serial;
+    ceres::Solve(solver, &problem, &summary);
+  }
 
   fit.factorisations = summary.num_linear_solves;
   fit.initial_cost = summary.initial_cost;

@@ -119,6 +119,9 @@ class Follower {
         fit = fitter.Fit(seen, {force_, {}}, options);
         iterations += fit.factorisations;
         if (!fit.IsUsable()) break;
+        const Eigen::MatrixXd covariance =
+            is_last ? fitter.Covariance(fit, seen, options) : Eigen::MatrixXd();
+        if (covariance.size() > 0) frame.force_deviation = NetForceDeviation(forces_, covariance);
         start = fit.position;
       }
       if (!fit.IsUsable()) return Fail("forces", fit.message, iterations, &frame);
@@ -140,8 +143,6 @@ class Follower {
 
     frame.position = AsPoints(history_.position);
     frame.force = AsPoints(fit.force + KnownForces());
-    if (fit.covariance.size() > 0)
-      frame.force_deviation = NetForceDeviation(forces_, fit.covariance);
     frame.residual = ResidualDisplacement(frame.position, state);
     frame.solver = {true, "converged", "", iterations};
     motion_.frames.push_back(std::move(frame));

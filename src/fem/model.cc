@@ -1,0 +1,12 @@
+#include "fem/model.h"
+
+namespace lacuna {
+
+std::vector<char> GrippedNodes(const Model& model) {
+  std::vector<char> gripped(model.body->NodeCount(), 0);
+  for (const Grip& grip : model.grips)
+    for (const int node : grip.nodes) gripped[node] = 1;
+  return gripped;
+}
+
+}  // namespace lacuna

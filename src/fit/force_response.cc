@@ -1,0 +1,69 @@
+#include "fit/force_response.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "fem/linear_solver.h"
+
+namespace lacuna {
+namespace {
+
+// Only a search direction and an uncertainty depend on it.
+constexpr double kTolerance = 1e-7;
+
+}  // namespace
+
+ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
+                              const ForceModel& force_model, const Eigen::VectorXd& position) {
+  const Eigen::SparseMatrix<double> loads = force_model.basis;  // column-major: a load is a column
+  BlockMatrix tangent(model.body->pattern);
+  equation.Tangent(position, /*convexify=*/false, &tangent);
+  LinearSolverOptions options;
+  options.relative_tolerance = kTolerance;
+  LinearSolver solver(model.body->pattern, GrippedNodes(model), options);
+  ForceResponse response;
+  response.sensitivity.resize(position.size(), loads.cols());
+  Eigen::VectorXd column;
+  for (Eigen::Index k = 0; k < loads.cols(); ++k) {
+    const bool solved = solver.Solve(tangent, loads.col(k), &column).IsUsable();
+    response.factorisations = solver.factorisations();
+    if (!solved) {
+      response.status = ForceResponse::Status::kLinearSolverFailed;
+      return response;
+    }
+    response.sensitivity.col(k) = column;
+  }
+  response.status = ForceResponse::Status::kSolved;
+  return response;
+}
+
+Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
+                                      const Observations& observations,
+                                      const Eigen::VectorXd& position, double robust_threshold) {
+  CHECK(response.IsUsable());
+  const Eigen::Index count = response.sensitivity.cols();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+    Eigen::Vector3d deviation = -observations.target.col(j);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(3, count);
+    for (int a = 0; a < 3; ++a) {
+      const double weight = observations.weight(a, j);
+      if (weight == 0) continue;
+      const Eigen::Index row = 3 * observations.node(a, j);
+      deviation += weight * position.segment<3>(row);
+      moved += weight * response.sensitivity.middleRows(row, 3);
+    }
+    const auto directions = WhitenedDirections(observations, j);
+    const double length = (directions * deviation).norm();
+    const double trust =
+        robust_threshold > 0 && length > robust_threshold ? robust_threshold / length : 1;
+    const Eigen::MatrixXd jacobian = std::sqrt(trust) * (directions * moved);
+    information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
+  }
+  return information.selfadjointView<Eigen::Lower>().llt().solve(
+      Eigen::MatrixXd::Identity(count, count));
+}
+
+}  // namespace lacuna
