@@ -57,7 +57,8 @@ void DescribeRun(const std::filesystem::path& folder) {
   for (const auto& [stage, result] : manifest.stages)
     fmt::print("  stage {:10} {} files\n", stage, result.files.size());
   if (!manifest.finished) return;
-  const RunRecord record = LoadRunRecord(FinishedStage(folder, "results"));
+  for (const auto& [stage, result] : manifest.stages) FinishedStage(folder, stage);  // whole?
+  const RunRecord record = LoadRunRecord(folder / "results");
   fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
              record.frames.size(), record.mesh.node_count, record.mesh.tet_count,
              record.mesh.order);

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
   int threads = 0;
   bool verbose = false;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1024));
   app.add_flag("-v,--verbose", verbose, "Log what the stages do");
 
   std::function<int()> command;

@@ -65,7 +65,9 @@ void AddReconstruct(CLI::App* app, std::function<int()>* command) {
       app->add_subcommand("reconstruct", "From a recording to a model with per-step forces");
   reconstruct->footer(
       "The experiment file names a recording and says how to mesh, what material, which forces;\n"
-      "experiments/bend.yaml is one with every key explained. Run again, it resumes by stage.");
+      "experiments/bend.yaml is one with comments. Run again, it resumes by stage. Progress goes "
+      "to\n"
+      "standard error: a line that renews itself on a terminal, JSON lines elsewhere.");
   auto file = std::make_shared<std::string>();
   reconstruct->add_option("experiment", *file, "The experiment's YAML file")->required();
   reconstruct->callback([command, file] { *command = [file] { return Reconstruct(*file); }; });

@@ -52,7 +52,15 @@ struct Config::Node {
   }
   YAML::Node Required(const std::string& key, const std::string& expected) const {
     const YAML::Node entry = Find(key);
-    if (!entry) Fail(yaml.Mark(), Field(key), "is missing; expected " + expected);
+    if (!entry) {
+      std::vector<std::string> given;
+      for (const auto& pair : yaml) given.push_back(pair.first.Scalar());
+      const std::string misspelled = Nearest(key, given, 2);
+      const std::string hint = misspelled.empty() || misspelled == key || Asked(misspelled)
+                                   ? ""
+                                   : fmt::format(" (\"{}\" is no key)", misspelled);
+      Fail(yaml.Mark(), Field(key), "is missing" + hint + "; expected " + expected);
+    }
     return entry;
   }
   std::string Scalar(const YAML::Node& entry, const std::string& field,
@@ -138,7 +146,11 @@ Config Config::Parse(const std::string& text, const std::string& name) {
   node->document = std::make_shared<Document>();
   node->document->file = name;
   try {
-    node->yaml = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      node->Fail(documents[1].Mark(), "", "starts a second YAML document; expected one in a file");
+    }
+    if (!documents.empty()) node->yaml = documents[0];
   } catch (const YAML::ParserException& problem) {
     node->Fail(problem.mark, "", "is not valid YAML: " + problem.msg);
   }

@@ -36,6 +36,16 @@ class InputError : public std::runtime_error {
   }
 };
 
+// What `action` returns; an InputError out of it gets `where` in front of its message.
+template <typename Action>
+auto NamingWhere(const std::string& where, const Action& action) {
+  try {
+    return action();
+  } catch (const InputError& problem) {
+    throw InputError(where + ": " + problem.what());
+  }
+}
+
 }  // namespace lacuna
 
 #endif  // LACUNA_CORE_ERROR_H_

@@ -25,17 +25,21 @@ int EditDistance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string Suggestion(const std::string& name, const std::vector<std::string>& names) {
-  const std::string* nearest = nullptr;
-  int distance = static_cast<int>(name.size()) / 2 + 2;
+std::string Nearest(const std::string& name, const std::vector<std::string>& names, int farthest) {
+  std::string nearest;
+  int distance = farthest + 1;
   for (const std::string& candidate : names) {
     const int d = EditDistance(name, candidate);
-    if (d < distance) {
-      distance = d;
-      nearest = &candidate;
-    }
+    if (d >= distance) continue;
+    distance = d;
+    nearest = candidate;
   }
-  return nearest ? fmt::format("; did you mean \"{}\"?", *nearest) : "";
+  return nearest;
+}
+
+std::string Suggestion(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = Nearest(name, names, static_cast<int>(name.size()) / 2 + 1);
+  return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
 }
 
 }  // namespace lacuna

@@ -7,8 +7,10 @@
 
 namespace lacuna {
 
-// `; did you mean "x"?` with the nearest of `names` (edit distance), or nothing where none is near
-// enough to be what was meant.
+// The nearest of `names` that is at most `farthest` edits away; "": none is.
+std::string Nearest(const std::string& name, const std::vector<std::string>& names, int farthest);
+
+// `; did you mean "x"?` with the nearest of `names`, or "" where none is near enough to be meant.
 std::string Suggestion(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace lacuna

@@ -15,7 +15,7 @@ inline std::vector<ParameterCard> ElasticParameters() {
   return {{.name = "young_modulus",
            .meaning = "Young's modulus at small strain",
            .dimension = kPressure,
-           .bounds = kPositive,
+           .bounds = {0, 1e15, true, false},
            .null_value = 0,
            .plausible_min = 1e3,
            .plausible_max = 1e7,

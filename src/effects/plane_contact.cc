@@ -148,6 +148,7 @@ class PlaneContactEffect final : public Effect {
             "friction, push it at two speeds: Coulomb's force is the same, mass-proportional "
             "damping doubles, and only friction grows with a weight laid on top",
         .look_alikes = {"gravity", "mass_damping"},
+        .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
     card.parameters.push_back({.name = "stiffness",

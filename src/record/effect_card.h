@@ -32,6 +32,7 @@ struct EffectCard {
   std::string residual_when_missing;     // what a user sees when the model lacks it
   std::string separating_experiment;     // what tells it from its look-alikes
   std::vector<std::string> look_alikes;  // types of effects easily taken for it
+  bool repeatable = false;  // a model may have several, e.g. walls
   // Invariances that the test suite then checks.
   bool conserves_momentum = false;          // forces sum to zero
   bool conserves_angular_momentum = false;  // torques sum to zero

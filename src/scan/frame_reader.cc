@@ -35,7 +35,7 @@ std::vector<double> ReadTimes(const Config& frames, size_t count, Recording* rec
   std::vector<double> times;
   std::string key = "rate";
   if (has_rate) {
-    const double rate = frames.Quantity("rate", kRate, kPositive);
+    const double rate = frames.Quantity("rate", kRate, {1e-6, 1e9, false, false});
     for (size_t i = 0; i < count; ++i) times.push_back(i / rate);
   } else if (has_times) {
     key = "times";
@@ -217,7 +217,6 @@ void ReadMarkerPlaces(const Config& frames, Recording* recording) {
 }  // namespace
 
 void Warn(Recording* recording, const std::string& message) {
-  LOG(WARNING) << recording->file.string() << ": " << message;
   recording->warnings.push_back(message);
 }
 

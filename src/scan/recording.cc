@@ -16,14 +16,17 @@ namespace lacuna {
 namespace {
 
 constexpr Eigen::Index kFewestPoints = 4;  // fewer do not span a shape
+// m; a coordinate beyond is a placeholder or an overflow, no measurement.
+constexpr double kFarthest = 1e9;
 
-// Keeps the finite points; `source_row` and the triangles follow.
+// Keeps the finite points (within kFarthest); `source_row` and the triangles follow.
 void DropInvalid(const PointCloud& raw, const Eigen::Matrix3Xi& triangles, Frame* frame) {
   std::vector<int> kept;
   std::vector<int> place(raw.Size(), -1);
   for (int i = 0; i < raw.Size(); ++i) {
     const bool has_normal = !raw.HasNormals() || raw.normals.col(i).allFinite();
-    if (!raw.points.col(i).allFinite() || !has_normal) continue;
+    const bool is_place = (raw.points.col(i).array().abs() < kFarthest).all();
+    if (!is_place || !has_normal) continue;
     place[i] = static_cast<int>(kept.size());
     kept.push_back(i);
   }

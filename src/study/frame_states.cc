@@ -53,13 +53,14 @@ FrameState MakeState(const ReconstructionStudy& study, int frame_number) {
     state.cloud = {frame.cloud.points, VertexNormals(state.surface)};
     return state;
   }
-  state.cloud = FilterCloud(frame.cloud, frame.sensors, study.filter).cloud;
+  const std::string where =
+      fmt::format("{}: frame {}", study.recording.file.string(), frame_number);
+  state.cloud = NamingWhere(
+      where, [&] { return FilterCloud(frame.cloud, frame.sensors, study.filter).cloud; });
   if (!study.surfaces_of_frames) return state;
-  const Surface surface = ReconstructSurface(state.cloud, study.surface);
-  if (!surface.IsUsable()) {
-    throw InputError(fmt::format("{}: frame {}: no closed surface: {}",
-                                 study.recording.file.string(), frame_number, surface.message));
-  }
+  const Surface surface =
+      NamingWhere(where, [&] { return ReconstructSurface(state.cloud, study.surface); });
+  if (!surface.IsUsable()) throw InputError(where + ": no closed surface: " + surface.message);
   state.surface = surface.mesh;
   return state;
 }

@@ -30,12 +30,14 @@ Eigen::Isometry3d RigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3
 
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
     : recording_(recording), model_(*model) {
-  for (const Region& region : recording.fixed)
-    model->grips.push_back({NodesIn(region, reference.nodes), {}});
+  const auto nodes_in = [&](const Region& region) {
+    return NamingWhere(recording.file.string(), [&] { return NodesIn(region, reference.nodes); });
+  };
+  for (const Region& region : recording.fixed) model->grips.push_back({nodes_in(region), {}});
   for (const RecordedGrip& grip : recording.grips) {
     auto track = std::make_shared<Track>();
     track->grip = grip;
-    track->nodes = NodesIn(grip.region, reference.nodes);
+    track->nodes = nodes_in(grip.region);
     track->rest = reference.nodes(Eigen::all, track->nodes);
     for (const std::string& name : grip.markers) {
       const auto& names = recording.markers.names;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "core/error.h"
 #include "fem/prescribed_force.h"
 
 namespace lacuna {
@@ -14,7 +17,8 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
   for (const int node : body.boundary.node) selectable[node] = !gripped[node];
   std::vector<int> nodes;
   if (settings.region) {
-    nodes = SelectNodes(*settings.region, body.mesh.nodes);
+    nodes = NamingWhere(study.name + ": forces.region",
+                        [&] { return SelectNodes(*settings.region, body.mesh.nodes); });
   } else {
     nodes.assign(body.boundary.node.begin(), body.boundary.node.end());
   }
@@ -22,8 +26,10 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
   const bool fits_forces =
       settings.kind != ForceSettings::Kind::kNone && settings.kind != ForceSettings::Kind::kKnown;
   if (nodes.empty() && fits_forces) {
-    throw InputError(
-        fmt::format("{}: forces.region: no free node of the boundary lies in it", study.name));
+    throw InputError(fmt::format("{}: forces: no free node of the boundary {}", study.name,
+                                 settings.region
+                                     ? "lies in their region"
+                                     : "is left to act on: the recording's grips hold all of it"));
   }
   const Eigen::VectorXi where =
       Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
@@ -54,21 +60,25 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
 }
 
 std::vector<std::shared_ptr<Effect>> MakeKnownForces(const ReconstructionStudy& study,
-                                                     const Body& body) {
+                                                     const Model& grips_and_body) {
   std::vector<std::shared_ptr<Effect>> loads;
   if (study.follow.forces.kind != ForceSettings::Kind::kKnown) return loads;
+  const Body& body = *grips_and_body.body;
+  const Eigen::VectorXd areas = NodeBoundaryAreas(body);
+  const std::vector<char> gripped = GrippedNodes(grips_and_body);
   for (const MeasuredForce& force : study.recording.forces) {
-    std::vector<int> nodes = SelectNodes(*force.region, body.mesh.nodes);
-    const Eigen::VectorXd areas = NodeBoundaryAreas(body);
+    const std::string where = study.recording.file.string() + ": " + force.name;
+    std::vector<int> nodes =
+        NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh.nodes); });
     std::erase_if(nodes, [&areas](int node) { return areas[node] == 0; });
-    if (nodes.empty()) {
-      throw InputError(fmt::format("{}: {} acts on no boundary node: its region is too small",
-                                   study.recording.file.string(), force.name));
-    }
-    const Eigen::VectorXi where =
+    if (nodes.empty())
+      throw InputError(where + " acts on no boundary node: its region is too small");
+    if (std::all_of(nodes.begin(), nodes.end(), [&](int node) { return gripped[node]; }))
+      throw InputError(where + " acts only where the object is held, and would move nothing");
+    const Eigen::VectorXi chosen =
         Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
     loads.push_back(std::make_shared<PrescribedForce>(
-        BoundaryShares(body, where), [force](double time) { return ForceAt(force, time); }));
+        BoundaryShares(body, chosen), [force](double time) { return ForceAt(force, time); }));
   }
   return loads;
 }

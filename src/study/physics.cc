@@ -1,7 +1,11 @@
 #include "study/physics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "effects/catalogue.h"
 
@@ -19,9 +23,37 @@ MeshSettings ReadMeshSettings(const Config& config) {
 std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config) {
   std::vector<std::shared_ptr<Effect>> effects;
   effects.push_back(MakeMaterial(config.Child("material")));
-  for (const Config& item : config.Items("effects"))
+  std::set<std::string> listed;
+  for (const Config& item : config.Items("effects")) {
     effects.push_back(MakeEffect(item, effects.front().get()));
+    const EffectCard& card = effects.back()->Card();
+    if (!listed.insert(card.type).second && !card.repeatable)
+      item.Fail("type", fmt::format("{} is listed twice", card.type));
+  }
   return effects;
+}
+
+std::vector<std::string> ImplausibleParameters(
+    const std::vector<std::shared_ptr<Effect>>& effects) {
+  constexpr double kFar = 10;  // times beyond the plausible range
+  std::vector<std::string> warnings;
+  for (const auto& effect : effects) {
+    const EffectCard& card = effect->Card();
+    const Eigen::VectorXd values = effect->Parameters();
+    for (size_t k = 0; k < card.parameters.size(); ++k) {
+      const ParameterCard& parameter = card.parameters[k];
+      const double value = values[static_cast<Eigen::Index>(k)];
+      const bool too_small =
+          parameter.log_scale && value > 0 && value < parameter.plausible_min / kFar;
+      const bool too_large = std::abs(value) > kFar * std::max(std::abs(parameter.plausible_min),
+                                                               std::abs(parameter.plausible_max));
+      if (!too_small && !too_large) continue;
+      warnings.push_back(fmt::format("{}.{} is {:g} {}; {:g} to {:g} is usual for soft objects",
+                                     card.type, parameter.name, value, parameter.dimension.unit,
+                                     parameter.plausible_min, parameter.plausible_max));
+    }
+  }
+  return warnings;
 }
 
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name) {

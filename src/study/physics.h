@@ -24,6 +24,9 @@ MeshSettings ReadMeshSettings(const Config& config);
 // `material: {law: …}` and `effects: [{type: …}]`, the material first.
 std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config);
 
+// Warnings about values far outside the range that the effect's card calls plausible.
+std::vector<std::string> ImplausibleParameters(const std::vector<std::shared_ptr<Effect>>& effects);
+
 // `scheme: quasi_static | implicit_euler | bdf2`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);
 

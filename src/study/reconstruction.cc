@@ -210,6 +210,8 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
   ReconstructionStudy study;
   config.Integer("schema_version", 1, 1);
   study.name = config.Text("name");
+  if (config.Has("output") && config.Text("output").empty())
+    config.Fail("output", "is empty; expected a folder");
   study.output = config.Path("output", "../results/" + study.name);
   study.seed = static_cast<uint64_t>(config.Integer("seed", 0, 1 << 30, 1));
   study.recording = LoadRecording(config.Path("recording"));
@@ -238,6 +240,8 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
                 "reference shape or more frames");
   }
   CheckMeasuredForces(config, &study);
+  for (const std::string& warning : ImplausibleParameters(study.effects))
+    study.recording.warnings.push_back(warning);
   const bool has_gravity =
       std::any_of(study.effects.begin(), study.effects.end(),
                   [](const auto& effect) { return effect->Card().type == "gravity"; });

@@ -66,6 +66,18 @@ MeshRecord Describe(const TetMesh& mesh) {
           .largest_radius_edge_ratio = quality.radius_edge_ratio.max};
 }
 
+// Told before the memory is gone.
+void RefuseTooManyTets(const ReconstructionStudy& study, const TriMesh& surface) {
+  constexpr double kMost = 2e7;
+  if (study.mesh.tets.max_volume == 0) return;
+  const double tets = EnclosedVolume(surface) / study.mesh.tets.max_volume;
+  if (tets <= kMost) return;
+  throw InputError(fmt::format(
+      "{}: mesh.max_volume: {:g} m³ would divide a body of {:.3g} m³ into {:.2g} tetrahedra, more "
+      "than {:g}",
+      study.name, study.mesh.tets.max_volume, EnclosedVolume(surface), tets, kMost));
+}
+
 }  // namespace
 
 bool FirstFrameIsReference(const ReconstructionStudy& study) {
@@ -93,6 +105,7 @@ ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameSta
       body.mesh = ThickenToTets(surface, reference.sheet_thickness, study.sheet_layers,
                                 PositionOf(reference.sheet_face));
     } else {
+      RefuseTooManyTets(study, surface);
       const MeshResult meshed = MeshTetrahedra(surface, study.mesh.tets);
       if (!meshed.IsUsable()) {
         throw InputError(fmt::format("{}: the reference shape cannot be meshed: {}",

@@ -37,6 +37,18 @@ int DepthForSpacing(const PointCloud& cloud, double spacing) {
   return std::clamp(static_cast<int>(std::ceil(std::log2(cube / spacing))), kMinDepth, kMaxDepth);
 }
 
+// Told before the memory is gone: mostly a length unit that is not the file's.
+void RefuseTooManyTriangles(const TriMesh& surface, double edge_length) {
+  constexpr double kMost = 4e6;
+  const double area = TriangleAreas(surface).sum();
+  const double triangles = area / (std::sqrt(3) / 4 * edge_length * edge_length);
+  if (triangles <= kMost) return;
+  throw InputError(fmt::format(
+      "edges of {:g} m would divide a surface of {:.3g} m² into about {:.2g} triangles, more than "
+      "{:g}; choose a longer edge_length, or check the recording's length_unit",
+      edge_length, area, triangles, kMost));
+}
+
 // Drops the triangles that reach farther than `distance` from all points.
 TriMesh TrimToPoints(const TriMesh& mesh, const Eigen::Matrix3Xd& points, double distance) {
   const Eigen::VectorXd gap = PointSearch(points).Nearest(mesh.vertices).distance.row(0);
@@ -106,6 +118,7 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
   }
   if (options.remesh_iterations > 0) {
     const double edge = options.edge_length > 0 ? options.edge_length : 2 * surface.spacing;
+    RefuseTooManyTriangles(repaired.mesh, edge);
     repaired = RepairSurface(
         RemeshIsotropic(repaired.mesh,
                         {.edge_length = edge, .iterations = options.remesh_iterations}),

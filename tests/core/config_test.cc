@@ -88,6 +88,8 @@ TEST(Config, RefusesWhatIsNotYamlOrNotAMapping) {
   EXPECT_THROW(Config::Parse("- 1\n", "a.yaml"), InputError);
   EXPECT_THROW(Config::Parse("", "a.yaml"), InputError);
   EXPECT_THROW(Config::Load("no/such/file.yaml"), InputError);
+  ExpectInputError([] { Config::Parse("a: 1\n---\nb: 2\n", "a.yaml"); },
+                   "a.yaml:3:1: starts a second YAML document; expected one in a file");
 }
 
 TEST(Config, SuggestsTheNearestChoice) {

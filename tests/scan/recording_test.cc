@@ -147,6 +147,8 @@ TEST_F(RecordingTest, TellsFileAndFrameOfUnusableFrames) {
             "frame 1 of \"bar\": " + file + ": holds 1 usable point; expected at least 4");
   EXPECT_EQ(message("x,y,z\nnan,1,2\n1,nan,2\n3,3,\n1,,1\n2,,2\n"),
             "frame 1 of \"bar\": " + file + ": none of its 5 points is finite");
+  EXPECT_EQ(message("x,y,z\n1e300,1,2\n1,-1e30,2\n0,0,1\n"),  // in squares beyond all numbers
+            "frame 1 of \"bar\": " + file + ": holds 1 usable point; expected at least 4");
   EXPECT_THAT(message("x,y,z\n1,2\n"), HasSubstr("p1.csv:2:1: has 2 entries"));
   const Recording recording = Load(yaml);
   std::filesystem::remove(file);

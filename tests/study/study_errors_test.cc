@@ -58,10 +58,29 @@ TEST(StudyErrors, NameTheLineAndTheField) {
   EXPECT_THAT(MessageAfter("recordings/bend/truth", "recordings/bend/lies"),
               HasSubstr("validation.true_surfaces: there is no "));
   EXPECT_THAT(MessageAfter("{every: 1}", "{last: 0}"), HasSubstr("has one frame"));
+  EXPECT_THAT(MessageAfter("poisson_ratio: 0.35", "poison_ratio: 0.35"),
+              HasSubstr("material.poisson_ratio: is missing (\"poison_ratio\" is no key)"));
+  const std::string gravity = "{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}";
+  EXPECT_THAT(MessageAfter("effects: []", "effects: [" + gravity + ", " + gravity + "]"),
+              HasSubstr("effects[1].type: gravity is listed twice"));
+  EXPECT_THAT(MessageAfter("output: ../results/bend ", "output: \"\" "),
+              HasSubstr("output: is empty"));
 }
 
 TEST(StudyErrors, TheUnchangedExperimentIsSound) {
   EXPECT_EQ(MessageAfter("seed: 1", "seed: 2"), "nothing was refused");
+}
+
+TEST(StudyErrors, ValuesFarFromTheUsualAreAWarning) {
+  const auto effects = [](const char* modulus) {
+    return ReadEffects(Config::Parse(
+        std::string("material: {law: linear, poisson_ratio: 0.3, young_modulus: ") + modulus + "}",
+        "e.yaml"));
+  };
+  EXPECT_TRUE(ImplausibleParameters(effects("0.1 MPa")).empty());
+  const auto warnings = ImplausibleParameters(effects("210 GPa"));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("young_modulus"));
 }
 
 TEST(StudyErrors, ASceneIsCheckedBeforeItRuns) {

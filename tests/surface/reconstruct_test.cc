@@ -184,6 +184,17 @@ std::string FailureOf(const PointCloud& cloud) {
   return "no complaint";
 }
 
+TEST(ReconstructSurface, RefusesMoreTrianglesThanMemoryHoldsBeforeMakingThem) {
+  SurfaceOptions options;
+  options.edge_length = 1e-4;  // 12.6 m² of a unit sphere: 3e9 triangles
+  try {
+    ReconstructSurface(Scan(Icosphere(1, 3), 500, 0, 1), options);
+    FAIL() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("check the recording's length_unit"));
+  }
+}
+
 TEST(ReconstructSurface, RefusesCloudsThatCannotMakeASurface) {
   EXPECT_THAT(FailureOf({}), HasSubstr("at least 10 points, got 0"));
   PointCloud cloud = Scan(Icosphere(1, 3), 500, 0, 1);
