@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +13,13 @@
 #include <sstream>
 
 #include "core/suggestion.h"
+#include "core/yaml_document.h"
 
 namespace lacuna {
 
-struct Config::Document {
-  std::filesystem::path file;
-};
-
 // One mapping of the file and what has been read from it.
 struct Config::Node {
-  std::shared_ptr<Document> document;
+  std::shared_ptr<const YamlDocument> document;
   YAML::Node yaml;
   std::string path;                              // "effects[1]", empty at the top
   std::map<std::string, nlohmann::json> values;  // leaves read, in SI
@@ -38,7 +34,7 @@ struct Config::Node {
   }
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& field,
                          const std::string& message) const {
-    SourcePosition position{document->file.string()};
+    SourcePosition position{document->FileOf(field).string()};
     if (!mark.is_null()) {
       position.line = mark.line + 1;
       position.column = mark.column + 1;
@@ -98,83 +94,18 @@ bool Inside(const Bounds& bounds, double value) {
          (bounds.open_max ? value < bounds.max : value <= bounds.max);
 }
 
-// "${NAME}" replaced by the environment variable of that name.
-std::string ExpandEnvironment(const std::string& text, std::string* missing) {
-  std::string expanded;
-  size_t at = 0;
-  while (true) {
-    const size_t open = text.find("${", at);
-    const size_t close = open == std::string::npos ? open : text.find('}', open);
-    if (close == std::string::npos) return expanded + text.substr(at);
-    expanded += text.substr(at, open - at);
-    // "${NAME:-value}" falls back to `value`, as in a shell.
-    std::string name = text.substr(open + 2, close - open - 2);
-    std::string fallback;
-    const size_t dash = name.find(":-");
-    const bool has_fallback = dash != std::string::npos;
-    if (has_fallback) {
-      fallback = name.substr(dash + 2);
-      name.resize(dash);
-    }
-    const char* value = std::getenv(name.c_str());
-    if (value != nullptr && *value != '\0') {
-      expanded += value;
-    } else if (has_fallback) {
-      expanded += fallback;
-    } else {
-      *missing = name;
-    }
-    at = close + 1;
-  }
-}
-
 }  // namespace
 
 Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 Config Config::Load(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw InputError(SourcePosition{file.string()}, "cannot be opened for reading");
-  std::stringstream text;
-  text << stream.rdbuf();
-  return Parse(text.str(), file.string());
+  return Parse(ReadText(file), file.string());
 }
 
 Config Config::Parse(const std::string& text, const std::string& name) {
   auto node = std::make_shared<Node>();
-  node->document = std::make_shared<Document>();
-  node->document->file = name;
-  try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      node->Fail(documents[1].Mark(), "", "starts a second YAML document; expected one in a file");
-    }
-    if (!documents.empty()) node->yaml = documents[0];
-  } catch (const YAML::ParserException& problem) {
-    node->Fail(problem.mark, "", "is not valid YAML: " + problem.msg);
-  }
-  if (!node->yaml.IsMap()) {
-    node->Fail(node->yaml.IsNull() ? YAML::Mark::null_mark() : node->yaml.Mark(), "",
-               "expected a YAML mapping of \"key: value\" lines");
-  }
-  // A key given twice would silently lose one of its values.
-  std::vector<YAML::Node> open = {node->yaml};
-  while (!open.empty()) {
-    const YAML::Node current = open.back();
-    open.pop_back();
-    std::map<std::string, int> seen;
-    for (const auto& entry : current) {
-      if (current.IsMap()) {
-        if (entry.first.IsScalar() && seen[entry.first.Scalar()]++ > 0) {
-          node->Fail(entry.first.Mark(), entry.first.Scalar(), "is given twice");
-        }
-        if (entry.second.IsMap() || entry.second.IsSequence()) open.push_back(entry.second);
-      } else if (entry.IsMap() || entry.IsSequence()) {
-        open.push_back(static_cast<const YAML::Node&>(entry));
-      }
-    }
-  }
+  node->document = std::make_shared<const YamlDocument>(ParseYaml(text, name));
+  node->yaml.reset(node->document->root);
   return Config(node);
 }
 
@@ -373,7 +304,8 @@ std::filesystem::path Config::Path(const std::string& key) const {
                 fmt::format("the environment variable {} is not set", missing));
   }
   node_->values[key] = entry.Scalar();
-  return path.is_absolute() ? path : (File().parent_path() / path).lexically_normal();
+  const std::filesystem::path& file = node_->document->FileOf(node_->Field(key));
+  return path.is_absolute() ? path : (file.parent_path() / path).lexically_normal();
 }
 
 std::filesystem::path Config::Path(const std::string& key, const std::string& default_value) const {

@@ -4,6 +4,9 @@
 // unknown keys (with the nearest known one), the messages with file:line:column and field, and the
 // resolved configuration (all values, defaults included, in SI) that goes into the manifest. There
 // is no second description of the schema to keep in step.
+//
+// `use: ../configs/scanner/four_cameras.yaml` in any mapping puts in that file's entries which the
+// mapping does not give itself; what is wrong with them is told with that file's name and line.
 #ifndef LACUNA_CORE_CONFIG_H_
 #define LACUNA_CORE_CONFIG_H_
 
@@ -91,7 +94,6 @@ class Config {
   nlohmann::json Resolved() const;
 
  private:
-  struct Document;
   struct Node;
   explicit Config(std::shared_ptr<Node> node);
   template <typename T>

@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "support/temporary_folder.h"
+
 namespace lacuna {
 namespace {
+
+using ::testing::HasSubstr;
 
 constexpr char kBeam[] = R"(schema_version: 1
 material:
@@ -21,12 +26,13 @@ effects:
     eta: 12 Pa s
 )";
 
-void ExpectInputError(const std::function<void()>& read, const std::string& whole_message) {
+void ExpectInputError(const std::function<void()>& read,
+                      const ::testing::Matcher<std::string>& message) {
   try {
     read();
     ADD_FAILURE() << "nothing was refused";
   } catch (const InputError& problem) {
-    EXPECT_EQ(std::string(problem.what()), whole_message);
+    EXPECT_THAT(problem.what(), message);
   }
 }
 
@@ -90,6 +96,35 @@ TEST(Config, RefusesWhatIsNotYamlOrNotAMapping) {
   EXPECT_THROW(Config::Load("no/such/file.yaml"), InputError);
   ExpectInputError([] { Config::Parse("a: 1\n---\nb: 2\n", "a.yaml"); },
                    "a.yaml:3:1: starts a second YAML document; expected one in a file");
+}
+
+TEST(Config, UsesPiecesWhoseEntriesTheFileOverrides) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "pieces");
+  std::ofstream(folder / "pieces/camera.yaml") << "noise: 0.3 mm\nlens: {width: 2 mm}\nfile: a.txt\n";
+  std::ofstream(folder / "pieces/four.yaml") << "use: camera.yaml\ncount: 4\n";
+  std::ofstream(folder / "main.yaml")
+      << "list:\n  - {use: pieces/four.yaml, noise: 1 mm}\n  - use: pieces/camera.yaml\n";
+  const Config config = Config::Load(folder / "main.yaml");
+  const std::vector<Config> items = config.Items("list");
+  EXPECT_EQ(items[0].Quantity("noise", kLength, kPositive), 1e-3);
+  EXPECT_EQ(items[0].Integer("count", 0, 9), 4);
+  EXPECT_EQ(items[0].Child("lens").Quantity("width", kLength, kPositive), 2e-3);
+  EXPECT_EQ(items[1].Quantity("noise", kLength, kPositive), 3e-4);
+  EXPECT_EQ(items[1].Path("file"), folder / "pieces/a.txt");  // beside the piece
+  ExpectInputError([&] { items[0].Child("lens").Integer("width", 0, 9); },
+                   HasSubstr("pieces/camera.yaml:2:15"));
+  ExpectInputError([&] { items[0].Integer("noise", 0, 9); },
+                   HasSubstr("main.yaml:2:36: list[0].noise"));
+  ExpectInputError([&] { config.RefuseUnknownKeys(); },
+                   HasSubstr("camera.yaml"));  // items[1].lens, not read
+
+  std::ofstream(folder / "pieces/camera.yaml") << "use: four.yaml\n";
+  ExpectInputError([&] { Config::Load(folder / "main.yaml"); },
+                   HasSubstr("would use itself"));
+  std::filesystem::remove(folder / "pieces/camera.yaml");
+  ExpectInputError([&] { Config::Load(folder / "main.yaml"); },
+                   HasSubstr("pieces/four.yaml:1:6: list[0].use"));
 }
 
 TEST(Config, SuggestsTheNearestChoice) {

@@ -28,7 +28,7 @@ Scene ReadEdited(const std::string& name, const Edits& edits) {
     EXPECT_NE(at, std::string::npos) << from;
     if (at != std::string::npos) text.replace(at, from.size(), to);
   }
-  return ReadScene(Config::Parse(text, name));
+  return ReadScene(Config::Parse(text, file.string()));
 }
 
 SceneMotion Simulate(const Scene& scene) {
@@ -39,9 +39,8 @@ SceneMotion Simulate(const Scene& scene) {
 }
 
 const Edits kCoarserHeldBar{{"edge_length: 6 mm", "edge_length: 12 mm"},
-                            {"max_volume: 40 mm^3", "max_volume: 500 mm^3"},
-                            {"width: 96", "width: 64"},
-                            {"height: 72", "height: 48"}};
+                            {"quadratic.yaml", "quadratic.yaml, max_volume: 500 mm^3"},
+                            {"cameras.yaml", "cameras.yaml\n  width: 64\n  height: 48"}};
 
 Eigen::Matrix3Xd RestOf(const SceneMotion& motion, const Eigen::VectorXi& nodes) {
   return motion.body->mesh.nodes(Eigen::all, nodes);
@@ -159,8 +158,8 @@ TEST(DropScene, FallsFreelyStaysAboveTheFloorAndReboundsWithLessEnergy) {
   const Scene scene = ReadEdited("drop.yaml", {{"edge_length: 8 mm", "edge_length: 14 mm"},
                                                {"max_volume: 250 mm^3", "max_volume: 1000 mm^3"},
                                                {"frames: 18", "frames: 11"},
-                                               {"width: 96", "width: 64"},
-                                               {"height: 72", "height: 48"}});
+                                               {"cameras.yaml",
+                                                "cameras.yaml\n  width: 64\n  height: 48"}});
   const SceneMotion motion = Simulate(scene);
   ASSERT_TRUE(motion.IsUsable()) << motion.message;
   const Eigen::VectorXd share = motion.body->node_mass / motion.body->node_mass.sum();

@@ -89,7 +89,7 @@ TEST(StudyErrors, ASceneIsCheckedBeforeItRuns) {
   EXPECT_NO_THROW(ReadScene(Config::Load(file)));
   std::string text = FileContent(file);
   text.replace(text.find("edge_radius: 5 mm"), 17, "edge_radius: 50 mm");
-  EXPECT_THROW(ReadScene(Config::Parse(text, "scene.yaml")), InputError);
+  EXPECT_THROW(ReadScene(Config::Parse(text, file.string())), InputError);
 }
 
 }  // namespace

@@ -1,0 +1,180 @@
+#include "core/yaml_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+[[noreturn]] void Fail(const std::filesystem::path& file, const YAML::Mark& mark,
+                       const std::string& message) {
+  SourcePosition position{file.string()};
+  if (!mark.is_null()) {
+    position.line = mark.line + 1;
+    position.column = mark.column + 1;
+  }
+  throw InputError(position, message);
+}
+
+// A key given twice would silently lose one of its values.
+void RefuseRepeatedKeys(const YAML::Node& root, const std::filesystem::path& file) {
+  std::vector<YAML::Node> open = {root};
+  while (!open.empty()) {
+    const YAML::Node current = open.back();
+    open.pop_back();
+    std::map<std::string, int> seen;
+    for (const auto& entry : current) {
+      if (current.IsMap()) {
+        if (entry.first.IsScalar() && seen[entry.first.Scalar()]++ > 0)
+          Fail(file, entry.first.Mark(), entry.first.Scalar() + ": is given twice");
+        if (entry.second.IsMap() || entry.second.IsSequence()) open.push_back(entry.second);
+      } else if (entry.IsMap() || entry.IsSequence()) {
+        open.push_back(static_cast<const YAML::Node&>(entry));
+      }
+    }
+  }
+}
+
+YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
+  YAML::Node root;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      Fail(file, documents[1].Mark(), "starts a second YAML document; expected one in a file");
+    if (!documents.empty()) root = documents[0];
+  } catch (const YAML::ParserException& problem) {
+    Fail(file, problem.mark, "is not valid YAML: " + problem.msg);
+  }
+  if (!root.IsMap()) {
+    Fail(file, root.IsNull() ? YAML::Mark::null_mark() : root.Mark(),
+         "expected a YAML mapping of \"key: value\" lines");
+  }
+  RefuseRepeatedKeys(root, file);
+  return root;
+}
+
+// A field given by the file itself after all, and what a piece had put below it.
+void Forget(const std::string& field, YamlDocument* document) {
+  auto& files = document->file_of_field;
+  for (auto at = files.begin(); at != files.end();) {
+    const std::string& name = at->first;
+    const bool within = name.compare(0, field.size(), field) == 0 &&
+                        (name.size() == field.size() || name[field.size()] == '.' ||
+                         name[field.size()] == '[');
+    at = within ? files.erase(at) : std::next(at);
+  }
+}
+
+// Puts the pieces into a mapping or list and all below it. `files`: those being read, outermost
+// first.
+void PutInPieces(YAML::Node node, const std::string& path,
+                 const std::vector<std::filesystem::path>& files, YamlDocument* document) {
+  const auto below = [&path](const std::string& key) {
+    return path.empty() ? key : path + "." + key;
+  };
+  if (node.IsSequence()) {
+    for (size_t i = 0; i < node.size(); ++i)
+      PutInPieces(node[i], fmt::format("{}[{}]", path, i), files, document);
+    return;
+  }
+  if (!node.IsMap()) return;
+  if (const YAML::Node use = std::as_const(node)["use"]; use && use.IsScalar()) {
+    std::string missing;
+    const std::filesystem::path given = ExpandEnvironment(use.Scalar(), &missing);
+    const YAML::Mark mark = use.Mark();
+    if (!missing.empty())
+      Fail(files.back(), mark,
+           fmt::format("{}: the environment variable {} is not set", below("use"), missing));
+    const std::filesystem::path file =
+        given.is_absolute() ? given : (files.back().parent_path() / given).lexically_normal();
+    if (std::find(files.begin(), files.end(), file) != files.end())
+      Fail(files.back(), mark, below("use") + ": " + file.string() + " would use itself");
+    if (!std::filesystem::is_regular_file(file))
+      Fail(files.back(), mark, below("use") + ": there is no file " + file.string());
+    YAML::Node piece = Parse(ReadText(file), file);
+    std::vector<std::filesystem::path> inner = files;
+    inner.push_back(file);
+    PutInPieces(piece, path, inner, document);
+    node.remove("use");
+    for (const auto& entry : piece) {
+      const std::string key = entry.first.Scalar();
+      if (std::as_const(node)[key]) {
+        Forget(below(key), document);
+        continue;
+      }
+      node.force_insert(entry.first, entry.second);
+      document->file_of_field.try_emplace(below(key), file);
+    }
+  }
+  std::vector<std::string> keys;
+  for (const auto& entry : node)
+    if (entry.first.IsScalar()) keys.push_back(entry.first.Scalar());
+  for (const std::string& key : keys) {
+    if (document->file_of_field.count(below(key)) > 0) continue;  // of a piece, and complete
+    PutInPieces(node[key], below(key), files, document);
+  }
+}
+
+}  // namespace
+
+const std::filesystem::path& YamlDocument::FileOf(std::string field) const {
+  while (!field.empty()) {
+    const auto found = file_of_field.find(field);
+    if (found != file_of_field.end()) return found->second;
+    const size_t cut = field.find_last_of(".[");
+    field.resize(cut == std::string::npos ? 0 : cut);
+  }
+  return file;
+}
+
+YamlDocument ParseYaml(const std::string& text, const std::filesystem::path& file) {
+  YamlDocument document{file, Parse(text, file), {}};
+  PutInPieces(document.root, "", {file.lexically_normal()}, &document);
+  return document;
+}
+
+std::string ReadText(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream || std::filesystem::is_directory(file))
+    throw InputError(SourcePosition{file.string()}, "cannot be opened for reading");
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::string ExpandEnvironment(const std::string& text, std::string* missing) {
+  std::string expanded;
+  size_t at = 0;
+  while (true) {
+    const size_t open = text.find("${", at);
+    const size_t close = open == std::string::npos ? open : text.find('}', open);
+    if (close == std::string::npos) return expanded + text.substr(at);
+    expanded += text.substr(at, open - at);
+    std::string name = text.substr(open + 2, close - open - 2);
+    std::string fallback;
+    const size_t dash = name.find(":-");
+    const bool has_fallback = dash != std::string::npos;
+    if (has_fallback) {
+      fallback = name.substr(dash + 2);
+      name.resize(dash);
+    }
+    const char* value = std::getenv(name.c_str());
+    if (value != nullptr && *value != '\0') {
+      expanded += value;
+    } else if (has_fallback) {
+      expanded += fallback;
+    } else {
+      *missing = name;
+    }
+    at = close + 1;
+  }
+}
+
+}  // namespace lacuna
