@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,7 +106,7 @@ Config Config::Load(const std::filesystem::path& file) {
 Config Config::Parse(const std::string& text, const std::string& name) {
   auto node = std::make_shared<Node>();
   node->document = std::make_shared<const YamlDocument>(ParseYaml(text, name));
-  node->yaml.reset(node->document->root);
+  node->yaml.reset(*node->document->root);
   return Config(node);
 }
 

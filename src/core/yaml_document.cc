@@ -1,6 +1,7 @@
 #include "core/yaml_document.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -65,9 +66,9 @@ void Forget(const std::string& field, YamlDocument* document) {
   auto& files = document->file_of_field;
   for (auto at = files.begin(); at != files.end();) {
     const std::string& name = at->first;
-    const bool within = name.compare(0, field.size(), field) == 0 &&
-                        (name.size() == field.size() || name[field.size()] == '.' ||
-                         name[field.size()] == '[');
+    const bool within =
+        name.compare(0, field.size(), field) == 0 &&
+        (name.size() == field.size() || name[field.size()] == '.' || name[field.size()] == '[');
     at = within ? files.erase(at) : std::next(at);
   }
 }
@@ -135,8 +136,8 @@ const std::filesystem::path& YamlDocument::FileOf(std::string field) const {
 }
 
 YamlDocument ParseYaml(const std::string& text, const std::filesystem::path& file) {
-  YamlDocument document{file, Parse(text, file), {}};
-  PutInPieces(document.root, "", {file.lexically_normal()}, &document);
+  YamlDocument document{file, std::make_shared<YAML::Node>(Parse(text, file)), {}};
+  PutInPieces(*document.root, "", {file.lexically_normal()}, &document);
   return document;
 }
 

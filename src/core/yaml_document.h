@@ -3,17 +3,20 @@
 #ifndef LACUNA_CORE_YAML_DOCUMENT_H_
 #define LACUNA_CORE_YAML_DOCUMENT_H_
 
-#include <yaml-cpp/yaml.h>
-
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
+
+namespace YAML {
+class Node;
+}
 
 namespace lacuna {
 
 struct YamlDocument {
   std::filesystem::path file;
-  YAML::Node root;
+  std::shared_ptr<YAML::Node> root;
   // Fields ("scanner.noise") that came from another file, by `use`.
   std::map<std::string, std::filesystem::path> file_of_field;
 
