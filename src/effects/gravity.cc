@@ -31,7 +31,7 @@ class GravityEffect final : public Effect {
     }
   }
 
-  void AddTangents(const Kinematics&, double, double, bool, BlockMatrix*) const override {}
+  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {

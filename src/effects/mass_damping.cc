@@ -49,11 +49,11 @@ class MassDampingEffect final : public Effect {
     AddDrag(at, alpha_, force);
   }
 
-  void AddTangents(const Kinematics& at, double /*position_weight*/, double velocity_weight,
-                   bool /*convexify*/, BlockMatrix* tangent) const override {
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool /*convexify*/,
+                   BlockMatrix* tangent) const override {
     for (int i = 0; i < at.body.NodeCount(); ++i) {
       tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() -=
-          velocity_weight * alpha_ * at.body.node_mass[i];
+          weights.velocity * alpha_ * at.body.node_mass[i];
     }
   }
 

@@ -83,15 +83,15 @@ class PlaneContactEffect final : public Effect {
     });
   }
 
-  void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
-                   bool convexify, BlockMatrix* tangent) const override {
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
     const Eigen::Matrix3d tangential = Eigen::Matrix3d::Identity() - normal_ * normal_.transpose();
     ForEachContact(at, [&](const Contact& contact) {
       const double scale = contact.area * Stiffness();
       const Eigen::Vector3d direction = convexify ? normal_ : Direction(contact);
-      Eigen::Matrix3d block = -0.5 * position_weight * scale * contact.penalty.slope *
+      Eigen::Matrix3d block = -0.5 * weights.position * scale * contact.penalty.slope *
                               (direction * normal_.transpose() + normal_ * direction.transpose());
-      block -= velocity_weight * scale * contact.penalty.pressure * Friction() *
+      block -= weights.velocity * scale * contact.penalty.pressure * Friction() *
                SlipDerivative(contact, tangential);
       tangent->Block(tangent->pattern().diagonal[contact.node]) += block;
     });

@@ -54,12 +54,13 @@ class StiffnessDampingEffect final : public Effect {
     AddViscousForce(at, Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_)), force);
   }
 
-  void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
-                   bool convexify, BlockMatrix* tangent) const override {
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (weights.position == 0 && weights.velocity == 0) return;
     if (at.body.mesh.Order() == 1) {
-      AddDampingMatrix<4>(at, position_weight, velocity_weight, convexify, tangent);
+      AddDampingMatrix<4>(at, weights, convexify, tangent);
     } else {
-      AddDampingMatrix<10>(at, position_weight, velocity_weight, convexify, tangent);
+      AddDampingMatrix<10>(at, weights, convexify, tangent);
     }
   }
 
@@ -152,8 +153,8 @@ class StiffnessDampingEffect final : public Effect {
   // symmetric part; the definite stand-in drops it, as it is small beside ∂P/∂Ḟ by the strain
   // increment of a step.
   template <int kNodes>
-  void AddDampingMatrix(const Kinematics& at, double position_weight, double velocity_weight,
-                        bool convexify, BlockMatrix* tangent) const {
+  void AddDampingMatrix(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                        BlockMatrix* tangent) const {
     const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
@@ -165,8 +166,8 @@ class StiffnessDampingEffect final : public Effect {
         const int q = element * QuadraturePoints<kNodes>() + p;
         const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
         const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-        StressTangent C = velocity_weight * RateTangent(viscosity, F, F);
-        if (!convexify && position_weight != 0) {
+        StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
+        if (!convexify && weights.position != 0) {
           const Eigen::Matrix3d rate = FieldGradient<kNodes>(v, g);
           StressTangent by_position = RateTangent(viscosity, F, rate);
           const Eigen::Matrix3d stress = ViscousStress(viscosity, F, rate);
@@ -175,7 +176,7 @@ class StiffnessDampingEffect final : public Effect {
               by_position.block<3, 3>(3 * j, 3 * l).diagonal().array() += stress(l, j);
             }
           }
-          C += 0.5 * position_weight * (by_position + by_position.transpose());
+          C += 0.5 * weights.position * (by_position + by_position.transpose());
         }
         AddStiffness<kNodes>(C, g, -body.weight[q], &stiffness);
       }

@@ -17,13 +17,21 @@ namespace lacuna {
 // What an effect may look at. Vectors have length 3·nodes, node-major, SI.
 struct Kinematics {
   const Body& body;
-  const Eigen::VectorXd& position;  // m
-  const Eigen::VectorXd& velocity;  // m/s
-  double time = 0;                  // s
-  double time_step = 0;             // s; 0: statics
+  const Eigen::VectorXd& position;      // m
+  const Eigen::VectorXd& velocity;      // m/s
+  const Eigen::VectorXd& acceleration;  // m/s², for effects that add inertia; 0 in statics
+  double time = 0;                      // s
+  double time_step = 0;                 // s; 0: statics
   // Internal variables of this effect at the start of the step (StateSize() long), e.g. viscous
   // strains; empty for an effect without memory.
   const Eigen::VectorXd& state;
+};
+
+// How much of each of an effect's derivatives is asked for.
+struct TangentWeights {
+  double position = 0;      // of ∂f/∂x, N/m
+  double velocity = 0;      // of ∂f/∂v, N s/m
+  double acceleration = 0;  // of ∂f/∂a, kg
 };
 
 class Effect {
@@ -39,13 +47,13 @@ class Effect {
   // Adds the effect's nodal forces, N.
   virtual void AddForce(const Kinematics& at, Eigen::VectorXd* force) const = 0;
 
-  // Adds position_weight · ∂f/∂x + velocity_weight · ∂f/∂v, N/m and N s/m; of a matrix that is not
-  // symmetric, the symmetric part. For an effect whose exact tangent is indefinite, `convexify`
-  // asks for a symmetric negative semi-definite stand-in (for weights ≥ 0).
-  virtual void AddTangents(const Kinematics& at, double position_weight, double velocity_weight,
-                           bool convexify, BlockMatrix* tangent) const = 0;
+  // Adds the weighted sum of ∂f/∂x, ∂f/∂v and ∂f/∂a; of a matrix that is not symmetric, the
+  // symmetric part. For an effect whose exact tangent is indefinite, `convexify` asks for a
+  // symmetric negative semi-definite stand-in (for weights ≥ 0).
+  virtual void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                           BlockMatrix* tangent) const = 0;
 
-  // Adds ∂f/∂(parameter), N per unit of the parameter.
+  // Adds ∂f/∂(parameter), N per unit of the parameter; never asked for a setting.
   virtual void AddParameterDerivative(const Kinematics& at, int parameter,
                                       Eigen::VectorXd* derivative) const = 0;
 

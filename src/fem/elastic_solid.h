@@ -107,12 +107,13 @@ class ElasticSolid final : public Effect {
                    derivative);
   }
 
-  void AddTangents(const Kinematics& at, double position_weight, double /*velocity_weight*/,
-                   bool convexify, BlockMatrix* tangent) const override {
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (weights.position == 0) return;
     if (at.body.mesh.Order() == 1) {
-      AddStiffnessMatrix<4>(at, position_weight, convexify, tangent);
+      AddStiffnessMatrix<4>(at, weights.position, convexify, tangent);
     } else {
-      AddStiffnessMatrix<10>(at, position_weight, convexify, tangent);
+      AddStiffnessMatrix<10>(at, weights.position, convexify, tangent);
     }
   }
 

@@ -25,7 +25,7 @@ class PrescribedForce final : public Effect {
   void SetParameters(const Eigen::VectorXd& values) override { gain_ = values[0]; }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override;
-  void AddTangents(const Kinematics&, double, double, bool, BlockMatrix*) const override {}
+  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override;
   std::optional<double> Energy(const Kinematics& at) const override;

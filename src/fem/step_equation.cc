@@ -51,9 +51,24 @@ StepEquation::StepEquation(const Model& model, const MotionHistory& history, Tim
   }
 }
 
-Kinematics StepEquation::At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity,
-                            int effect) const {
-  return {*model_.body, position, velocity, end_time_, time_step_, history_.effect_state[effect]};
+StepEquation::EndOfStep StepEquation::End(const Eigen::VectorXd& position) const {
+  EndOfStep end{position, Velocity(position), {}};
+  if (inertia_) {
+    end.acceleration = rate_ * (end.velocity - velocity_history_);
+  } else {
+    end.acceleration = Eigen::VectorXd::Zero(position.size());
+  }
+  return end;
+}
+
+Kinematics StepEquation::At(const EndOfStep& end, size_t effect) const {
+  return {*model_.body,
+          end.position,
+          end.velocity,
+          end.acceleration,
+          end_time_,
+          time_step_,
+          history_.effect_state[effect]};
 }
 
 Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
@@ -63,20 +78,16 @@ Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
 
 void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
                             double* force_scale) const {
-  const Eigen::VectorXd velocity = Velocity(position);
-  residual->setZero(position.size());
-  if (inertia_) {
-    const Eigen::VectorXd& mass = model_.body->node_mass;
-    for (Eigen::Index i = 0; i < mass.size(); ++i) {
-      residual->segment<3>(3 * i) =
-          mass[i] * rate_ * (velocity.segment<3>(3 * i) - velocity_history_.segment<3>(3 * i));
-    }
-  }
+  const EndOfStep end = End(position);
+  // M a; 0 in statics.
+  *residual =
+      (end.acceleration.reshaped(3, model_.body->NodeCount()) * model_.body->node_mass.asDiagonal())
+          .reshaped();
   double scale = residual->norm();
   Eigen::VectorXd force(position.size());
   for (size_t j = 0; j < model_.effects.size(); ++j) {
     force.setZero();
-    model_.effects[j]->AddForce(At(position, velocity, static_cast<int>(j)), &force);
+    model_.effects[j]->AddForce(At(end, j), &force);
     *residual -= force;
     scale += force.norm();
   }
@@ -85,12 +96,11 @@ void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* re
 
 void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
                            BlockMatrix* tangent) const {
-  const Eigen::VectorXd velocity = Velocity(position);
+  const EndOfStep end = End(position);
+  const TangentWeights weights{-1, -rate_, inertia_ ? -rate_ * rate_ : 0};
   tangent->SetZero();
-  for (size_t j = 0; j < model_.effects.size(); ++j) {
-    model_.effects[j]->AddTangents(At(position, velocity, static_cast<int>(j)), -1, -rate_,
-                                   convexify, tangent);
-  }
+  for (size_t j = 0; j < model_.effects.size(); ++j)
+    model_.effects[j]->AddTangents(At(end, j), weights, convexify, tangent);
   if (!inertia_) return;
   const Eigen::VectorXd& mass = model_.body->node_mass;
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
@@ -100,27 +110,25 @@ void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
 
 void StepEquation::ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
                                        Eigen::VectorXd* derivative) const {
-  const Eigen::VectorXd velocity = Velocity(position);
   derivative->setZero(position.size());
-  model_.effects[effect]->AddParameterDerivative(At(position, velocity, effect), parameter,
-                                                 derivative);
+  model_.effects[effect]->AddParameterDerivative(At(End(position), effect), parameter, derivative);
   *derivative *= -1;
 }
 
 double StepEquation::Potential(const Eigen::VectorXd& position) const {
-  const Eigen::VectorXd velocity = Velocity(position);
+  const EndOfStep end = End(position);
   double potential = 0;
   if (inertia_) {
     // ½ γ² (x − x̃ − ṽ/γ)ᵀ M (x − x̃ − ṽ/γ), whose gradient is M a.
     const Eigen::VectorXd& mass = model_.body->node_mass;
     for (Eigen::Index i = 0; i < mass.size(); ++i) {
-      potential += 0.5 * mass[i] *
-                   (velocity.segment<3>(3 * i) - velocity_history_.segment<3>(3 * i)).squaredNorm();
+      potential +=
+          0.5 * mass[i] *
+          (end.velocity.segment<3>(3 * i) - velocity_history_.segment<3>(3 * i)).squaredNorm();
     }
   }
   for (size_t j = 0; j < model_.effects.size(); ++j) {
-    const std::optional<double> energy =
-        model_.effects[j]->Energy(At(position, velocity, static_cast<int>(j)));
+    const std::optional<double> energy = model_.effects[j]->Energy(At(end, j));
     if (!energy) return std::numeric_limits<double>::quiet_NaN();
     potential += *energy;
   }
@@ -128,10 +136,11 @@ double StepEquation::Potential(const Eigen::VectorXd& position) const {
 }
 
 MotionHistory StepEquation::Advance(const Eigen::VectorXd& position) const {
+  const EndOfStep end = End(position);
   MotionHistory next;
   next.time = end_time_;
   next.position = position;
-  next.velocity = Velocity(position);
+  next.velocity = end.velocity;
   if (time_step_ > 0) {
     next.previous_position = history_.position;
     next.previous_velocity = history_.velocity;
@@ -139,7 +148,7 @@ MotionHistory StepEquation::Advance(const Eigen::VectorXd& position) const {
   }
   for (size_t j = 0; j < model_.effects.size(); ++j) {
     Eigen::VectorXd state = history_.effect_state[j];
-    model_.effects[j]->AdvanceState(At(position, next.velocity, static_cast<int>(j)), &state);
+    model_.effects[j]->AdvanceState(At(end, j), &state);
     next.effect_state.push_back(std::move(state));
   }
   return next;

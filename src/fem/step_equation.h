@@ -64,7 +64,13 @@ class StepEquation {
   double rate() const { return rate_; }  // γ, 1/s; 0 in statics
 
  private:
-  Kinematics At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity, int effect) const;
+  // The motion that the end of the step at `position` means.
+  struct EndOfStep {
+    const Eigen::VectorXd& position;
+    Eigen::VectorXd velocity, acceleration;
+  };
+  EndOfStep End(const Eigen::VectorXd& position) const;
+  Kinematics At(const EndOfStep& end, size_t effect) const;
 
   const Model& model_;
   const MotionHistory& history_;

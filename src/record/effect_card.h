@@ -21,6 +21,7 @@ struct ParameterCard {
   double plausible_max = 0;
   double default_value = 0;  // SI; NaN: the user must give it
   bool log_scale = false;    // searched on a logarithmic scale
+  bool setting = false;      // says where or how the effect acts: given, never fitted
 };
 
 struct EffectCard {
@@ -32,7 +33,7 @@ struct EffectCard {
   std::string residual_when_missing;     // what a user sees when the model lacks it
   std::string separating_experiment;     // what tells it from its look-alikes
   std::vector<std::string> look_alikes;  // types of effects easily taken for it
-  bool repeatable = false;  // a model may have several, e.g. walls
+  bool repeatable = false;               // a model may have several, e.g. walls
   // Invariances that the test suite then checks.
   bool conserves_momentum = false;          // forces sum to zero
   bool conserves_angular_momentum = false;  // torques sum to zero

@@ -206,11 +206,11 @@ class Follower {
   // Where the step has led (3n, N).
   Eigen::VectorXd KnownForces() const {
     Eigen::VectorXd known = Eigen::VectorXd::Zero(history_.position.size());
-    const Eigen::VectorXd no_memory;
+    const Eigen::VectorXd no_memory, at_rest = Eigen::VectorXd::Zero(known.size());
     for (const auto& force : known_forces_) {
-      force->AddForce(
-          {*model_.body, history_.position, history_.velocity, history_.time, 0, no_memory},
-          &known);
+      force->AddForce({*model_.body, history_.position, history_.velocity, at_rest, history_.time,
+                       0, no_memory},
+                      &known);
     }
     return known;
   }

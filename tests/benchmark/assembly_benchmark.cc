@@ -47,7 +47,7 @@ void Evaluate(benchmark::State& state, const std::string& law, int order, bool w
   const auto effect = MakeEffect(law, {{"young_modulus", 1e6}, {"poisson_ratio", 0.3}});
   const Eigen::VectorXd position = Bent(body);
   const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), memory;
-  const Kinematics at{body, position, velocity, 0, 0.01, memory};
+  const Kinematics at{body, position, velocity, velocity, 0, 0.01, memory};
   Eigen::VectorXd force = Eigen::VectorXd::Zero(position.size());
   BlockMatrix tangent(body.pattern);
   for (auto _ : state) {
@@ -55,7 +55,7 @@ void Evaluate(benchmark::State& state, const std::string& law, int order, bool w
     effect->AddForce(at, &force);
     if (with_tangent) {
       tangent.SetZero();
-      effect->AddTangents(at, -1, 0, convexify, &tangent);
+      effect->AddTangents(at, {.position = -1}, convexify, &tangent);
     }
     benchmark::ClobberMemory();
   }

@@ -13,14 +13,6 @@ namespace {
 const std::map<std::string, double> kStiffnessDamping{
     {"beta", 0.02}, {"young_modulus", 8e4}, {"poisson_ratio", 0.4}};
 
-Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::VectorXd& position,
-                        const Eigen::VectorXd& velocity) {
-  const Eigen::VectorXd state;
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(position.size());
-  effect.AddForce({body, position, velocity, 0, 0.01, state}, &force);
-  return force;
-}
-
 TEST(MassDamping, IsAnEffect) {
   CheckEffect(MakeEffect("mass_damping", {{"alpha", 3}}).get(),
               {.depends_on_position = false, .depends_on_velocity = true});

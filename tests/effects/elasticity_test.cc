@@ -33,12 +33,12 @@ struct OneElement {
   Eigen::VectorXd Force(const Effect& effect, const Eigen::Matrix3d& F) const {
     const Eigen::VectorXd position = Position(F);
     Eigen::VectorXd force = Eigen::VectorXd::Zero(12);
-    effect.AddForce({body, position, velocity, 0, 0, state}, &force);
+    effect.AddForce({body, position, velocity, velocity, 0, 0, state}, &force);
     return force;
   }
   double Energy(const Effect& effect, const Eigen::Matrix3d& F) const {
     const Eigen::VectorXd position = Position(F);
-    return *effect.Energy({body, position, velocity, 0, 0, state});
+    return *effect.Energy({body, position, velocity, velocity, 0, 0, state});
   }
   // P from nodal forces: with f_a = −V P g_a and Σ_a g_a X_aᵀ = I, P = −Σ f_a X_aᵀ / V.
   Eigen::Matrix3d Stress(const Effect& effect, const Eigen::Matrix3d& F) const {

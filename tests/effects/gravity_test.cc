@@ -20,7 +20,7 @@ TEST(Gravity, PullsWithTheWeightOfTheBody) {
     const Eigen::VectorXd position = body.mesh.nodes.reshaped();
     const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(position.size());
-    gravity->AddForce({body, position, velocity, 0, 0, state}, &force);
+    gravity->AddForce({body, position, velocity, velocity, 0, 0, state}, &force);
     // 1070 kg/m³ × 90 cm³ × 9.81 m/s²
     EXPECT_NEAR(force.reshaped(3, body.NodeCount()).row(2).sum(), -1070 * 9e-5 * 9.81, 1e-12);
     EXPECT_EQ(force.reshaped(3, body.NodeCount()).topRows(2).norm(), 0);

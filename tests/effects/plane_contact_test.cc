@@ -13,14 +13,6 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s²
 
-Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::VectorXd& position,
-                        const Eigen::VectorXd& velocity) {
-  const Eigen::VectorXd state;
-  Eigen::VectorXd force = Eigen::VectorXd::Zero(position.size());
-  effect.AddForce({body, position, velocity, 0, 0.01, state}, &force);
-  return force;
-}
-
 Eigen::Vector3d Total(const Eigen::VectorXd& force) {
   return force.reshaped(3, force.size() / 3).rowwise().sum();
 }
@@ -43,7 +35,7 @@ TEST(PlaneContact, HasAnEnergyWithoutFrictionOnly) {
   const Eigen::VectorXd position = body.mesh.nodes.reshaped(), state;
   const Eigen::VectorXd velocity = Eigen::VectorXd::Ones(position.size());
   const auto energy = [&](const Eigen::VectorXd& at) {
-    return contact->Energy({body, at, velocity, 0, 0, state});
+    return contact->Energy({body, at, velocity, velocity, 0, 0, state});
   };
   const Eigen::VectorXd force = ForceAt(*contact, body, position, velocity);
   const double h = 1e-6;  // m; truncation ~ h² / smoothing² = 1e-8
@@ -53,7 +45,7 @@ TEST(PlaneContact, HasAnEnergyWithoutFrictionOnly) {
   ASSERT_GT(force.norm(), 1);
   EXPECT_NEAR(-slope, force.norm(), 1e-7 * force.norm());
   EXPECT_FALSE(MakeEffect("plane_contact", CuttingPlane(0.1))
-                   ->Energy({body, position, velocity, 0, 0, state})
+                   ->Energy({body, position, velocity, velocity, 0, 0, state})
                    .has_value());
 }
 

@@ -36,8 +36,9 @@ double KineticEnergy(const Model& model, const MotionHistory& history) {
 double TotalEnergy(const Model& model, const MotionHistory& history) {
   double energy = KineticEnergy(model, history);
   for (size_t j = 0; j < model.effects.size(); ++j) {
-    energy += *model.effects[j]->Energy({*model.body, history.position, history.velocity,
-                                         history.time, 0.01, history.effect_state[j]});
+    energy +=
+        *model.effects[j]->Energy({*model.body, history.position, history.velocity,
+                                   history.velocity, history.time, 0.01, history.effect_state[j]});
   }
   return energy;
 }

@@ -20,7 +20,7 @@ TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
     const Eigen::VectorXd position = body.mesh.nodes.reshaped();
     const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
     Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
-    force.AddForce({body, position, velocity, 3.0, 0, state}, &total);
+    force.AddForce({body, position, velocity, velocity, 3.0, 0, state}, &total);
     const Eigen::Matrix3Xd at_nodes = total.reshaped(3, body.NodeCount());
     EXPECT_LT((at_nodes.rowwise().sum() - Eigen::Vector3d(3, 0, -6)).norm(), 1e-12);
     // Spread evenly over the end: its centre of action is the face's.
@@ -39,7 +39,7 @@ TEST(PrescribedForce, ItsEnergyAndGainAreThoseOfADeadLoad) {
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   const Eigen::VectorXd shift = 0.01 * Eigen::VectorXd::LinSpaced(rest.size(), -1, 1);
   const Eigen::VectorXd moved = rest + shift, velocity = Eigen::VectorXd::Zero(rest.size()), state;
-  const Kinematics at{body, moved, velocity, 0.5, 0, state};
+  const Kinematics at{body, moved, velocity, velocity, 0.5, 0, state};
   Eigen::VectorXd acting = Eigen::VectorXd::Zero(rest.size()), per_gain = acting;
   force.AddForce(at, &acting);
   force.AddParameterDerivative(at, 0, &per_gain);

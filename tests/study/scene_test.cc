@@ -146,7 +146,7 @@ MechanicalEnergy EnergyAt(const Scene& scene, const SceneMotion& motion, size_t 
   energy.kinetic =
       0.5 * motion.velocities[frame].colwise().squaredNorm().dot(motion.body->node_mass);
   for (const auto& effect : scene.effects) {
-    const auto stored = effect->Energy({*motion.body, position, velocity, 0, 0, state});
+    const auto stored = effect->Energy({*motion.body, position, velocity, velocity, 0, 0, state});
     if (effect->Card().type == "neo_hookean") energy.elastic = *stored;
     if (effect->Card().type == "gravity") energy.gravity = *stored;
   }

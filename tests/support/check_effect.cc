@@ -16,11 +16,21 @@
 namespace lacuna {
 namespace {
 
+struct Motion {
+  Eigen::VectorXd position, velocity, acceleration;
+};
+
 // A block whose elements all differ, moved and deformed at random.
 struct MovingBody {
   Body body;
-  Eigen::VectorXd position = {}, velocity = {}, state = {};
+  Motion motion = {};
+  Eigen::VectorXd state = {};  // after a step with other strains than now
 };
+
+Motion Shifted(const Motion& motion, const TangentWeights& by, const Eigen::VectorXd& shift) {
+  return {motion.position + by.position * shift, motion.velocity + by.velocity * shift,
+          motion.acceleration + by.acceleration * shift};
+}
 
 Eigen::VectorXd Random(Eigen::Index size, std::mt19937* random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -42,10 +52,18 @@ MovingBody MakeMovingBody(const Effect& effect, int order, const std::array<int,
   // Nodes of quadratic elements are half as far apart.
   nodes.reshaped() += 0.25 * options.strain * kCell / order * Random(size, &random);
   nodes = (rotation * nodes).colwise() + Eigen::Vector3d(0.05, -0.02, 0.01);
-  moving.position = nodes.reshaped();
-  moving.velocity = 0.25 * options.strain_rate * kCell / order * Random(size, &random);
+  Motion& motion = moving.motion;
+  motion.position = nodes.reshaped();
+  motion.velocity = 0.25 * options.strain_rate * kCell / order * Random(size, &random);
+  motion.acceleration = 10 * Random(size, &random);
   moving.state.resize(effect.StateSize(moving.body));
   effect.InitialState(moving.body, &moving.state);
+  const Eigen::VectorXd before =
+      motion.position + 0.25 * options.strain * kCell / order * Random(size, &random);
+  const Eigen::VectorXd at_rest = moving.state;
+  effect.AdvanceState({moving.body, before, motion.velocity, motion.acceleration,
+                       options.time - options.time_step, options.time_step, at_rest},
+                      &moving.state);
   return moving;
 }
 
@@ -56,12 +74,13 @@ class Checker {
         options_(options),
         order_(order),
         moving_(MakeMovingBody(*effect, order, {2, 1, 2}, options)),
-        size_(moving_.position.size()) {}
+        size_(moving_.motion.position.size()) {}
 
   void Run() {
     CheckEnergy();
-    CheckTangent("position", 1, 0, options_.depends_on_position);
-    CheckTangent("velocity", 0, 1, options_.depends_on_velocity);
+    CheckTangent("position", {.position = 1}, options_.depends_on_position);
+    CheckTangent("velocity", {.velocity = 1}, options_.depends_on_velocity);
+    CheckTangent("acceleration", {.acceleration = 1}, options_.depends_on_acceleration);
     CheckTangentsAdd();
     CheckStandIn();
     CheckParameters();
@@ -70,20 +89,20 @@ class Checker {
   }
 
  private:
-  Kinematics At(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity) const {
-    return {moving_.body, position, velocity, options_.time, options_.time_step, moving_.state};
+  Kinematics At(const Motion& motion) const {
+    return {moving_.body,  motion.position,    motion.velocity, motion.acceleration,
+            options_.time, options_.time_step, moving_.state};
   }
 
-  Eigen::VectorXd Force(const Eigen::VectorXd& position, const Eigen::VectorXd& velocity) const {
+  Eigen::VectorXd Force(const Motion& motion) const {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
-    effect_.AddForce(At(position, velocity), &force);
+    effect_.AddForce(At(motion), &force);
     return force;
   }
 
-  Eigen::MatrixXd Tangent(double position_weight, double velocity_weight, bool convexify) const {
+  Eigen::MatrixXd Tangent(const TangentWeights& weights, bool convexify) const {
     BlockMatrix tangent(moving_.body.pattern);
-    effect_.AddTangents(At(moving_.position, moving_.velocity), position_weight, velocity_weight,
-                        convexify, &tangent);
+    effect_.AddTangents(At(moving_.motion), weights, convexify, &tangent);
     return Dense(tangent);
   }
 
@@ -112,33 +131,31 @@ class Checker {
   }
 
   void CheckEnergy() const {
-    const auto energy = effect_.Energy(At(moving_.position, moving_.velocity));
+    const auto energy = effect_.Energy(At(moving_.motion));
     if (!energy) return;
     ASSERT_TRUE(std::isfinite(*energy));
     std::mt19937 random(options_.seed + 1);
-    const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+    const Eigen::VectorXd force = Force(moving_.motion);
     ASSERT_GT(force.norm(), 0);
     for (int k = 0; k < 3; ++k) {
       // A component along the force itself keeps the derivative away from zero.
       const Eigen::VectorXd direction = Random(size_, &random) + force / force.norm();
       const auto value = [&](double h) {
-        const Eigen::VectorXd position = moving_.position + h * direction;
-        return Eigen::Matrix<double, 1, 1>(-*effect_.Energy(At(position, moving_.velocity)));
+        const Motion shifted = Shifted(moving_.motion, {.position = h}, direction);
+        return Eigen::Matrix<double, 1, 1>(-*effect_.Energy(At(shifted)));
       };
       const Eigen::Matrix<double, 1, 1> power(force.dot(direction));
       EXPECT_LT(BestError(value, power, 0.001), options_.tolerance) << "f = −∂E/∂x";
     }
   }
 
-  void CheckTangent(const std::string& name, double position_weight, double velocity_weight,
-                    bool depends) const {
-    const Eigen::MatrixXd tangent = Tangent(position_weight, velocity_weight, false);
+  void CheckTangent(const std::string& name, const TangentWeights& weights, bool depends) const {
+    const Eigen::MatrixXd tangent = Tangent(weights, false);
     const auto derivative = [&](double h) {
       Eigen::MatrixXd columns(size_, size_);
       for (Eigen::Index k = 0; k < size_; ++k) {
         const Eigen::VectorXd shift = h * Eigen::VectorXd::Unit(size_, k);
-        columns.col(k) = Force(moving_.position + position_weight * shift,
-                               moving_.velocity + velocity_weight * shift);
+        columns.col(k) = Force(Shifted(moving_.motion, weights, shift));
       }
       return Eigen::MatrixXd(0.5 * (columns + columns.transpose()));
     };
@@ -149,27 +166,29 @@ class Checker {
     }
     ASSERT_GT(tangent.norm(), 0) << "∂f/∂" << name << " is zero";
     EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13 * tangent.norm());
-    const double unit = velocity_weight != 0 ? 1 : 0.01;  // m/s or m
+    const double unit = weights.position == 0 ? 1 : 0.01;  // m/s, m/s² or m
     EXPECT_LT(BestError(derivative, tangent, unit), options_.tolerance) << "∂f/∂" << name;
   }
 
   void CheckTangentsAdd() const {
     BlockMatrix twice(moving_.body.pattern);
-    const Kinematics at = At(moving_.position, moving_.velocity);
-    effect_.AddTangents(at, 1.5, 0, false, &twice);
-    effect_.AddTangents(at, 0, -0.5, false, &twice);
-    const Eigen::MatrixXd sum = 1.5 * Tangent(1, 0, false) - 0.5 * Tangent(0, 1, false);
+    const Kinematics at = At(moving_.motion);
+    effect_.AddTangents(at, {.position = 1.5, .acceleration = 2}, false, &twice);
+    effect_.AddTangents(at, {.velocity = -0.5}, false, &twice);
+    const Eigen::MatrixXd sum = 1.5 * Tangent({.position = 1}, false) -
+                                0.5 * Tangent({.velocity = 1}, false) +
+                                2 * Tangent({.acceleration = 1}, false);
     EXPECT_LE((Dense(twice) - sum).norm(), 1e-13 * sum.norm()) << "tangents add, by their weights";
 
     Eigen::VectorXd force = Eigen::VectorXd::Ones(size_);
     effect_.AddForce(at, &force);
-    const Eigen::VectorXd alone = Force(moving_.position, moving_.velocity);
+    const Eigen::VectorXd alone = Force(moving_.motion);
     EXPECT_LE((force - alone - Eigen::VectorXd::Ones(size_)).norm(), 1e-13 * force.norm())
         << "forces add";
   }
 
   void CheckStandIn() const {
-    const Eigen::MatrixXd stand_in = Tangent(1, 1, true);
+    const Eigen::MatrixXd stand_in = Tangent({1, 1, 1}, true);
     const double largest = stand_in.norm();
     EXPECT_LE((stand_in - stand_in.transpose()).norm(), 1e-13 * largest);
     const Eigen::VectorXd eigenvalues = stand_in.selfadjointView<Eigen::Lower>().eigenvalues();
@@ -182,13 +201,13 @@ class Checker {
     ASSERT_EQ(values.size(), static_cast<Eigen::Index>(card.parameters.size()));
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       const ParameterCard& parameter = card.parameters[k];
+      if (parameter.setting) continue;
       Eigen::VectorXd derivative = Eigen::VectorXd::Zero(size_);
-      effect_.AddParameterDerivative(At(moving_.position, moving_.velocity), static_cast<int>(k),
-                                     &derivative);
+      effect_.AddParameterDerivative(At(moving_.motion), static_cast<int>(k), &derivative);
       ASSERT_GT(derivative.norm(), 0) << "∂f/∂" << parameter.name << " is zero";
       const auto value = [&](double h) {
         effect_.SetParameters(values + h * Eigen::VectorXd::Unit(values.size(), k));
-        const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+        const Eigen::VectorXd force = Force(moving_.motion);
         effect_.SetParameters(values);
         return force;
       };
@@ -202,9 +221,9 @@ class Checker {
         at_null[k] = parameter.null_value;
         if (card.parameters.size() == 1 || k == 0) {
           effect_.SetParameters(at_null);
-          const double left = Force(moving_.position, moving_.velocity).norm();
+          const double left = Force(moving_.motion).norm();
           effect_.SetParameters(values);
-          const double full = Force(moving_.position, moving_.velocity).norm();
+          const double full = Force(moving_.motion).norm();
           EXPECT_LT(left, full) << "the null value of " << parameter.name << " weakens the effect";
         }
       }
@@ -219,7 +238,7 @@ class Checker {
     *force_size = *torque_size = 0;
     for (Eigen::Index i = 0; i < size_ / 3; ++i) {
       const Eigen::Vector3d f = force.segment<3>(3 * i);
-      const Eigen::Vector3d x = moving_.position.segment<3>(3 * i);
+      const Eigen::Vector3d x = moving_.motion.position.segment<3>(3 * i);
       *sum += f;
       *torque += x.cross(f);
       *force_size += f.norm();
@@ -229,7 +248,7 @@ class Checker {
 
   void CheckInvariances() const {
     const EffectCard& card = effect_.Card();
-    const Eigen::VectorXd force = Force(moving_.position, moving_.velocity);
+    const Eigen::VectorXd force = Force(moving_.motion);
     Eigen::Vector3d sum, torque;
     double force_size, torque_size;
     Resultants(force, &sum, &torque, &force_size, &torque_size);
@@ -244,31 +263,34 @@ class Checker {
     const Eigen::Matrix3d Q =
         Eigen::AngleAxisd(2.2, Eigen::Vector3d(0.3, 1, -0.7).normalized()).toRotationMatrix();
     const Eigen::Vector3d spin(4, -2, 3), shift(0.3, 0.1, -0.2);
-    Eigen::VectorXd position(size_), velocity(size_), turned(size_);
+    Motion seen{moving_.motion.position, moving_.motion.velocity, moving_.motion.acceleration};
+    Eigen::VectorXd turned(size_);
     for (Eigen::Index i = 0; i < size_ / 3; ++i) {
-      const Eigen::Vector3d x = Q * moving_.position.segment<3>(3 * i);
-      position.segment<3>(3 * i) = x + shift;
-      velocity.segment<3>(3 * i) = Q * moving_.velocity.segment<3>(3 * i) + spin.cross(x);
+      const Eigen::Vector3d x = Q * moving_.motion.position.segment<3>(3 * i);
+      seen.position.segment<3>(3 * i) = x + shift;
+      seen.velocity.segment<3>(3 * i) =
+          Q * moving_.motion.velocity.segment<3>(3 * i) + spin.cross(x);
       turned.segment<3>(3 * i) = Q * force.segment<3>(3 * i);
     }
     // Positions of 0.3 m are known to 5e-17 m, strains of 0.02 m elements to 1e-14.
-    EXPECT_LT((Force(position, velocity) - turned).norm(), 1e-11 * force.norm())
+    EXPECT_LT((Force(seen) - turned).norm(), 1e-11 * force.norm())
         << "the same in a turned and spinning frame";
   }
 
   void CheckThreads() const {
     // Large enough that several threads find work.
     const MovingBody large = MakeMovingBody(effect_, order_, {7, 6, 5}, options_);
-    const Kinematics at{large.body,    large.position,     large.velocity,
+    const Motion& motion = large.motion;
+    const Kinematics at{large.body,    motion.position,    motion.velocity, motion.acceleration,
                         options_.time, options_.time_step, large.state};
     const int threads = ThreadCount();
     Eigen::VectorXd force[2];
     BlockMatrix tangent[2] = {BlockMatrix(large.body.pattern), BlockMatrix(large.body.pattern)};
     for (const int k : {0, 1}) {
       SetThreadCount(1 + k);
-      force[k] = Eigen::VectorXd::Zero(large.position.size());
+      force[k] = Eigen::VectorXd::Zero(motion.position.size());
       effect_.AddForce(at, &force[k]);
-      effect_.AddTangents(at, 1, 1, false, &tangent[k]);
+      effect_.AddTangents(at, {1, 1, 1}, false, &tangent[k]);
     }
     SetThreadCount(threads);
     EXPECT_EQ(force[0], force[1]);
@@ -300,6 +322,14 @@ void CheckCard(const EffectCard& card) {
 }
 
 }  // namespace
+
+Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::VectorXd& position,
+                        const Eigen::VectorXd& velocity) {
+  const Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(position.size()), state;
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(position.size());
+  effect.AddForce({body, position, velocity, acceleration, 0, 0.01, state}, &force);
+  return force;
+}
 
 void CheckEffect(Effect* effect, const CheckEffectOptions& options) {
   CheckCard(effect->Card());

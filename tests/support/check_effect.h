@@ -17,16 +17,21 @@ struct CheckEffectOptions {
   double tolerance = 1e-6;
   bool depends_on_position = true;  // ∂f/∂x must differ from 0; else it must be 0
   bool depends_on_velocity = false;
+  bool depends_on_acceleration = false;
   unsigned seed = 7;
 };
+
+// The nodal forces of an effect without memory on a body that moves without acceleration, at time
+// 0 in a step of 10 ms.
+Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::VectorXd& position,
+                        const Eigen::VectorXd& velocity);
 
 // At a random deformed and moving state, for linear and quadratic elements:
 //  - the card is complete and its parameters agree with Parameters() and SetParameters();
 //  - f = −∂E/∂x where the effect has an energy;
 //  - AddTangents (the symmetric part) and AddParameterDerivative agree with central differences,
-//  for
-//    both weights, and are not simply zero; they add into what is there, in proportion to the
-//    weight;
+//    for all weights and every parameter that is not a setting, and are not simply zero; they add
+//    into what is there, in proportion to the weight;
 //  - the stand-in of `convexify` is symmetric and definite;
 //  - forces and torques sum to zero where the card says so; then the forces are the same, but
 //    turned, in a frame that is turned, shifted and spinning;
