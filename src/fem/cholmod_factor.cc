@@ -112,19 +112,24 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
          (self.matrix.nrow == 0 || cholmod_rcond(self.factor, &self.common) > 0);
 }
 
-void CholmodFactor::Solve(const Eigen::VectorXd& b, Eigen::VectorXd* x) {
+void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X) {
   Implementation& self = *implementation_;
-  CHECK_EQ(static_cast<size_t>(b.size()), self.matrix.nrow);
+  CHECK_EQ(static_cast<size_t>(B.rows()), self.matrix.nrow);
+  X->resize(B.rows(), B.cols());
+  if (B.size() == 0) return;  // CHOLMOD refuses it
   cholmod_dense right = {};
-  right.nrow = right.d = right.nzmax = self.matrix.nrow;
-  right.ncol = 1;
-  right.x = const_cast<double*>(b.data());
+  right.nrow = self.matrix.nrow;
+  right.d = B.outerStride();
+  right.ncol = B.cols();
+  right.nzmax = right.d * right.ncol;
+  right.x = const_cast<double*>(B.data());
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   const int solved = cholmod_solve2(CHOLMOD_A, self.factor, &right, nullptr, &self.solution,
                                     nullptr, &self.workspace_y, &self.workspace_e, &self.common);
   CHECK(solved) << "CHOLMOD's triangular solve failed with status " << self.common.status;
-  *x = Eigen::Map<const Eigen::VectorXd>(static_cast<const double*>(self.solution->x), b.size());
+  *X = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(self.solution->x), B.rows(),
+                                         B.cols());
 }
 
 double CholmodFactor::flops() const { return implementation_->flops; }

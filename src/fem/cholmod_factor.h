@@ -22,8 +22,8 @@ class CholmodFactor {
   // False when the matrix is not positive definite on the free nodes; there is no factor then.
   bool Factorise(const BlockMatrix& matrix);
 
-  // Solves L Lᵀ x = b; both of length 3·(free nodes), in the elimination order.
-  void Solve(const Eigen::VectorXd& b, Eigen::VectorXd* x);
+  // Solves L Lᵀ X = B for any number of columns; rows are 3·(free nodes), in the elimination order.
+  void Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X);
 
   double flops() const;    // of one numeric factorisation
   double entries() const;  // stored in L

@@ -55,7 +55,8 @@ struct LinearSolver::Implementation {
 
   std::vector<Eigen::Matrix3d> turn;  // since the factor was made; empty: none
   Eigen::VectorXf single_reduced;
-  Eigen::VectorXd double_reduced, double_solution;
+  Eigen::VectorXd double_reduced;
+  Eigen::MatrixXd double_solution;  // one column
   Eigen::VectorXd residual, direction, product, preconditioned;
   std::deque<Eigen::VectorXd> earlier_solutions;  // the latest first
 
@@ -145,7 +146,7 @@ void LinearSolver::Implementation::ApplyFactor(const Eigen::VectorXd& r, Eigen::
     }
     double_factor->Solve(double_reduced, &double_solution);
     for (int k = 0; k < order.FreeNodes(); ++k) {
-      turn_forth(order.node[k], double_solution.segment<3>(3 * k));
+      turn_forth(order.node[k], double_solution.col(0).segment<3>(3 * k));
     }
   }
 }

@@ -39,11 +39,12 @@ StepEquation::StepEquation(const Model& model, const MotionHistory& history, Tim
   const double h = time_step;
   if (scheme == TimeScheme::kBdf2 && history.previous_position.size() > 0) {
     const double ratio = history.previous_time_step > 0 ? h / history.previous_time_step : 1;
-    const double now = (1 + ratio) * (1 + ratio) / (1 + 2 * ratio);
-    const double before = ratio * ratio / (1 + 2 * ratio);
     rate_ = (1 + 2 * ratio) / (1 + ratio) / h;
-    position_history_ = now * history.position - before * history.previous_position;
-    velocity_history_ = now * history.velocity - before * history.previous_velocity;
+    weights_ = {(1 + ratio) * (1 + ratio) / (1 + 2 * ratio), -ratio * ratio / (1 + 2 * ratio)};
+    position_history_ =
+        weights_.now * history.position + weights_.before * history.previous_position;
+    velocity_history_ =
+        weights_.now * history.velocity + weights_.before * history.previous_velocity;
   } else {
     rate_ = 1 / h;
     position_history_ = history.position;

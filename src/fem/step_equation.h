@@ -38,6 +38,16 @@ MotionHistory RestHistory(const Model& model);
 
 class StepEquation {
  public:
+  // The motion that the end of the step at `position` means. Refers to that vector.
+  struct EndOfStep {
+    const Eigen::VectorXd& position;
+    Eigen::VectorXd velocity, acceleration;
+  };
+  // x̃ = now·xₙ + before·xₙ₋₁, and ṽ likewise.
+  struct HistoryWeights {
+    double now = 1, before = 0;
+  };
+
   // `time_step` > 0, or 0 for statics. The model and the history must outlive the equation.
   StepEquation(const Model& model, const MotionHistory& history, TimeScheme scheme,
                double time_step);
@@ -61,23 +71,23 @@ class StepEquation {
 
   const Body& body() const { return *model_.body; }
   double end_time() const { return end_time_; }
+  double time_step() const { return time_step_; }
   double rate() const { return rate_; }  // γ, 1/s; 0 in statics
+  bool has_inertia() const { return inertia_; }
+  const HistoryWeights& history_weights() const { return weights_; }
 
- private:
-  // The motion that the end of the step at `position` means.
-  struct EndOfStep {
-    const Eigen::VectorXd& position;
-    Eigen::VectorXd velocity, acceleration;
-  };
   EndOfStep End(const Eigen::VectorXd& position) const;
+  // What an effect of the model sees there.
   Kinematics At(const EndOfStep& end, size_t effect) const;
 
+ private:
   const Model& model_;
   const MotionHistory& history_;
   double rate_ = 0;  // γ
   bool inertia_ = true;
   double time_step_ = 0;
   double end_time_ = 0;
+  HistoryWeights weights_;
   Eigen::VectorXd position_history_, velocity_history_;  // x̃, ṽ
 };
 

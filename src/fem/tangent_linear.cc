@@ -1,0 +1,320 @@
+#include "fem/tangent_linear.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "fem/cholmod_factor.h"
+#include "fem/elimination_order.h"
+
+namespace lacuna {
+namespace {
+
+// Memory is followed by central differences of this size, in strains: rounding is then 1e-10 of
+// what is differentiated, truncation 1e-12 of its curvature.
+constexpr double kDifference = 1e-6;
+
+Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    columns.col(k).reshaped(3, node_weight.size()).array().rowwise() *=
+        node_weight.transpose().array();
+  }
+  return columns;
+}
+
+// matrix · column, for each column.
+Eigen::MatrixXd Product(const BlockMatrix& matrix, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd product(columns.rows(), columns.cols());
+  Eigen::VectorXd image;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    matrix.Multiply(columns.col(k), &image);
+    product.col(k) = image;
+  }
+  return product;
+}
+
+// An effect with memory that some perturbation or the model itself has.
+struct Memory {
+  std::shared_ptr<const Effect> effect;
+  Eigen::VectorXd value;        // of an effect outside the model
+  Eigen::MatrixXd sensitivity;  // of one inside: dz/dp, state × perturbations
+};
+
+}  // namespace
+
+struct TangentLinear::Implementation {
+  Model model;
+  std::vector<Perturbation> perturbations;
+  std::vector<char> fixed;
+  EliminationOrder order;
+  CholmodFactor factor;
+  BlockMatrix tangent;
+  double element_size;  // m
+  // Now and one step earlier.
+  Eigen::MatrixXd position, velocity, previous_position, previous_velocity;
+  std::vector<Memory> inside;   // one per effect of the model
+  std::vector<Memory> outside;  // one per perturbation; without effect where it is the model's
+
+  Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations)
+      : model(the_model),
+        perturbations(std::move(the_perturbations)),
+        fixed(GrippedNodes(model)),
+        order(NestedDissection(*model.body->pattern, fixed)),
+        factor(*model.body->pattern, order),
+        tangent(model.body->pattern),
+        element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())) {
+    const Eigen::Index size = 3 * model.body->NodeCount();
+    position = velocity = Eigen::MatrixXd::Zero(size, Count());
+    for (const auto& effect : model.effects) {
+      inside.push_back(
+          {effect, {}, Eigen::MatrixXd::Zero(effect->StateSize(*model.body), Count())});
+    }
+    for (const Perturbation& perturbation : perturbations) {
+      Memory memory;
+      if (perturbation.effect != nullptr && IndexInModel(*perturbation.effect) < 0) {
+        memory.effect = perturbation.effect;
+        memory.value.resize(memory.effect->StateSize(*model.body));
+        memory.effect->InitialState(*model.body, &memory.value);
+      }
+      outside.push_back(std::move(memory));
+    }
+  }
+
+  Eigen::Index Count() const { return static_cast<Eigen::Index>(perturbations.size()); }
+
+  int IndexInModel(const Effect& effect) const {
+    for (size_t j = 0; j < model.effects.size(); ++j)
+      if (model.effects[j].get() == &effect) return static_cast<int>(j);
+    return -1;
+  }
+
+  // ∂f/∂p at the end of the step.
+  Eigen::VectorXd ParameterForce(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                                 Eigen::Index k) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(end.position.size());
+    const Perturbation& perturbation = perturbations[k];
+    if (perturbation.effect == nullptr) return force;
+    const int j = IndexInModel(*perturbation.effect);
+    if (j >= 0) {
+      perturbation.effect->AddParameterDerivative(equation.At(end, j), perturbation.parameter,
+                                                  &force);
+    } else {
+      perturbation.effect->AddParameterDerivative(AtOutside(equation, end, k),
+                                                  perturbation.parameter, &force);
+    }
+    return force;
+  }
+
+  Kinematics AtOutside(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                       Eigen::Index k) const {
+    return {*model.body,         end.position,         end.velocity,    end.acceleration,
+            equation.end_time(), equation.time_step(), outside[k].value};
+  }
+
+  // Σ ∂f/∂z ζ over the effects with memory.
+  void AddMemoryForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                       Eigen::MatrixXd* right) const {
+    Eigen::VectorXd plus(end.position.size()), minus(end.position.size());
+    for (size_t j = 0; j < inside.size(); ++j) {
+      const Eigen::MatrixXd& change = inside[j].sensitivity;
+      if (change.rows() == 0) continue;
+      const Kinematics at = equation.At(end, j);
+      for (Eigen::Index k = 0; k < Count(); ++k) {
+        const double largest = change.col(k).lpNorm<Eigen::Infinity>();
+        if (largest == 0) continue;
+        const double h = kDifference / largest;
+        const Eigen::VectorXd more = at.state + h * change.col(k);
+        const Eigen::VectorXd less = at.state - h * change.col(k);
+        plus.setZero();
+        minus.setZero();
+        inside[j].effect->AddForce(WithState(at, more), &plus);
+        inside[j].effect->AddForce(WithState(at, less), &minus);
+        right->col(k) += (plus - minus) / (2 * h);
+      }
+    }
+  }
+
+  static Kinematics WithState(const Kinematics& at, const Eigen::VectorXd& state) {
+    return {at.body, at.position, at.velocity, at.acceleration, at.time, at.time_step, state};
+  }
+
+  // dz/dp at the end of the step, from the sensitivities there.
+  void AdvanceMemories(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                       const Eigen::MatrixXd& s, const Eigen::MatrixXd& w) {
+    for (size_t j = 0; j < inside.size(); ++j) {
+      Memory& memory = inside[j];
+      if (memory.sensitivity.rows() == 0) continue;
+      const Kinematics at = equation.At(end, j);
+      for (Eigen::Index k = 0; k < Count(); ++k) {
+        const bool own = perturbations[k].effect == memory.effect;
+        const double own_value = own ? memory.effect->Parameters()[perturbations[k].parameter] : 1;
+        const double largest = std::max({s.col(k).lpNorm<Eigen::Infinity>() / element_size,
+                                         memory.sensitivity.col(k).lpNorm<Eigen::Infinity>(),
+                                         own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
+        if (largest == 0) continue;
+        const double h = kDifference / largest;
+        const auto state_at = [&](double shift) {
+          const Eigen::VectorXd x = at.position + shift * s.col(k);
+          const Eigen::VectorXd v = at.velocity + shift * w.col(k);
+          const Eigen::VectorXd z = at.state + shift * memory.sensitivity.col(k);
+          Eigen::VectorXd result = z;
+          const auto advance = [&](const Effect& effect) {
+            effect.AdvanceState({at.body, x, v, at.acceleration, at.time, at.time_step, z},
+                                &result);
+          };
+          if (own) {
+            WithParameter(k, shift, advance);
+          } else {
+            advance(*memory.effect);
+          }
+          return result;
+        };
+        memory.sensitivity.col(k) = (state_at(h) - state_at(-h)) / (2 * h);
+      }
+    }
+    for (Eigen::Index k = 0; k < Count(); ++k) {
+      if (outside[k].value.size() == 0) continue;
+      const Eigen::VectorXd before = outside[k].value;
+      const Kinematics at = AtOutside(equation, end, k);
+      outside[k].effect->AdvanceState(WithState(at, before), &outside[k].value);
+    }
+  }
+
+  // Calls `use` with the perturbed effect while its parameter is shifted.
+  template <typename Use>
+  void WithParameter(Eigen::Index k, double shift, const Use& use) const {
+    Effect& effect = *model.effects[IndexInModel(*perturbations[k].effect)];
+    const Eigen::VectorXd values = effect.Parameters();
+    Eigen::VectorXd shifted = values;
+    shifted[perturbations[k].parameter] += shift;
+    effect.SetParameters(shifted);
+    use(effect);
+    effect.SetParameters(values);
+  }
+
+  // The sensitivities of the gripped nodes; 0 elsewhere.
+  Eigen::MatrixXd GripColumns(double time) const {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(position.rows(), Count());
+    for (Eigen::Index k = 0; k < Count(); ++k) {
+      if (!perturbations[k].grip) continue;
+      const Eigen::VectorXd moved = perturbations[k].grip(time);
+      for (size_t i = 0; i < fixed.size(); ++i)
+        if (fixed[i]) columns.col(k).segment<3>(3 * i) = moved.segment<3>(3 * i);
+    }
+    return columns;
+  }
+
+  // s with tangent · s = right at the free nodes, for the nodes that are not fixed.
+  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {
+    Eigen::MatrixXd reduced(3 * order.FreeNodes(), right.cols()), solution;
+    for (int i = 0; i < order.FreeNodes(); ++i)
+      reduced.middleRows<3>(3 * i) = right.middleRows<3>(3 * order.node[i]);
+    factor.Solve(reduced, &solution);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+    for (int i = 0; i < order.FreeNodes(); ++i)
+      all.middleRows<3>(3 * order.node[i]) = solution.middleRows<3>(3 * i);
+    return all;
+  }
+
+  // Where the exact tangent is not definite the system is solved with its stand-in, and what that
+  // leaves is solved again.
+  std::optional<Eigen::MatrixXd> Solve(const StepEquation& equation, const Eigen::VectorXd& at,
+                                       Eigen::MatrixXd right) {
+    if (factor.Factorise(tangent)) return SolveFree(right);
+    constexpr int kMaxIterations = 60;
+    constexpr double kTolerance = 1e-6;
+    const double wanted = kTolerance * right.norm();
+    BlockMatrix stand_in(model.body->pattern);
+    equation.Tangent(at, /*convexify=*/true, &stand_in);
+    if (!factor.Factorise(stand_in)) return std::nullopt;
+    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+    double last = right.norm();
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      const Eigen::MatrixXd step = SolveFree(right);
+      solution += step;
+      right -= Product(tangent, step);
+      for (size_t i = 0; i < fixed.size(); ++i)
+        if (fixed[i]) right.middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
+      if (right.norm() <= wanted) return solution;
+      if (!(right.norm() < 2 * last)) return std::nullopt;
+      last = right.norm();
+    }
+    return std::nullopt;
+  }
+
+  TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
+                               const Eigen::VectorXd& at) {
+    const StepEquation equation(model, before, scheme, time_step);
+    const StepEquation::EndOfStep end = equation.End(at);
+    const double rate = equation.rate();
+    const StepEquation::HistoryWeights& weights = equation.history_weights();
+    Eigen::MatrixXd position_history = weights.now * position;
+    Eigen::MatrixXd velocity_history = weights.now * velocity;
+    if (weights.before != 0) {
+      position_history += weights.before * previous_position;
+      velocity_history += weights.before * previous_velocity;
+    }
+
+    equation.Tangent(at, /*convexify=*/false, &tangent);
+    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(position.rows(), Count());
+    for (Eigen::Index k = 0; k < Count(); ++k) right.col(k) = ParameterForce(equation, end, k);
+    AddMemoryForces(equation, end, &right);
+    if (rate != 0) {
+      const Eigen::MatrixXd carried =
+          equation.has_inertia()
+              ? Eigen::MatrixXd(rate * rate * position_history + rate * velocity_history)
+              : Eigen::MatrixXd::Zero(position.rows(), Count());
+      right += ScaledRows(model.body->node_mass, carried);
+      BlockMatrix effects(model.body->pattern);
+      for (size_t j = 0; j < model.effects.size(); ++j)
+        model.effects[j]->AddTangents(equation.At(end, j), {.velocity = rate}, false, &effects);
+      right -= Product(effects, position_history);
+      effects.SetZero();
+      for (size_t j = 0; j < model.effects.size(); ++j)
+        model.effects[j]->AddTangents(equation.At(end, j), {.acceleration = 1}, false, &effects);
+      right -= Product(effects, carried);
+    }
+    const Eigen::MatrixXd gripped = GripColumns(equation.end_time());
+    if (!gripped.isZero(0)) right -= Product(tangent, gripped);
+
+    TangentLinearSummary summary;
+    const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, std::move(right));
+    if (!solution) {
+      summary.status = TangentLinearSummary::Status::kNotPositiveDefinite;
+      summary.message = fmt::format(
+          "at {:.6g} s: the tangent is not definite and its stand-in is too far from it",
+          equation.end_time());
+      return summary;
+    }
+    const Eigen::MatrixXd moved = *solution + gripped;
+    const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
+                                                : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
+    AdvanceMemories(equation, end, moved, speed);
+    previous_position = std::move(position);
+    previous_velocity = std::move(velocity);
+    position = moved;
+    velocity = speed;
+    summary.status = TangentLinearSummary::Status::kSolved;
+    return summary;
+  }
+};
+
+TangentLinear::TangentLinear(const Model& model, std::vector<Perturbation> perturbations)
+    : implementation_(std::make_unique<Implementation>(model, std::move(perturbations))) {}
+TangentLinear::~TangentLinear() = default;
+TangentLinear::TangentLinear(TangentLinear&&) noexcept = default;
+TangentLinear& TangentLinear::operator=(TangentLinear&&) noexcept = default;
+
+TangentLinearSummary TangentLinear::Advance(const MotionHistory& before, TimeScheme scheme,
+                                            double time_step, const Eigen::VectorXd& position) {
+  return implementation_->Advance(before, scheme, time_step, position);
+}
+
+const Eigen::MatrixXd& TangentLinear::position() const { return implementation_->position; }
+const Eigen::MatrixXd& TangentLinear::velocity() const { return implementation_->velocity; }
+
+}  // namespace lacuna

@@ -1,0 +1,178 @@
+#include "fem/tangent_linear.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "effects/catalogue.h"
+#include "fem/simulate.h"
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kSteps = 12;
+constexpr double kTimeStep = 0.01;  // s
+constexpr int kDamped = 2;          // in Case::effects
+
+// A clamped bar, at rest in half its weight, that the other half sets into motion while its clamp
+// is lifted by `lift` times a smooth course.
+struct Case {
+  std::shared_ptr<const Body> body;
+  std::vector<std::shared_ptr<Effect>> effects;
+  Eigen::VectorXi clamped;
+  double lift = 0.3;  // m/s²
+  TimeScheme scheme = TimeScheme::kBdf2;
+
+  Case() {
+    const TetMesh mesh = Jittered(BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {4, 1, 1}), 0.02, 0.1, 3);
+    body = std::make_shared<Body>(MakeBody(mesh, 1000));
+    effects = {MakeEffect("neo_hookean", {{"young_modulus", 5e4}, {"poisson_ratio", 0.4}}),
+               MakeEffect("gravity", {{"acceleration_z", -9.81}}),
+               MakeEffect("stiffness_damping",
+                          {{"beta", 0.004}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}})};
+    std::vector<int> nodes;
+    for (int i = 0; i < body->NodeCount(); ++i)
+      if (body->mesh.nodes(0, i) < 0.005) nodes.push_back(i);
+    clamped = Eigen::Map<Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  }
+
+  Eigen::VectorXd Lifted(double time) const {
+    Eigen::VectorXd up = Eigen::VectorXd::Zero(3 * body->NodeCount());
+    for (const int node : clamped) up[3 * node + 2] = 0.5 * time * time;
+    return up;
+  }
+
+  Model MakeModel() const {
+    Grip grip{clamped, {}};
+    grip.motion = [this](double time) -> Eigen::Matrix3Xd {
+      Eigen::Matrix3Xd places = body->mesh.nodes(Eigen::all, clamped);
+      places.row(2).array() += lift * 0.5 * time * time;
+      return places;
+    };
+    return {body, effects, {grip}};
+  }
+
+  // The last position and velocity, and their sensitivities to `perturbations`.
+  void Run(const std::vector<Perturbation>& perturbations, Eigen::VectorXd* position,
+           Eigen::VectorXd* velocity, Eigen::MatrixXd* by_position = nullptr,
+           Eigen::MatrixXd* by_velocity = nullptr) const {
+    const Model model = MakeModel();
+    StepOptions options;
+    options.scheme = scheme;
+    options.relative_tolerance = 1e-12;
+    options.linear.method = LinearSolverOptions::Method::kDirect;
+    options.linear.relative_tolerance = 1e-13;
+    Stepper stepper(model, options);
+    TangentLinear linear(model, perturbations);
+    MotionHistory history = RestHistory(model);
+    MotionHistory before = history;
+    ASSERT_TRUE(stepper.Equilibrium({}, &history).IsUsable());
+    ASSERT_TRUE(linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position).IsUsable());
+    for (int step = 0; step < kSteps; ++step) {
+      before = history;
+      ASSERT_TRUE(stepper.Step(kTimeStep, {}, &history).IsUsable());
+      ASSERT_TRUE(linear.Advance(before, scheme, kTimeStep, history.position).IsUsable());
+    }
+    *position = history.position;
+    *velocity = history.velocity;
+    if (by_position != nullptr) *by_position = linear.position();
+    if (by_velocity != nullptr) *by_velocity = linear.velocity();
+  }
+};
+
+// Compares with central differences of whole trajectories. `tolerance`: relative; of symmetric
+// tangents 1e-5 is truncation and the trajectories' own accuracy.
+void ExpectDerivative(const Case& motion, const Perturbation& perturbation, double step,
+                      const std::function<void(double)>& shift, double tolerance,
+                      const std::string& name) {
+  Eigen::VectorXd position, velocity, plus, plus_velocity, minus, minus_velocity;
+  Eigen::MatrixXd by_position, by_velocity;
+  motion.Run({perturbation}, &position, &velocity, &by_position, &by_velocity);
+  shift(step);
+  motion.Run({}, &plus, &plus_velocity);
+  shift(-step);
+  motion.Run({}, &minus, &minus_velocity);
+  shift(0);
+  const Eigen::VectorXd difference = (plus - minus) / (2 * step);
+  const Eigen::VectorXd velocity_difference = (plus_velocity - minus_velocity) / (2 * step);
+  ASSERT_GT(difference.norm(), 0) << name;
+  EXPECT_LT((by_position.col(0) - difference).norm(), tolerance * difference.norm()) << name;
+  EXPECT_LT((by_velocity.col(0) - velocity_difference).norm(),
+            tolerance * velocity_difference.norm())
+      << name;
+}
+
+void ExpectParameterDerivative(const Case& motion, const std::shared_ptr<Effect>& effect,
+                               int parameter, double step, double tolerance) {
+  const Eigen::VectorXd values = effect->Parameters();
+  const auto shift = [&](double by) {
+    effect->SetParameters(values + by * Eigen::VectorXd::Unit(values.size(), parameter));
+  };
+  ExpectDerivative(motion, {effect, parameter, {}}, step, shift, tolerance,
+                   effect->Card().type + "." + effect->Card().parameters[parameter].name);
+}
+
+TEST(TangentLinear, AgreesWithDifferencesForEveryParameterOfTheModel) {
+  for (const TimeScheme scheme : {TimeScheme::kBdf2, TimeScheme::kImplicitEuler}) {
+    Case motion;
+    motion.scheme = scheme;
+    motion.effects.resize(2);  // symmetric tangents only
+    ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
+    ExpectParameterDerivative(motion, motion.effects[0], 1, 1e-4, 1e-5);
+    ExpectParameterDerivative(motion, motion.effects[1], 2, 1e-2, 1e-5);
+  }
+}
+
+TEST(TangentLinear, NeglectsOnlyTheUnsymmetricPartOfDamping) {
+  // ∂f/∂x of stiffness-proportional damping is not symmetric: what is dropped is of the order of
+  // the strain increment of a step.
+  Case motion;
+  ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 2e-2);
+  ExpectParameterDerivative(motion, motion.effects[kDamped], 0, 1e-5, 2e-2);
+}
+
+TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAnEffectThatIsNotInTheModel) {
+  Case motion;
+  motion.effects.resize(2);
+  const auto damping = MakeEffect("mass_damping", {{"alpha", 0}});
+  const Perturbation little{damping, 0, {}};
+  Case with = motion;
+  with.effects.push_back(damping);
+  Eigen::VectorXd position, velocity, plus, minus;
+  Eigen::MatrixXd by_position;
+  motion.Run({little}, &position, &velocity, &by_position);
+  damping->SetParameters(Eigen::VectorXd::Constant(1, 1e-3));
+  with.Run({}, &plus, &velocity);
+  damping->SetParameters(Eigen::VectorXd::Constant(1, -1e-3));
+  with.Run({}, &minus, &velocity);
+  const Eigen::VectorXd difference = (plus - minus) / 2e-3;
+  EXPECT_LT((by_position.col(0) - difference).norm(), 1e-5 * difference.norm());
+}
+
+TEST(TangentLinear, FollowsTheGrip) {
+  Case motion;
+  motion.effects.resize(2);
+  const double lift = motion.lift;
+  const Perturbation higher{nullptr, 0, [&](double time) { return motion.Lifted(time); }};
+  ExpectDerivative(
+      motion, higher, 1e-3, [&](double by) { motion.lift = lift + by; }, 1e-5, "lift");
+}
+
+TEST(TangentLinear, DoesNotMixItsColumns) {
+  const Case motion;
+  const std::vector<Perturbation> all{
+      {motion.effects[0], 0, {}}, {motion.effects[0], 1, {}}, {motion.effects[1], 2, {}}};
+  Eigen::VectorXd position, velocity;
+  Eigen::MatrixXd together, alone;
+  motion.Run(all, &position, &velocity, &together);
+  for (size_t k = 0; k < all.size(); ++k) {
+    motion.Run({all[k]}, &position, &velocity, &alone);
+    // Many right-hand sides take another path through the triangular solves: rounding.
+    EXPECT_LT((together.col(k) - alone.col(0)).norm(), 1e-10 * alone.norm());
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
