@@ -97,6 +97,8 @@ struct TangentLinear::Implementation {
                                  Eigen::Index k) const {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(end.position.size());
     const Perturbation& perturbation = perturbations[k];
+    if (equation.rate() == 0 && perturbation.held_force.size() > 0)
+      force += perturbation.held_force;
     if (perturbation.effect == nullptr) return force;
     const int j = IndexInModel(*perturbation.effect);
     if (j >= 0) {

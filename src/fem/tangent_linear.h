@@ -27,14 +27,17 @@
 
 namespace lacuna {
 
-// One thing that a trajectory depends on; either or both of the two.
+// One thing that a trajectory depends on; its parts add.
 struct Perturbation {
   // The force ∂f/∂(parameter) of this effect. If it is none of the model's, it must be at its null
   // value; its memory then follows the trajectory.
-  std::shared_ptr<const Effect> effect;
+  std::shared_ptr<const Effect> effect = nullptr;
   int parameter = 0;
   // d(position)/dp of the gripped nodes at a time (3n; other nodes are not read). Empty: 0.
-  std::function<Eigen::VectorXd(double time)> grip;
+  std::function<Eigen::VectorXd(double time)> grip = {};
+  // d(external force)/dp in an equilibrium (3n, N per unit): of what holds the body before it is
+  // let go. Empty: 0.
+  Eigen::VectorXd held_force = {};
 };
 
 struct TangentLinearSummary {

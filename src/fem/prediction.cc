@@ -1,0 +1,87 @@
+#include "fem/prediction.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+
+namespace lacuna {
+namespace {
+
+// Position and velocity, and what they change with, at one time.
+template <typename Matrix>
+struct Knot {
+  Matrix position, velocity;
+};
+
+// The cubic through two knots `h` apart, at the fraction t of the interval.
+template <typename Matrix>
+Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, double h, double t) {
+  const double s = 1 - t;
+  return {(1 + 2 * t) * s * s * from.position + t * t * (3 - 2 * t) * to.position +
+              h * (t * s * s * from.velocity - t * t * s * to.velocity),
+          6 * t * s / h * (to.position - from.position) + s * (1 - 3 * t) * from.velocity +
+              t * (3 * t - 2) * to.velocity};
+}
+
+PredictionSummary Stopped(PredictionSummary summary, const std::string& why) {
+  summary.status = PredictionSummary::Status::kStopped;
+  summary.message = why;
+  return summary;
+}
+
+}  // namespace
+
+PredictionSummary Predict(
+    const Model& model, const PredictionOptions& options, const std::vector<double>& times,
+    const std::vector<Perturbation>& perturbations,
+    const std::function<void(int index, const PredictedState& state)>& visit) {
+  CHECK(std::is_sorted(times.begin(), times.end()));
+  CHECK_GT(options.time_step, 0);
+  PredictionSummary summary;
+  Stepper stepper(model, options.step);
+  TangentLinear linear(model, perturbations);
+  MotionHistory history = RestHistory(model);
+  history.time = options.start_time;
+
+  MotionHistory before = history;
+  const StepSummary equilibrium = stepper.Equilibrium(options.held_force, &history);
+  if (!equilibrium.IsUsable())
+    return Stopped(summary, "no equilibrium to start from: " + equilibrium.message);
+  TangentLinearSummary linearised =
+      linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position);
+  if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
+
+  const size_t wanted = times.size();
+  size_t next = 0;
+  const auto visit_next = [&](const Knot<Eigen::VectorXd>& state, const Knot<Eigen::MatrixXd>& by) {
+    visit(static_cast<int>(next),
+          {times[next], state.position, state.velocity, by.position, by.velocity});
+    ++next;
+    summary.states = static_cast<int>(next);
+  };
+  Knot<Eigen::VectorXd> state{history.position, history.velocity};
+  Knot<Eigen::MatrixXd> by{linear.position(), linear.velocity()};
+  while (next < wanted && times[next] <= options.start_time) visit_next(state, by);
+
+  while (next < wanted) {
+    before = history;
+    const StepSummary step = stepper.Step(options.time_step, {}, &history);
+    if (!step.IsUsable()) return Stopped(summary, step.message);
+    linearised = linear.Advance(before, options.step.scheme, options.time_step, history.position);
+    if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
+    ++summary.steps;
+    const Knot<Eigen::VectorXd> now{history.position, history.velocity};
+    const Knot<Eigen::MatrixXd> now_by{linear.position(), linear.velocity()};
+    while (next < wanted && times[next] <= history.time) {
+      const double t = 1 - (history.time - times[next]) / options.time_step;
+      visit_next(Interpolate(state, now, options.time_step, t),
+                 Interpolate(by, now_by, options.time_step, t));
+    }
+    state = now;
+    by = now_by;
+  }
+  summary.status = PredictionSummary::Status::kReached;
+  return summary;
+}
+
+}  // namespace lacuna

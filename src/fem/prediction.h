@@ -1,0 +1,53 @@
+// Predicts a motion: everything is simulated from its start, nothing follows a measurement.
+#ifndef LACUNA_FEM_PREDICTION_H_
+#define LACUNA_FEM_PREDICTION_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem/simulate.h"
+#include "fem/tangent_linear.h"
+
+namespace lacuna {
+
+struct PredictionOptions {
+  // The body is in equilibrium until then, under its effects, its grips where they are then, and
+  // `held_force`; from then on it moves without `held_force`.
+  double start_time = 0;            // s
+  Eigen::VectorXd held_force = {};  // 3n, N; empty: none
+  double time_step = 0.005;         // s; smaller: slower, more accurate by its square
+  StepOptions step = {};
+};
+
+// The motion at one of the times asked for. Sensitivities are 3n × perturbations, empty without
+// any. Refers to vectors that live during the visit only.
+struct PredictedState {
+  double time = 0;  // s
+  const Eigen::VectorXd& position;
+  const Eigen::VectorXd& velocity;
+  const Eigen::MatrixXd& position_by;
+  const Eigen::MatrixXd& velocity_by;
+};
+
+struct PredictionSummary {
+  enum class Status { kNotRun, kReached, kStopped };
+  Status status = Status::kNotRun;
+  std::string message;  // why it stopped, and when
+  int steps = 0;
+  int states = 0;  // visited, of those asked for
+  bool IsUsable() const { return status == Status::kReached; }
+};
+
+// Visits the motion at `times` (s, ascending), between the ends of equal steps by cubic Hermite
+// interpolation, whose error is of higher order than the step's. A step that fails ends the
+// prediction; the states visited before are good.
+PredictionSummary Predict(const Model& model, const PredictionOptions& options,
+                          const std::vector<double>& times,
+                          const std::vector<Perturbation>& perturbations,
+                          const std::function<void(int index, const PredictedState& state)>& visit);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_PREDICTION_H_

@@ -1,0 +1,234 @@
+#include "fit/calibration.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+using Verdict = ParameterEstimate::Verdict;
+
+constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
+// A parameter whose typical change moves all residuals together by less than this many standard
+// deviations could not be told from no change.
+constexpr double kNoticeable = 2;
+constexpr double kDead = 1e-6;
+
+double ToFree(const CalibratedParameter& parameter, double value) {
+  return parameter.log_scale ? std::log(value) : value;
+}
+
+double FromFree(const CalibratedParameter& parameter, double free) {
+  return parameter.log_scale ? std::exp(free) : free;
+}
+
+class PredictionCost : public ceres::CostFunction {
+ public:
+  PredictionCost(const std::vector<CalibratedParameter>& parameters,
+                 const PredictionFunction& predict, int residuals, int* predictions)
+      : parameters_(parameters), predict_(predict), predictions_(*predictions) {
+    set_num_residuals(residuals);
+    for (size_t k = 0; k < parameters.size(); ++k) mutable_parameter_block_sizes()->push_back(1);
+  }
+
+  bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
+    const int count = static_cast<int>(parameters_.size());
+    Eigen::VectorXd values(count);
+    for (int k = 0; k < count; ++k) values[k] = FromFree(parameters_[k], free[k][0]);
+    ++predictions_;
+    const Prediction prediction = predict_(values, jacobians != nullptr);
+    if (!prediction.usable) return false;
+    CHECK_EQ(prediction.residual.size(), num_residuals()) << "the residual changed its length";
+    Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = prediction.residual;
+    if (jacobians == nullptr) return true;
+    for (int k = 0; k < count; ++k) {
+      if (jacobians[k] == nullptr) continue;
+      const double slope = parameters_[k].log_scale ? values[k] : 1;
+      Eigen::Map<Eigen::VectorXd>(jacobians[k], num_residuals()) =
+          slope * prediction.jacobian.col(k);
+    }
+    return true;
+  }
+
+ private:
+  const std::vector<CalibratedParameter>& parameters_;
+  const PredictionFunction& predict_;
+  int& predictions_;
+};
+
+class PriorCost : public ceres::SizedCostFunction<1, 1> {
+ public:
+  PriorCost(double centre, double deviation) : centre_(centre), deviation_(deviation) {}
+  bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
+    residuals[0] = (free[0][0] - centre_) / deviation_;
+    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1 / deviation_;
+    return true;
+  }
+
+ private:
+  double centre_, deviation_;
+};
+
+// Inverse of a positive semi-definite matrix; parameters that reach into its null space become
+// infinite on the diagonal.
+Eigen::MatrixXd GeneralisedCovariance(const Eigen::MatrixXd& information) {
+  const Eigen::Index count = information.rows();
+  const Eigen::VectorXd scale =
+      information.diagonal().cwiseSqrt().cwiseMax(std::numeric_limits<double>::min());
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
+  std::vector<char> unbounded(count, 0);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::VectorXd v = eigen.eigenvectors().col(k);
+    if (eigen.eigenvalues()[k] > 1e-12) {
+      covariance += v * v.transpose() / eigen.eigenvalues()[k];
+    } else {
+      for (Eigen::Index i = 0; i < count; ++i)
+        if (std::abs(v[i]) > 1e-6) unbounded[i] = 1;
+    }
+  }
+  covariance = scale.cwiseInverse().asDiagonal() * covariance * scale.cwiseInverse().asDiagonal();
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (unbounded[i]) covariance(i, i) = std::numeric_limits<double>::infinity();
+  return covariance;
+}
+
+// `J`: ∂r/∂φ at the solution.
+void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::MatrixXd& J,
+              Calibration* calibration) {
+  const Eigen::Index count = J.cols();
+  const double variance = calibration->inflation * calibration->inflation;
+  const Eigen::MatrixXd information = J.transpose() * J;
+  Eigen::MatrixXd with_prior = information / variance;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double deviation = parameters[k].prior_deviation;
+    if (std::isfinite(deviation)) with_prior(k, k) += 1 / (deviation * deviation);
+  }
+  const Eigen::MatrixXd data_only = variance * GeneralisedCovariance(information);
+  calibration->covariance = GeneralisedCovariance(with_prior);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    const double value = calibration->parameters[k], free = ToFree(parameter, value);
+    ParameterEstimate estimate;
+    estimate.value = value;
+    estimate.deviation = std::sqrt(data_only(k, k));
+    estimate.posterior_deviation = std::sqrt(calibration->covariance(k, k));
+    const double reach = kNormalQuantile * estimate.posterior_deviation;
+    estimate.low = std::max(parameter.min, FromFree(parameter, free - reach));
+    estimate.high = std::min(parameter.max, FromFree(parameter, free + reach));
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double product = information(i, i) * information(k, k);
+      if (i == k || !(product > 0)) continue;
+      const double correlation =
+          calibration->covariance(i, k) /
+          std::sqrt(calibration->covariance(i, i) * calibration->covariance(k, k));
+      if (std::abs(correlation) > std::abs(estimate.correlation)) {
+        estimate.correlation = correlation;
+        estimate.traded_with = parameters[i].name;
+      }
+    }
+    const double felt =
+        J.col(k).norm() * parameter.typical / calibration->inflation;  // in standard deviations
+    const double width = std::abs(value) + parameter.typical;
+    if (felt < kDead) {
+      estimate.verdict = Verdict::kDead;
+    } else if (value - parameter.min < 1e-6 * width || parameter.max - value < 1e-6 * width) {
+      estimate.verdict = Verdict::kAtBound;
+    } else if (felt < kNoticeable) {
+      estimate.verdict = Verdict::kFlat;
+    } else if (kNoticeable * estimate.deviation > parameter.typical) {
+      estimate.verdict = Verdict::kTradedOff;
+    }
+    calibration->estimates.push_back(estimate);
+  }
+}
+
+double RootMeanSquare(const Eigen::VectorXd& residual) {
+  return residual.size() > 0 ? residual.norm() / std::sqrt(static_cast<double>(residual.size()))
+                             : 0;
+}
+
+}  // namespace
+
+Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
+                      const PredictionFunction& predict, const CalibrationOptions& options) {
+  const int count = static_cast<int>(parameters.size());
+  Calibration calibration;
+  calibration.parameters.resize(count);
+  std::vector<double> free(count);
+  for (int k = 0; k < count; ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    CHECK(parameter.start >= parameter.min && parameter.start <= parameter.max)
+        << parameter.name << " starts outside its bounds";
+    CHECK(!parameter.log_scale || parameter.start > 0)
+        << parameter.name << " cannot start at " << parameter.start << " on a logarithmic scale";
+    calibration.parameters[k] = parameter.start;
+    free[k] = ToFree(parameter, parameter.start);
+  }
+  const Prediction first = predict(calibration.parameters, /*with_jacobian=*/false);
+  ++calibration.predictions;
+  if (!first.usable) {
+    calibration.message = "no prediction at the start: " + first.message;
+    return calibration;
+  }
+  calibration.start_rms = RootMeanSquare(first.residual);
+
+  if (count > 0) {
+    ceres::Problem problem;
+    std::vector<double*> blocks;
+    for (double& value : free) blocks.push_back(&value);
+    problem.AddResidualBlock(
+        new PredictionCost(parameters, predict, static_cast<int>(first.residual.size()),
+                           &calibration.predictions),
+        nullptr, blocks);
+    for (int k = 0; k < count; ++k) {
+      const CalibratedParameter& parameter = parameters[k];
+      if (std::isfinite(parameter.prior_deviation))
+        problem.AddResidualBlock(new PriorCost(free[k], parameter.prior_deviation), nullptr,
+                                 blocks[k]);
+      const double low = parameter.log_scale && parameter.min <= 0
+                             ? -std::numeric_limits<double>::infinity()
+                             : ToFree(parameter, parameter.min);
+      if (std::isfinite(low)) problem.SetParameterLowerBound(blocks[k], 0, low);
+      const double high = ToFree(parameter, parameter.max);
+      if (std::isfinite(high)) problem.SetParameterUpperBound(blocks[k], 0, high);
+    }
+    ceres::Solver::Options solver;
+    solver.linear_solver_type = ceres::DENSE_QR;
+    solver.max_num_iterations = options.max_iterations;
+    solver.function_tolerance = options.function_tolerance;
+    solver.parameter_tolerance = 1e-7;
+    solver.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    calibration.iterations = static_cast<int>(summary.iterations.size()) - 1;
+    calibration.usable = summary.termination_type == ceres::CONVERGENCE;
+    if (!calibration.usable) calibration.message = summary.message;
+    for (int k = 0; k < count; ++k)
+      calibration.parameters[k] =
+          std::clamp(FromFree(parameters[k], free[k]), parameters[k].min, parameters[k].max);
+  } else {
+    calibration.usable = true;
+  }
+
+  const Prediction last = predict(calibration.parameters, /*with_jacobian=*/count > 0);
+  ++calibration.predictions;
+  CHECK(last.usable) << "the solution could be predicted before: " << last.message;
+  calibration.rms = RootMeanSquare(last.residual);
+  calibration.inflation = std::max(1.0, calibration.rms);
+  if (count > 0) {
+    Eigen::MatrixXd J = last.jacobian;
+    for (int k = 0; k < count; ++k)
+      if (parameters[k].log_scale) J.col(k) *= calibration.parameters[k];
+    Estimate(parameters, J, &calibration);
+  }
+  return calibration;
+}
+
+}  // namespace lacuna

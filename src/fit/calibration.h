@@ -1,0 +1,85 @@
+// Calibration: the parameters with which a model's predictions are nearest to measurements, and
+// what the measurements say about each of them.
+//
+// Minimises ½ ‖r(θ)‖² + ½ Σ_k ((φ_k − φ⁰_k)/s_k)² over φ, where φ_k is θ_k or its logarithm, r is
+// the whitened residual (each entry of variance one if the model is right) and the second term the
+// priors (Tarantola, Inverse Problem Theory, SIAM 2005, §3.2). By Ceres, with the analytic
+// Jacobian ∂r/∂θ.
+#ifndef LACUNA_FIT_CALIBRATION_H_
+#define LACUNA_FIT_CALIBRATION_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+struct CalibratedParameter {
+  std::string name;  // for messages and records: "material.young_modulus"
+  double start = 0;  // SI
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool log_scale = false;  // φ = ln θ; min must be ≥ 0
+  // Prior: around `start`, s in units of φ. Infinite: none.
+  double prior_deviation = std::numeric_limits<double>::infinity();
+  double typical = 1;  // a change that matters, in units of φ: what "flat" is judged by
+};
+
+struct Prediction {
+  bool usable = false;
+  std::string message;
+  Eigen::VectorXd residual;  // whitened
+  Eigen::MatrixXd jacobian;  // ∂residual/∂θ; 0 × 0 where it was not asked for
+};
+// Must be a function of θ alone. `with_jacobian` false: the residual will do.
+using PredictionFunction =
+    std::function<Prediction(const Eigen::VectorXd& parameters, bool with_jacobian)>;
+
+struct CalibrationOptions {
+  int max_iterations = 30;           // more: slower to give up
+  double function_tolerance = 1e-6;  // relative decrease of the cost at which to stop
+};
+
+// What the data says of one parameter.
+struct ParameterEstimate {
+  double value = 0;  // SI
+  // Standard deviation of φ: from the data alone, with all other parameters free, scaled by
+  // Calibration::inflation; and with the prior. Infinite where the data says nothing.
+  double deviation = std::numeric_limits<double>::infinity();
+  double posterior_deviation = std::numeric_limits<double>::infinity();
+  // 95 % interval of θ, prior included.
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  // kDead: the predictions do not depend on it. kFlat: they do, but a change of `typical` is within
+  // the noise. kTradedOff: other parameters can undo its changes. kAtBound: the best value lies at
+  // a bound, the interval means little.
+  enum class Verdict { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };
+  Verdict verdict = Verdict::kPinnedDown;
+  std::string traded_with;  // the parameter that it is most correlated with
+  double correlation = 0;   // with it
+};
+
+struct Calibration {
+  bool usable = false;
+  std::string message;
+  int iterations = 0;
+  int predictions = 0;
+  Eigen::VectorXd parameters;
+  std::vector<ParameterEstimate> estimates;
+  Eigen::MatrixXd covariance;     // of φ, prior and inflation included
+  double start_rms = 0, rms = 0;  // √(‖r‖²/n) before and after
+  // Variances are multiplied by its square: max(1, rms), as a model that misses the data by more
+  // than the noise knows its parameters less well than the noise alone would let it.
+  double inflation = 1;
+};
+
+// A start outside its bounds is our own mistake (CHECK). When the very first prediction fails the
+// result is not usable and says why; later ones make the step shorter.
+Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
+                      const PredictionFunction& predict, const CalibrationOptions& options = {});
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FIT_CALIBRATION_H_
