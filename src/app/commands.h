@@ -12,6 +12,7 @@ class App;
 namespace lacuna {
 
 void AddReconstruct(CLI::App* app, std::function<int()>* command);
+void AddFit(CLI::App* app, std::function<int()>* command);
 void AddSimulate(CLI::App* app, std::function<int()>* command);
 void AddInfo(CLI::App* app, std::function<int()>* command);
 void AddValidate(CLI::App* app, std::function<int()>* command);

@@ -39,8 +39,13 @@ class PredictionCost : public ceres::CostFunction {
     const int count = static_cast<int>(parameters_.size());
     Eigen::VectorXd values(count);
     for (int k = 0; k < count; ++k) values[k] = FromFree(parameters_[k], free[k][0]);
-    ++predictions_;
-    const Prediction prediction = predict_(values, jacobians != nullptr);
+    // Nearly every trial is accepted and then asked for its Jacobian: both come from one run.
+    if (values != last_values_) {
+      ++predictions_;
+      last_ = predict_(values, /*with_jacobian=*/true);
+      last_values_ = values;
+    }
+    const Prediction& prediction = last_;
     if (!prediction.usable) return false;
     CHECK_EQ(prediction.residual.size(), num_residuals()) << "the residual changed its length";
     Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = prediction.residual;
@@ -58,6 +63,8 @@ class PredictionCost : public ceres::CostFunction {
   const std::vector<CalibratedParameter>& parameters_;
   const PredictionFunction& predict_;
   int& predictions_;
+  mutable Eigen::VectorXd last_values_;
+  mutable Prediction last_;
 };
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
@@ -190,8 +197,11 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     for (int k = 0; k < count; ++k) {
       const CalibratedParameter& parameter = parameters[k];
       if (std::isfinite(parameter.prior_deviation))
-        problem.AddResidualBlock(new PriorCost(free[k], parameter.prior_deviation), nullptr,
-                                 blocks[k]);
+        problem.AddResidualBlock(new PriorCost(std::isnan(parameter.prior_mean)
+                                                   ? free[k]
+                                                   : ToFree(parameter, parameter.prior_mean),
+                                               parameter.prior_deviation),
+                                 nullptr, blocks[k]);
       const double low = parameter.log_scale && parameter.min <= 0
                              ? -std::numeric_limits<double>::infinity()
                              : ToFree(parameter, parameter.min);

@@ -22,7 +22,8 @@ struct CalibratedParameter {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool log_scale = false;  // φ = ln θ; min must be ≥ 0
-  // Prior: around `start`, s in units of φ. Infinite: none.
+  // Prior: around `prior_mean` (NaN: `start`), s in units of φ. Infinite: none.
+  double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
   double prior_deviation = std::numeric_limits<double>::infinity();
   double typical = 1;  // a change that matters, in units of φ: what "flat" is judged by
 };
@@ -39,7 +40,7 @@ using PredictionFunction =
 
 struct CalibrationOptions {
   int max_iterations = 30;           // more: slower to give up
-  double function_tolerance = 1e-6;  // relative decrease of the cost at which to stop
+  double function_tolerance = 1e-5;  // relative decrease of the cost at which to stop
 };
 
 // What the data says of one parameter.

@@ -32,6 +32,12 @@ ReferenceShape ReadReference(const Config& config, const Recording& recording) {
                                               {"tet_mesh", ReferenceSource::kTetMesh}});
   if (reference.source != ReferenceSource::kFirstFrame) {
     reference.file = recording.data_folder / given->Text("file");
+    // A shape of one's own beside somebody else's data.
+    const std::filesystem::path beside = recording.file.parent_path() / given->Text("file");
+    if (!std::filesystem::is_regular_file(reference.file) &&
+        std::filesystem::is_regular_file(beside)) {
+      reference.file = beside;
+    }
     if (!std::filesystem::is_regular_file(reference.file)) {
       given->Fail("file", fmt::format("there is no file {}", reference.file.string()));
     }

@@ -49,7 +49,8 @@ class Follower {
     model_ = {motion_.body, study.effects, {}};
     grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
     forces_ = MakeForceModel(study, model_);
-    known_forces_ = MakeKnownForces(study, model_);
+    if (study.follow.forces.kind == ForceSettings::Kind::kKnown)
+      known_forces_ = MakeKnownForces(study.recording, model_);
     model_.effects.insert(model_.effects.end(), known_forces_.begin(), known_forces_.end());
     history_ = RestHistory(model_);
     if (states.front().tracked.cols() > 0) {

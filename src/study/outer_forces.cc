@@ -59,15 +59,14 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
   return settings.hold_net_force ? HoldNetForceAndTorque(body, model) : model;
 }
 
-std::vector<std::shared_ptr<Effect>> MakeKnownForces(const ReconstructionStudy& study,
+std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
                                                      const Model& grips_and_body) {
   std::vector<std::shared_ptr<Effect>> loads;
-  if (study.follow.forces.kind != ForceSettings::Kind::kKnown) return loads;
   const Body& body = *grips_and_body.body;
   const Eigen::VectorXd areas = NodeBoundaryAreas(body);
   const std::vector<char> gripped = GrippedNodes(grips_and_body);
-  for (const MeasuredForce& force : study.recording.forces) {
-    const std::string where = study.recording.file.string() + ": " + force.name;
+  for (const MeasuredForce& force : recording.forces) {
+    const std::string where = recording.file.string() + ": " + force.name;
     std::vector<int> nodes =
         NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh.nodes); });
     std::erase_if(nodes, [&areas](int node) { return areas[node] == 0; });

@@ -15,10 +15,10 @@ namespace lacuna {
 // where a force would move nothing. Throws InputError when there is no such node.
 ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body);
 
-// The recording's measured forces as loads on the boundary nodes of their regions; none unless the
-// settings call the forces known. Throws InputError when a region holds no boundary node, or only
-// nodes that a grip holds, where the force would move nothing.
-std::vector<std::shared_ptr<Effect>> MakeKnownForces(const ReconstructionStudy& study,
+// The recording's measured forces as loads on the boundary nodes of their regions. Throws
+// InputError when a region holds no boundary node, or only nodes that a grip holds, where the force
+// would move nothing.
+std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
                                                      const Model& grips_and_body);
 
 }  // namespace lacuna

@@ -12,6 +12,7 @@
 #include "study/frame_states.h"
 #include "study/reference.h"
 #include "study/results.h"
+#include "study/run_stage.h"
 
 namespace lacuna {
 namespace {
@@ -185,23 +186,6 @@ std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) 
     hashes[file.lexically_proximate(study.recording.file.parent_path()).generic_string()] =
         HashFile(file);
   return hashes;
-}
-
-// A stage that is read back where the run directory has it, computed and stored where not.
-template <typename Value, typename Compute, typename Save, typename Read>
-Value RunStage(RunDirectory* run, const StageIdentity& identity, Progress* progress,
-               const Compute& compute, const Save& save, const Read& read) {
-  const std::string key = StageKey(identity);
-  if (run->Has(identity.stage, key)) {
-    progress->Begin(identity.stage, 0);
-    Value value = read(run->StageFolder(identity.stage));
-    progress->End("resumed");
-    return value;
-  }
-  Value value = compute();
-  run->Store(identity.stage, key,
-             [&](const std::filesystem::path& folder) { save(value, folder); });
-  return value;
 }
 
 }  // namespace

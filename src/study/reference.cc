@@ -17,42 +17,41 @@ SheetPosition PositionOf(SheetFace face) {
   return face == SheetFace::kFront ? SheetPosition::kTop : SheetPosition::kMiddle;
 }
 
-TriMesh ReferenceSurface(const ReconstructionStudy& study, const FrameState& first,
-                         std::vector<std::string>* notes) {
-  const ReferenceShape& reference = study.recording.reference;
+TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::string>* notes) {
+  const ReferenceShape& reference = request.recording.reference;
   if (reference.source == ReferenceSource::kMesh) {
     TriMeshFile given = ReadTriMesh(reference.file);
     notes->insert(notes->end(), given.notes.begin(), given.notes.end());
     given.mesh.vertices = reference.world_from_file * given.mesh.vertices;
     return given.mesh;
   }
-  if (study.recording.tracked && study.recording.connectivity.cols() > 0) {
-    const Frame frame = LoadFrame(study.recording, study.frames.front());
+  if (request.recording.tracked && request.recording.connectivity.cols() > 0) {
+    const Frame frame = LoadFrame(request.recording, request.first_frame);
     if (frame.cloud.Size() != frame.row_count) {
       throw InputError(fmt::format("{}: frame {}: the reference frame lacks {} of its {} points",
-                                   study.recording.file.string(), study.frames.front(),
+                                   request.recording.file.string(), request.first_frame,
                                    frame.row_count - frame.cloud.Size(), frame.row_count));
     }
-    return {frame.cloud.points, study.recording.connectivity};
+    return {frame.cloud.points, request.recording.connectivity};
   }
-  return first.surface;
+  return request.first_surface != nullptr ? *request.first_surface : TriMesh{};
 }
 
 // Regions that list nodes mean the file's numbers; a reader that dropped nodes changed them.
-void RefuseRenumberedRegions(const ReconstructionStudy& study, const TetMeshFile& given) {
+void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile& given) {
   bool renumbered = false;
   for (Eigen::Index i = 0; i < given.node_in_file.size(); ++i)
     renumbered = renumbered || given.node_in_file[i] != i;
   if (!renumbered) return;
-  std::vector<Region> regions = study.recording.fixed;
-  for (const RecordedGrip& grip : study.recording.grips) regions.push_back(grip.region);
-  if (study.follow.forces.region) regions.push_back(*study.follow.forces.region);
+  std::vector<Region> regions = request.regions;
+  regions.insert(regions.end(), request.recording.fixed.begin(), request.recording.fixed.end());
+  for (const RecordedGrip& grip : request.recording.grips) regions.push_back(grip.region);
   for (const Region& region : regions) {
     if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
     throw InputError(fmt::format(
         "{}: has nodes that no tetrahedron uses, so the node numbers of region \"{}\" would shift; "
         "remove them or describe the region by its shape",
-        study.recording.reference.file.string(), region.name));
+        request.recording.reference.file.string(), region.name));
   }
 }
 
@@ -67,15 +66,15 @@ MeshRecord Describe(const TetMesh& mesh) {
 }
 
 // Told before the memory is gone.
-void RefuseTooManyTets(const ReconstructionStudy& study, const TriMesh& surface) {
+void RefuseTooManyTets(const ReferenceRequest& request, const TriMesh& surface) {
   constexpr double kMost = 2e7;
-  if (study.mesh.tets.max_volume == 0) return;
-  const double tets = EnclosedVolume(surface) / study.mesh.tets.max_volume;
+  if (request.mesh.tets.max_volume == 0) return;
+  const double tets = EnclosedVolume(surface) / request.mesh.tets.max_volume;
   if (tets <= kMost) return;
   throw InputError(fmt::format(
       "{}: mesh.max_volume: {:g} m³ would divide a body of {:.3g} m³ into {:.2g} tetrahedra, more "
       "than {:g}",
-      study.name, study.mesh.tets.max_volume, EnclosedVolume(surface), tets, kMost));
+      request.name, request.mesh.tets.max_volume, EnclosedVolume(surface), tets, kMost));
 }
 
 }  // namespace
@@ -84,40 +83,47 @@ bool FirstFrameIsReference(const ReconstructionStudy& study) {
   return study.recording.reference.source == ReferenceSource::kFirstFrame;
 }
 
-ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first) {
-  const ReferenceShape& reference = study.recording.reference;
+ReferenceBody MakeReferenceBody(const ReferenceRequest& request) {
+  const ReferenceShape& reference = request.recording.reference;
   ReferenceBody body;
   if (reference.source == ReferenceSource::kTetMesh) {
     TetMeshFile given = ReadTetMesh(reference.file);
     given.mesh.nodes = reference.world_from_file * given.mesh.nodes;
-    RefuseRenumberedRegions(study, given);
+    RefuseRenumberedRegions(request, given);
     body.mesh = given.mesh;
     body.notes = given.notes;
   } else {
-    const TriMesh surface = ReferenceSurface(study, first, &body.notes);
+    const TriMesh surface = ReferenceSurface(request, &body.notes);
     if (surface.triangles.cols() == 0) {
       throw InputError(
           fmt::format("{}: the reference shape has no surface; give a mesh under "
                       "`reference`, or frames that surround the object",
-                      study.recording.file.string()));
+                      request.recording.file.string()));
     }
     if (reference.sheet_thickness > 0) {
-      body.mesh = ThickenToTets(surface, reference.sheet_thickness, study.sheet_layers,
+      body.mesh = ThickenToTets(surface, reference.sheet_thickness, request.sheet_layers,
                                 PositionOf(reference.sheet_face));
     } else {
-      RefuseTooManyTets(study, surface);
-      const MeshResult meshed = MeshTetrahedra(surface, study.mesh.tets);
+      RefuseTooManyTets(request, surface);
+      const MeshResult meshed = MeshTetrahedra(surface, request.mesh.tets);
       if (!meshed.IsUsable()) {
         throw InputError(fmt::format("{}: the reference shape cannot be meshed: {}",
-                                     study.recording.file.string(), meshed.message));
+                                     request.recording.file.string(), meshed.message));
       }
       body.mesh = meshed.mesh;
       body.notes.insert(body.notes.end(), meshed.notes.begin(), meshed.notes.end());
     }
   }
-  if (study.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);
+  if (request.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);
   body.quality = Describe(body.mesh);
   return body;
+}
+
+ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first) {
+  ReferenceRequest request{study.name,         study.recording,      study.mesh,
+                           study.sheet_layers, study.frames.front(), &first.surface};
+  if (study.follow.forces.region) request.regions.push_back(*study.follow.forces.region);
+  return MakeReferenceBody(request);
 }
 
 void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {

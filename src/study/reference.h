@@ -18,7 +18,20 @@ struct ReferenceBody {
   std::vector<std::string> notes;
 };
 
+// What the undeformed body is made from.
+struct ReferenceRequest {
+  const std::string& name;  // of the study, for messages
+  const Recording& recording;
+  const MeshSettings& mesh;
+  int sheet_layers = 1;
+  int first_frame = 0;
+  const TriMesh* first_surface = nullptr;  // of that frame; null: there is none
+  // Regions of the study, besides the recording's, that may list nodes of a given mesh.
+  std::vector<Region> regions = {};
+};
+
 // Throws InputError when the shape cannot be meshed, saying why and where.
+ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first);
 
 void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);

@@ -1,0 +1,256 @@
+#include "study/calibration_problem.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+
+namespace lacuna {
+namespace {
+
+// Share of the fitted time that is fitted first.
+constexpr double kShortHorizon = 0.25;
+
+std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters) {
+  std::vector<MisfitDirection> directions;
+  for (const ModelParameter& parameter : parameters)
+    for (const auto& [effect, index] : parameter.places)
+      directions.push_back({{.effect = effect, .parameter = index}});
+  return directions;
+}
+
+// Columns of one parameter's places added up.
+Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
+                              const Eigen::MatrixXd& by) {
+  Eigen::MatrixXd sum =
+      Eigen::MatrixXd::Zero(by.rows(), static_cast<Eigen::Index>(parameters.size()));
+  Eigen::Index column = 0;
+  for (size_t k = 0; k < parameters.size(); ++k)
+    for (size_t place = 0; place < parameters[k].places.size(); ++place)
+      sum.col(static_cast<Eigen::Index>(k)) += by.col(column++);
+  return sum;
+}
+
+MisfitMeasure Measure(const RecordingMisfit& recording, int markers, bool fitted, double noise) {
+  MisfitMeasure measure;
+  double squares = 0;
+  for (size_t f = 0; f < recording.fitted.size(); ++f) {
+    if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
+    ++measure.frames;
+    for (int m = 0; m < markers; ++m) {
+      const Eigen::Index at = static_cast<Eigen::Index>(f) * markers + m;
+      if (!recording.misfit.observed[at]) continue;
+      const double distance =
+          (recording.misfit.residual.segment<3>(3 * at) - recording.place_offset.col(m)).norm();
+      squares += distance * distance;
+      measure.largest = std::max(measure.largest, distance);
+      ++measure.points;
+    }
+  }
+  if (measure.points == 0) return measure;
+  measure.rms = std::sqrt(squares / measure.points);
+  measure.in_noise = measure.rms / (std::sqrt(3.0) * noise);
+  return measure;
+}
+
+}  // namespace
+
+CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
+    : study_(study),
+      body_(std::make_shared<const Body>(MakeBody(mesh, study.density))),
+      noise_(study.noise) {
+  for (const ModelParameter& parameter : study.fitted) parameters_.push_back(parameter.prior);
+  std::vector<double> noises;
+  for (const PredictedRecording& item : study.recordings) {
+    models_.emplace_back(study, item, mesh, body_);
+    first_nuisance_.push_back(item.fitted ? static_cast<Eigen::Index>(parameters_.size()) : -1);
+    if (item.fitted)
+      for (const auto& nuisance : models_.back().nuisances()) parameters_.push_back(nuisance.prior);
+    noises.push_back(EstimateMarkerNoise(item));
+  }
+  for (CalibratedParameter& parameter : parameters_) parameter.prior_mean = parameter.start;
+  if (noise_ == 0) noise_ = *std::max_element(noises.begin(), noises.end());
+  if (!(noise_ > 0)) {
+    throw InputError(
+        fmt::format("{}: noise: cannot be estimated (the markers do not move at all); give it",
+                    study.file.string()));
+  }
+}
+
+Eigen::VectorXd CalibrationProblem::Start() const {
+  Eigen::VectorXd start(static_cast<Eigen::Index>(parameters_.size()));
+  for (size_t k = 0; k < parameters_.size(); ++k)
+    start[static_cast<Eigen::Index>(k)] = parameters_[k].start;
+  return start;
+}
+
+void CalibrationProblem::SetModel(const Eigen::VectorXd& values) const {
+  for (size_t k = 0; k < study_.fitted.size(); ++k)
+    SetParameter(study_.fitted[k], values[static_cast<Eigen::Index>(k)]);
+}
+
+Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
+                                               const Eigen::VectorXd& values) const {
+  const Eigen::Index count = static_cast<Eigen::Index>(models_[recording].nuisances().size());
+  CHECK_GE(first_nuisance_[recording], 0);
+  return values.segment(first_nuisance_[recording], count);
+}
+
+Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                                       double horizon,
+                                       const std::vector<MisfitDirection>& more) const {
+  ThrowIfInterrupted();
+  SetModel(values);
+  Prediction all;
+  all.usable = true;
+  const Eigen::Index shared = static_cast<Eigen::Index>(study_.fitted.size());
+  const Eigen::Index extra = static_cast<Eigen::Index>(more.size());
+  const Eigen::Index columns = static_cast<Eigen::Index>(parameters_.size()) + extra;
+  std::vector<Eigen::VectorXd> residuals;
+  std::vector<Eigen::MatrixXd> jacobians;
+  Eigen::Index rows = 0;
+  for (size_t r = 0; r < models_.size(); ++r) {
+    const RecordingModel& model = models_[r];
+    if (first_nuisance_[r] < 0) continue;
+    std::vector<int> frames = model.FittedFrames();
+    const std::vector<double>& times = model.item().recording.times;
+    const double start =
+        model.item().hold ? model.item().hold->release : times[model.item().frames.front()];
+    std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
+    std::vector<MisfitDirection> directions;
+    if (with_jacobian) {
+      directions = DirectionsOf(study_.fitted);
+      directions.insert(directions.end(), more.begin(), more.end());
+      for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
+    }
+    const Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions);
+    if (!misfit.summary.IsUsable()) {
+      all.usable = false;
+      all.message = model.item().name + ": " + misfit.summary.message;
+      return all;
+    }
+    const auto whitened = [&](const Eigen::MatrixXd& what) {
+      return Whitened(what, misfit.observed, model.MarkerCount(), noise_, study_.place_deviation);
+    };
+    residuals.emplace_back(whitened(misfit.residual));
+    rows += misfit.residual.size();
+    if (!with_jacobian) continue;
+    const Eigen::Index own = static_cast<Eigen::Index>(model.nuisances().size());
+    const Eigen::Index places = misfit.by.cols() - extra - own;
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(misfit.residual.size(), columns);
+    jacobian.leftCols(shared) = SumOverPlaces(study_.fitted, misfit.by.leftCols(places));
+    jacobian.rightCols(extra) = misfit.by.middleCols(places, extra);
+    jacobian.middleCols(first_nuisance_[r], own) = misfit.by.rightCols(own);
+    jacobians.push_back(whitened(jacobian));
+  }
+  all.residual.resize(rows);
+  if (with_jacobian) all.jacobian.resize(rows, columns);
+  Eigen::Index row = 0;
+  for (size_t k = 0; k < residuals.size(); ++k) {
+    all.residual.segment(row, residuals[k].size()) = residuals[k];
+    if (with_jacobian) all.jacobian.middleRows(row, jacobians[k].rows()) = jacobians[k];
+    row += residuals[k].size();
+  }
+  return all;
+}
+
+Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress) const {
+  double longest = 0;
+  for (const RecordingModel& model : models_) {
+    const std::vector<int> frames = model.FittedFrames();
+    const std::vector<double>& times = model.item().recording.times;
+    if (frames.empty()) continue;
+    longest =
+        std::max(longest, times[frames.back()] - (model.item().hold ? model.item().hold->release
+                                                                    : times[frames.front()]));
+  }
+  Calibration calibration;
+  std::vector<CalibratedParameter> parameters = parameters_;
+  Eigen::VectorXd values = start;
+  int evaluations = 0;
+  for (const double share : {kShortHorizon, 1.0}) {
+    for (size_t k = 0; k < parameters.size(); ++k)
+      parameters[k].start =
+          std::clamp(values[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
+    progress->Begin(share < 1 ? "fit, first part" : "fit", 0);
+    const double horizon = share < 1 ? share * longest : std::numeric_limits<double>::infinity();
+    calibration = Calibrate(parameters, [&](const Eigen::VectorXd& at, bool with_jacobian) {
+      const Prediction prediction = Predict(at, with_jacobian, horizon);
+      progress->Report(++evaluations, prediction.usable
+                                          ? prediction.residual.norm() /
+                                                std::sqrt(1.0 * prediction.residual.size())
+                                          : std::nan(""));
+      return prediction;
+    });
+    progress->End(calibration.usable ? "" : calibration.message);
+    if (calibration.parameters.size() > 0) values = calibration.parameters;
+  }
+  return calibration;
+}
+
+std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& values) const {
+  SetModel(values);
+  std::vector<RecordingMisfit> all;
+  for (size_t r = 0; r < models_.size(); ++r) {
+    const RecordingModel& model = models_[r];
+    const PredictedRecording& item = model.item();
+    const int markers = model.MarkerCount();
+    Eigen::VectorXd nuisance;
+    if (first_nuisance_[r] >= 0) {
+      nuisance = NuisanceOf(r, values);
+    } else {
+      std::vector<CalibratedParameter> own;
+      std::vector<MisfitDirection> directions;
+      for (const auto& entry : model.nuisances()) {
+        own.push_back(entry.prior);
+        directions.push_back(entry.direction);
+      }
+      const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
+        const Misfit misfit = model.Predict(
+            item.frames, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
+        Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
+        if (!prediction.usable) return prediction;
+        prediction.residual =
+            Whitened(misfit.residual, misfit.observed, markers, noise_, study_.place_deviation);
+        if (with_jacobian)
+          prediction.jacobian =
+              Whitened(misfit.by, misfit.observed, markers, noise_, study_.place_deviation);
+        return prediction;
+      });
+      nuisance = fitted.parameters;
+    }
+    RecordingMisfit recording;
+    recording.name = item.name;
+    recording.misfit = model.Predict(item.frames, nuisance, {});
+    const double release =
+        item.hold ? item.hold->release : item.recording.times[item.frames.front()];
+    recording.place_offset.setZero(3, markers);
+    Eigen::VectorXd seen = Eigen::VectorXd::Zero(markers);
+    for (size_t f = 0; f < recording.misfit.frames.size(); ++f) {
+      const double time = item.recording.times[recording.misfit.frames[f]];
+      const bool fitted = item.fitted && time <= item.fit_until;
+      recording.fitted.push_back(fitted);
+      // Of a recording that is not fitted, only what it shows before it moves tells the places.
+      if (!fitted && (item.fitted || time > release)) continue;
+      for (int m = 0; m < markers; ++m) {
+        const Eigen::Index at = static_cast<Eigen::Index>(f) * markers + m;
+        if (!recording.misfit.observed[at]) continue;
+        recording.place_offset.col(m) += recording.misfit.residual.segment<3>(3 * at);
+        seen[m] += 1;
+      }
+    }
+    const double ratio = study_.place_deviation / noise_;
+    for (int m = 0; m < markers; ++m)
+      recording.place_offset.col(m) *= ratio * ratio / (1 + seen[m] * ratio * ratio);
+    recording.in_fit = Measure(recording, markers, true, noise_);
+    recording.held_out = Measure(recording, markers, false, noise_);
+    all.push_back(std::move(recording));
+  }
+  return all;
+}
+
+}  // namespace lacuna

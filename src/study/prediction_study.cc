@@ -1,0 +1,222 @@
+#include "study/prediction_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+std::vector<int> FramesWithin(const Recording& recording, double from, double to, int every) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < recording.FrameCount(); ++frame)
+    if (recording.times[frame] >= from && recording.times[frame] <= to) frames.push_back(frame);
+  std::vector<int> chosen;
+  for (size_t k = 0; k < frames.size(); k += every) chosen.push_back(frames[k]);
+  return chosen;
+}
+
+Hold ReadHold(const Config& config, const Recording& recording) {
+  Hold hold{ReadRegion(config.Child("region"), recording.data_folder, "hold"),
+            config.Quantity("release", kTime, kAnyValue)};
+  if (hold.release > recording.times.back()) {
+    config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
+                                       recording.times.back()));
+  }
+  return hold;
+}
+
+void RequireStaticStart(const Config& config, const PredictedRecording& item) {
+  const Recording& recording = item.recording;
+  if (item.hold || recording.kind != FrameKind::kMarkers) return;
+  // Without a hold the first frame must be an equilibrium. A body that already moves is not.
+  const auto& positions = recording.markers.positions;
+  if (item.frames.size() < 3) return;
+  const Eigen::Matrix3Xd first = positions[item.frames[0]], second = positions[item.frames[1]];
+  const Eigen::Matrix3Xd last = positions[item.frames.back()];
+  const double step = (second - first).colwise().norm().maxCoeff();
+  const double whole = (last - first).colwise().norm().maxCoeff();
+  if (step > 0.25 * whole && step > 0)
+    config.Fail("recording",
+                "the object moves already between its first two frames; a prediction starts from "
+                "rest: give `from:`, or `hold:`");
+}
+
+PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material) {
+  PredictedRecording item;
+  item.recording = LoadRecording(config.Path("recording"));
+  item.name = config.Text("name", item.recording.name);
+  const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
+  const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
+  item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
+  item.fitted = config.Flag("fitted", true);
+  item.fit_until =
+      config.Has("fit_until") ? config.Quantity("fit_until", kTime, kAnyValue) : kForever;
+  item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
+  if (const auto hold = config.OptionalChild("hold")) item.hold = ReadHold(*hold, item.recording);
+  for (const Config& effect : config.Items("effects"))
+    item.effects.push_back(MakeEffect(effect, material));
+
+  if (item.recording.kind != FrameKind::kMarkers)
+    config.Fail("recording", "is no marker recording; scans cannot be predicted against yet");
+  constexpr size_t kFewest = 3;
+  if (item.frames.size() < kFewest) {
+    config.Fail("recording",
+                fmt::format("{} frames lie between {:g} s and {:g} s; at least {} are needed",
+                            item.frames.size(), from, to, kFewest));
+  }
+  if (item.fitted && item.fit_until < item.recording.times[item.frames[kFewest - 1]])
+    config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", kFewest));
+  if (!item.recording.marker_places.allFinite())
+    config.Fail("recording",
+                "lacks marker_places: where each marker sits on the undeformed object");
+  if (item.recording.reference.source == ReferenceSource::kFirstFrame)
+    config.Fail("recording", "has no reference shape: markers alone do not tell it");
+  RequireStaticStart(config, item);
+  for (const MeasuredForce& force : item.recording.forces) {
+    const double first = item.recording.times[item.frames.front()];
+    const double last = item.recording.times[item.frames.back()];
+    if (!force.region)
+      config.Fail("recording", "does not tell where " + force.name + " acts (its region)");
+    const Eigen::Index end = force.times.size() - 1;
+    if (!force.file.empty() && (force.times[0] > first || force.times[end] < last))
+      config.Fail("recording",
+                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                              force.file.string(), force.times[0], force.times[end], first, last));
+  }
+  return item;
+}
+
+const ParameterCard& CardOf(const ModelParameter& parameter) {
+  const auto& [effect, index] = parameter.places.front();
+  return effect->Card().parameters[index];
+}
+
+// `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`; absent: the material's.
+std::vector<ModelParameter> ReadFitted(const Config& config,
+                                       const std::vector<std::shared_ptr<Effect>>& effects) {
+  const std::vector<ModelParameter> known = ModelParameters(effects);
+  const auto fit = config.OptionalChild("fit");
+  if (!fit) {
+    std::vector<ModelParameter> of_material;
+    for (const ModelParameter& parameter : known)
+      if (parameter.places.front().first == effects.front()) of_material.push_back(parameter);
+    return of_material;
+  }
+  std::vector<std::pair<std::string, const ModelParameter*>> choices;
+  for (const ModelParameter& parameter : known)
+    choices.emplace_back(parameter.prior.name, &parameter);
+  std::vector<ModelParameter> fitted;
+  for (const Config& item : fit->Items("parameters")) {
+    ModelParameter parameter = *item.Choice("name", choices);
+    for (const ModelParameter& earlier : fitted)
+      if (earlier.prior.name == parameter.prior.name) item.Fail("name", "is listed twice");
+    CalibratedParameter& prior = parameter.prior;
+    const ParameterCard& card = CardOf(parameter);
+    prior.min = item.Quantity("min", card.dimension, card.bounds, prior.min);
+    prior.max = item.Quantity("max", card.dimension, card.bounds, prior.max);
+    if (!(prior.min <= prior.start && prior.start <= prior.max))
+      item.Fail("name", fmt::format("starts at {:g} {}, outside {:g} to {:g}", prior.start,
+                                    parameter.unit, prior.min, prior.max));
+    fitted.push_back(parameter);
+  }
+  return fitted;
+}
+
+}  // namespace
+
+std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Effect>>& effects) {
+  std::vector<ModelParameter> parameters;
+  std::map<std::string, int> seen;
+  size_t of_material = 0;
+  for (const auto& effect : effects) {
+    const EffectCard& card = effect->Card();
+    const bool is_material = effect == effects.front();
+    const int repeat = ++seen[card.type];
+    const Eigen::VectorXd values = effect->Parameters();
+    for (size_t k = 0; k < card.parameters.size(); ++k) {
+      const ParameterCard& entry = card.parameters[k];
+      const double value = values[static_cast<Eigen::Index>(k)];
+      if (entry.setting) continue;
+      const auto shared = std::find_if(
+          parameters.begin(), parameters.begin() + static_cast<std::ptrdiff_t>(of_material),
+          [&](const ModelParameter& other) {
+            return other.prior.name == entry.name && other.prior.start == value;
+          });
+      if (!is_material && shared != parameters.begin() + static_cast<std::ptrdiff_t>(of_material)) {
+        shared->places.emplace_back(effect, static_cast<int>(k));
+        continue;
+      }
+      ModelParameter parameter;
+      parameter.places.emplace_back(effect, static_cast<int>(k));
+      parameter.unit = entry.dimension.unit;
+      CalibratedParameter& prior = parameter.prior;
+      prior.name = is_material  ? entry.name
+                   : repeat > 1 ? fmt::format("{}#{}.{}", card.type, repeat, entry.name)
+                                : card.type + "." + entry.name;
+      prior.start = value;
+      // Open bounds are kept at a distance that no estimate reaches.
+      const double margin = 1e-6 * (entry.plausible_max - entry.plausible_min);
+      prior.min = entry.bounds.min + (entry.bounds.open_min ? margin : 0);
+      prior.max = entry.bounds.max - (entry.bounds.open_max ? margin : 0);
+      prior.log_scale = entry.log_scale && value > 0;
+      prior.typical = prior.log_scale ? 0.5 * std::log(entry.plausible_max / entry.plausible_min)
+                                      : 0.5 * (entry.plausible_max - entry.plausible_min);
+      prior.prior_deviation = prior.typical;
+      parameters.push_back(parameter);
+    }
+    if (is_material) of_material = parameters.size();
+  }
+  return parameters;
+}
+
+void SetParameter(const ModelParameter& parameter, double value) {
+  for (const auto& [effect, index] : parameter.places) {
+    Eigen::VectorXd values = effect->Parameters();
+    values[index] = value;
+    effect->SetParameters(values);
+  }
+}
+
+bool IsPredictionStudy(const Config& config) { return config.Has("recordings"); }
+
+PredictionStudy ReadPredictionStudy(const Config& config) {
+  PredictionStudy study;
+  config.Integer("schema_version", 1, 1);
+  study.file = config.File();
+  study.name = config.Text("name");
+  study.output = config.Path("output", "../results/" + study.name);
+  const Config mesh = config.Child("mesh");
+  study.mesh = ReadMeshSettings(mesh);
+  study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
+  study.effects = ReadEffects(config);
+  const Config motion = config.Child("motion");
+  study.scheme = ReadTimeScheme(motion, "bdf2");
+  if (study.scheme == TimeScheme::kQuasiStatic)
+    motion.Fail("scheme", "a prediction needs inertia: implicit_euler or bdf2");
+  study.time_step = motion.Quantity("time_step", kTime, kPositive, study.time_step);
+  study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
+  study.place_deviation =
+      config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
+  for (const Config& item : config.Items("recordings"))
+    study.recordings.push_back(ReadRecordingEntry(item, study.effects.front().get()));
+  if (study.recordings.empty()) config.Fail("recordings", "is empty");
+  if (std::none_of(study.recordings.begin(), study.recordings.end(),
+                   [](const PredictedRecording& item) { return item.fitted; }))
+    config.Fail("recordings", "none of them is fitted");
+  const auto& density = study.recordings.front().recording.density;
+  study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
+                          : config.Quantity("density", kDensity, kPositive);
+  study.fitted = ReadFitted(config, study.effects);
+  config.RefuseUnknownKeys();
+  study.configuration = config.Resolved();
+  return study;
+}
+
+}  // namespace lacuna

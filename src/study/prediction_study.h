@@ -1,0 +1,80 @@
+// An experiment that predicts: a model with known loads, measured grips and everything else
+// simulated, against one or several recordings of the same object. docs/prediction.md lists the
+// keys.
+#ifndef LACUNA_STUDY_PREDICTION_STUDY_H_
+#define LACUNA_STUDY_PREDICTION_STUDY_H_
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "fem/step_equation.h"
+#include "fit/calibration.h"
+#include "scan/recording.h"
+#include "study/physics.h"
+
+namespace lacuna {
+
+// The object is held at rest until then, by a force of unknown size and direction on this region.
+struct Hold {
+  Region region;
+  double release = 0;  // s, in the recording's time
+};
+
+struct PredictedRecording {
+  std::string name;
+  Recording recording;
+  std::vector<int> frames;  // ascending
+  bool fitted = true;       // false: only predicted
+  // Frames after this time are held out: predicted, not fitted. s
+  double fit_until = std::numeric_limits<double>::infinity();
+  std::optional<Hold> hold;
+  // By how much the recording's clock may differ from the model's, s (prior); 0: not at all.
+  double clock_deviation = 0;
+  std::vector<std::shared_ptr<Effect>> effects;  // of this recording only, e.g. a hung mass
+};
+
+// A number of the model that may be fitted, and what is known of it before.
+struct ModelParameter {
+  // Of the effects that have it: a damping whose modulus is the material's shares it.
+  std::vector<std::pair<std::shared_ptr<Effect>, int>> places;
+  CalibratedParameter prior;  // name "young_modulus" of the material, "gravity.acceleration_z"
+  std::string unit;           // SI
+};
+// All of them, settings excepted; bounds and priors as their cards say.
+std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Effect>>& effects);
+void SetParameter(const ModelParameter& parameter, double value);
+
+struct PredictionStudy {
+  std::filesystem::path file;  // the experiment
+  std::string name;
+  std::filesystem::path output;
+  MeshSettings mesh;
+  int sheet_layers = 1;
+  double density = 0;                            // kg/m³
+  std::vector<std::shared_ptr<Effect>> effects;  // the material first
+  TimeScheme scheme = TimeScheme::kBdf2;
+  double time_step = 0.005;  // s
+  double noise = 0;          // m, of a measured coordinate; 0: estimated from the recordings
+  // m, of a marker's place on the object: it adds to all frames alike.
+  double place_deviation = 0.001;
+  std::vector<ModelParameter> fitted;
+  std::vector<PredictedRecording> recordings;
+  nlohmann::json configuration;  // resolved, SI
+};
+
+// Reads and checks everything that can be checked before the computation. Throws InputError.
+PredictionStudy ReadPredictionStudy(const Config& config);
+
+// Whether an experiment's YAML is one of these rather than a reconstruction.
+bool IsPredictionStudy(const Config& config);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_PREDICTION_STUDY_H_
