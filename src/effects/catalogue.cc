@@ -15,11 +15,14 @@ CatalogueEntry Gravity();
 CatalogueEntry MassDamping();
 CatalogueEntry StiffnessDamping();
 CatalogueEntry PlaneContact();
+CatalogueEntry Drag();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
       LinearElasticity(), CorotationalElasticity(), SaintVenantKirchhoff(), NeoHookean(), Gravity(),
       MassDamping(),      StiffnessDamping(),       PlaneContact(),
+      // Loads, inertia and supports.
+      Drag(),
   };
   return entries;
 }
