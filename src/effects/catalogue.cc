@@ -16,6 +16,8 @@ CatalogueEntry MassDamping();
 CatalogueEntry StiffnessDamping();
 CatalogueEntry PlaneContact();
 CatalogueEntry Drag();
+CatalogueEntry AttachedMass();
+CatalogueEntry DensityGradient();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
@@ -23,6 +25,8 @@ const std::vector<CatalogueEntry>& Catalogue() {
       MassDamping(),      StiffnessDamping(),       PlaneContact(),
       // Loads, inertia and supports.
       Drag(),
+      AttachedMass(),
+      DensityGradient(),
   };
   return entries;
 }

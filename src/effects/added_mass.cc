@@ -1,0 +1,60 @@
+#include "effects/added_mass.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+
+namespace lacuna {
+
+void AddedMass::SetParameters(const Eigen::VectorXd& values) {
+  CHECK_EQ(values.size(), static_cast<Eigen::Index>(Card().parameters.size()));
+  const Eigen::Index settings = values.size() - 1;
+  if (parameters_.size() == 0 || parameters_.tail(settings) != values.tail(settings)) {
+    mass_.Forget();
+  }
+  parameters_ = values;
+}
+
+std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
+  return mass_.Of(body, [this](const Body& at_rest) { return MassPerUnit(at_rest); });
+}
+
+void AddedMass::AddScaledForce(const Kinematics& at, double size, Eigen::VectorXd* force) const {
+  const auto mass = Mass(at.body);
+  for (int i = 0; i < at.body.NodeCount(); ++i) {
+    force->segment<3>(3 * i) += size * (*mass)[i] * (Gravity() - at.acceleration.segment<3>(3 * i));
+  }
+}
+
+void AddedMass::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
+  AddScaledForce(at, Size(), force);
+}
+
+void AddedMass::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                            BlockMatrix* tangent) const {
+  const auto mass = Mass(at.body);
+  for (int i = 0; i < at.body.NodeCount(); ++i) {
+    const double added = Size() * (*mass)[i];
+    tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() -=
+        weights.acceleration * (convexify ? std::max(added, 0.0) : added);
+  }
+}
+
+void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
+                                       Eigen::VectorXd* derivative) const {
+  CHECK_EQ(parameter, 0) << "the others are settings";
+  AddScaledForce(at, 1, derivative);
+}
+
+std::optional<double> AddedMass::Energy(const Kinematics& at) const {
+  if (at.time_step != 0) return std::nullopt;
+  const auto mass = Mass(at.body);
+  double energy = 0;
+  for (int i = 0; i < at.body.NodeCount(); ++i) {
+    energy -= Size() * (*mass)[i] *
+              Gravity().dot(at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
+  }
+  return energy;
+}
+
+}  // namespace lacuna

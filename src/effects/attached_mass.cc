@@ -1,0 +1,99 @@
+// A small mass on or in the body, such as a marker, a sensor or a bolt: inertia and weight.
+//
+// The mass is spread as exp(−|X − c|²/(2 r²)) over the nodes around its place c at rest, by the
+// volume around each node, so that the result tends to a limit as the mesh is refined. With r well
+// below the element size it falls on the nearest nodes; then only the mesh knows where it is.
+// It adds no stiffness, and turns with the body only as its nodes do.
+#include <limits>
+
+#include "effects/added_mass.h"
+#include "effects/rest_region.h"
+#include "effects/vector_parameters.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+
+class AttachedMassEffect final : public AddedMass {
+ public:
+  enum Parameter { kAddedMass, kCentre, kRadius = kCentre + 3 };
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit AttachedMassEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+
+ private:
+  Eigen::VectorXd MassPerUnit(const Body& body) const override {
+    return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], body,
+                      NodeVolumes(body));
+  }
+
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "attached_mass",
+        .title = "Attached mass",
+        .equation = "f_i = m s_i (g − a_i),  s_i ∝ V_i exp(−|X_i − c|²/(2 r²)),  Σ s_i = 1",
+        .citation =
+            "I. Newton, Philosophiæ Naturalis Principia Mathematica, 1687 (second law); S. P. "
+            "Timoshenko, D. H. Young & W. Weaver, Vibration Problems in Engineering, 4th ed., "
+            "Wiley 1974 (bars and beams that carry a mass)",
+        .parameters = {{.name = "mass",
+                        .meaning = "mass added, m; a negative one is missing there, as in a void",
+                        .dimension = kMass,
+                        .bounds = kAnyValue,
+                        .null_value = 0,
+                        .plausible_min = -0.02,
+                        .plausible_max = 0.05,
+                        .default_value = kMustBeGiven}},
+        .residual_when_missing =
+            "a force at one place, m g at rest and m (g − a) in motion, against the local "
+            "acceleration: all modes that move the place are slower than the model's, those with a "
+            "node there are not",
+        .separating_experiment =
+            "hold still, then shake: a point force stays what it was, a mass pulls against the "
+            "acceleration too; turn the fixture: its weight turns with gravity",
+        .look_alikes = {"gravity"},
+        .repeatable = true,
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    AppendVector({.name = "centre",
+                  .meaning = "place of the mass on the body at rest",
+                  .dimension = kLength,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1,
+                  .setting = true},
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
+    card.parameters.push_back({.name = "radius",
+                               .meaning = "spread about that place (standard deviation), r",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNoNull,
+                               .plausible_min = 1e-3,
+                               .plausible_max = 0.05,
+                               .default_value = 0.005,
+                               .log_scale = true,
+                               .setting = true});
+    AppendGravitySetting(&card);
+    return card;
+  }
+};
+
+}  // namespace
+
+CatalogueEntry AttachedMass() {
+  return {&AttachedMassEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<AttachedMassEffect>(parameters);
+          },
+          &ReadParametersAndVectors};
+}
+
+}  // namespace lacuna

@@ -1,0 +1,46 @@
+#include "effects/rest_region.h"
+
+#include <glog/logging.h>
+
+#include <cmath>
+#include <limits>
+
+#include "geometry/tri_mesh.h"
+
+namespace lacuna {
+
+Eigen::VectorXd BumpAround(const Eigen::Vector3d& centre, double radius, const Body& body) {
+  CHECK_GT(radius, 0);
+  const Eigen::ArrayXd squared =
+      (body.mesh.nodes.colwise() - centre).colwise().squaredNorm().transpose().array();
+  return (-0.5 * squared / (radius * radius)).exp();
+}
+
+Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius, const Body& body,
+                           const Eigen::VectorXd& measure) {
+  CHECK_GT(radius, 0);
+  const Eigen::ArrayXd squared =
+      (body.mesh.nodes.colwise() - centre).colwise().squaredNorm().transpose().array();
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < squared.size(); ++i) {
+    if (measure[i] > 0) nearest = std::min(nearest, squared[i]);
+  }
+  CHECK(std::isfinite(nearest)) << "no node has a measure";
+  // A factor common to all nodes, which keeps the nearest from underflow.
+  const Eigen::VectorXd share =
+      measure.array() * (-0.5 * (squared - nearest).max(0) / (radius * radius)).exp();
+  return share / share.sum();
+}
+
+Eigen::VectorXd NodeVolumes(const Body& body) { return body.node_mass / body.density; }
+
+Eigen::VectorXd InHalfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
+                            const Body& body) {
+  if (normal.norm() == 0) return Eigen::VectorXd::Ones(body.NodeCount());
+  const double rounding = 1e-9 * BoundingBoxDiagonal(body.mesh.nodes);
+  const Eigen::ArrayXd height =
+      ((body.mesh.nodes.colwise() - point).transpose() * normal.normalized()).array();
+  return (height >= -rounding).cast<double>();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,28 @@
+// Vectors among an effect's parameters: three of them, named `axis_x`, `axis_y`, `axis_z`, that
+// users write as one, `axis: [0, 0, 1]`.
+#ifndef LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
+#define LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+
+// Adds `common`'s name with _x, _y and _z, and its meaning with " along x" and so on. A default
+// with NaN: the user must give it.
+void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_value,
+                  EffectCard* card);
+
+// `gravity` as a setting: the acceleration of free fall, by default 9.80665 m/s² down z.
+void AppendGravitySetting(EffectCard* card);
+
+// Reads the parameters of the card, those of vectors from their vector. A vector without dimension
+// is a direction; one of length zero is refused (InputError) where the user gives it.
+Eigen::VectorXd ReadParametersAndVectors(const EffectCard& card, const Config& config,
+                                         const Effect* material);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
