@@ -18,6 +18,7 @@ CatalogueEntry PlaneContact();
 CatalogueEntry Drag();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
+CatalogueEntry ElasticSupport();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
@@ -27,6 +28,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       Drag(),
       AttachedMass(),
       DensityGradient(),
+      ElasticSupport(),
   };
   return entries;
 }

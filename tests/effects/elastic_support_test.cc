@@ -1,0 +1,105 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "effects/catalogue.h"
+#include "fem/simulate.h"
+#include "support/box_mesh.h"
+#include "support/check_effect.h"
+
+namespace lacuna {
+namespace {
+
+TEST(ElasticSupport, IsAnEffect) {
+  CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5}}).get());
+}
+
+TEST(ElasticSupport, OfAFadingPartIsAnEffect) {
+  CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5},
+                                             {"point_x", 0.02},
+                                             {"point_z", 0.03},
+                                             {"normal_x", -1},
+                                             {"normal_z", 0.4},
+                                             {"radius", 0.02}})
+                  .get());
+}
+
+TEST(ElasticSupport, PullsThePartBackByItsArea) {
+  // The lower face, and of the sides half the lowest row of triangles, which is 10 mm high for
+  // linear and 5 mm for quadratic elements.
+  const auto support = MakeEffect("elastic_support", {{"modulus", 1e5}, {"normal_z", -1}});
+  for (const int order : {1, 2}) {
+    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}, order), 1000);
+    Eigen::VectorXd position = body.mesh.nodes.reshaped();
+    const Eigen::Vector3d shift(0.001, 0, -0.002);
+    position += shift.replicate(body.NodeCount(), 1);
+    const Eigen::Matrix3Xd force =
+        ForceAt(*support, body, position, 0 * position).reshaped(3, body.NodeCount());
+    const double area = 600e-6 + 0.5 * 0.1 * (0.01 / order);
+    EXPECT_LT((force.rowwise().sum() + 1e5 * area * shift).norm(), 1e-13);
+    for (int i = 0; i < body.NodeCount(); ++i) {
+      if (body.mesh.nodes(2, i) > 1e-3) {
+        EXPECT_EQ(force.col(i).norm(), 0);
+      }
+    }
+  }
+}
+
+TEST(ElasticSupport, FadesWithDistance) {
+  const auto support =
+      MakeEffect("elastic_support", {{"modulus", 1e5}, {"point_x", 0.03}, {"radius", 0.01}});
+  const auto whole = MakeEffect("elastic_support", {{"modulus", 1e5}});
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Eigen::VectorXd position = body.mesh.nodes.reshaped().array() + 0.001;
+  const Eigen::VectorXd faded = ForceAt(*support, body, position, 0 * position);
+  const Eigen::VectorXd full = ForceAt(*whole, body, position, 0 * position);
+  for (int i = 0; i < body.NodeCount(); ++i) {
+    const double distance = (body.mesh.nodes.col(i) - Eigen::Vector3d(0.03, 0, 0)).norm();
+    EXPECT_NEAR(faded[3 * i], std::exp(-0.5 * std::pow(distance / 0.01, 2)) * full[3 * i],
+                1e-12 * std::abs(full[3 * i]));
+  }
+}
+
+// A block lies on a bed: it sinks as a whole until k A u = m g, with nothing else to hold it.
+TEST(ElasticSupport, CarriesTheWeight) {
+  constexpr double kModulus = 1e6, kGravity = 9.81;
+  const Eigen::Vector3d size(0.03, 0.02, 0.04);
+  const Model model{std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, size, {3, 2, 4}), 1000)),
+                    {MakeEffect("linear", {{"young_modulus", 1e9}, {"poisson_ratio", 0}}),
+                     MakeEffect("gravity", {{"acceleration_z", -kGravity}}),
+                     MakeEffect("elastic_support", {{"modulus", kModulus}})},
+                    {}};
+  MotionHistory history = RestHistory(model);
+  const StepSummary summary = Stepper(model, {}).Equilibrium({}, &history);
+  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+  const double surface = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+  const double sunk = 1000 * size.prod() * kGravity / (kModulus * surface);
+  const Eigen::Matrix3Xd shift =
+      history.position.reshaped(3, model.body->NodeCount()) - model.body->mesh.nodes;
+  // The block's own strain, ρ g h/E = 4e-7 of 40 mm, is 1e-8 m against 4.5e-5 m.
+  EXPECT_LT((shift.colwise() + Eigen::Vector3d(0, 0, sunk)).colwise().norm().maxCoeff(),
+            2e-3 * sunk);
+}
+
+TEST(ElasticSupport, IsReadFromYamlAndRefusesAnEmptyPart) {
+  const Config config = Config::Parse(
+      "effects:\n"
+      "  - {type: elastic_support, modulus: 2 MPa/m, point: [0, 0, 9 cm], normal: [0, 0, 1],\n"
+      "     radius: 1 cm}\n"
+      "  - {type: elastic_support, modulus: -2 MPa/m}\n",
+      "a.yaml");
+  const std::vector<Config> items = config.Items("effects");
+  Eigen::VectorXd expected(8);
+  expected << 2e6, 0, 0, 0.09, 0, 0, 1, 0.01;
+  const auto support = MakeEffect(items[0]);
+  EXPECT_LT((support->Parameters() - expected).norm(), 1e-9);
+  EXPECT_THROW(MakeEffect(items[1]), InputError);
+
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
+  EXPECT_THROW(ForceAt(*support, body, rest, 0 * rest), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
