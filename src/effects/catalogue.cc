@@ -18,6 +18,7 @@ CatalogueEntry PlaneContact();
 CatalogueEntry Drag();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
+CatalogueEntry Pressure();
 CatalogueEntry ElasticSupport();
 
 const std::vector<CatalogueEntry>& Catalogue() {
@@ -28,6 +29,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       Drag(),
       AttachedMass(),
       DensityGradient(),
+      Pressure(),
       ElasticSupport(),
   };
   return entries;

@@ -1,0 +1,304 @@
+// Pressure of a fluid on the surface, in the direction of the deformed surface's normal.
+//
+// The nodal forces are f_a = −p ∫ N_a n dA over the deformed boundary faces, curved ones of
+// quadratic elements included: with x = Σ N_b(ξ, η) x_b and the tangents t₁ = ∂x/∂ξ, t₂ = ∂x/∂η,
+//   n dA = t₁ × t₂ dξ dη,
+// a polynomial in ξ, η, which the quadrature integrates exactly (one point for a linear face, the
+// six-point rule of degree 4 for a quadratic one; Cowper 1973). So the forces on a closed surface
+// are exactly −p times the derivative of the enclosed volume V: there is an energy p V and their
+// sum and moment vanish.
+//
+// With s_b = ∂N_b/∂η t₁ − ∂N_b/∂ξ t₂, d(t₁ × t₂) = Σ s_b × dx_b, and of the tangent the symmetric
+// part has the blocks −½ p ∫ [N_a s_b − N_b s_a]× dξ dη. On a closed surface it is the whole; on a
+// part the rest sits on the part's rim. It is indefinite, and small against the elastic stiffness
+// while p is below the modulus: the definite stand-in leaves it out.
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "effects/rest_quantity.h"
+#include "effects/rest_region.h"
+#include "effects/vector_parameters.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+
+// Shape functions of a face of kNodes nodes (three corners, then the midpoints of the edges (0,1)
+// (1,2) (2,0)) at a quadrature point of the triangle 0 ≤ ξ, η, ξ + η ≤ 1.
+template <int kNodes>
+struct FacePoint {
+  double weight;                         // sums to ½
+  Eigen::Vector<double, kNodes> shape;   // N
+  Eigen::Vector<double, kNodes> by_xi;   // ∂N/∂ξ
+  Eigen::Vector<double, kNodes> by_eta;  // ∂N/∂η
+};
+
+FacePoint<3> LinearPoint(double weight, double xi, double eta) {
+  return {weight, {1 - xi - eta, xi, eta}, {-1, 1, 0}, {-1, 0, 1}};
+}
+
+FacePoint<6> QuadraticPoint(double weight, double xi, double eta) {
+  const double zeta = 1 - xi - eta;
+  FacePoint<6> point{weight, {}, {}, {}};
+  point.shape << zeta * (2 * zeta - 1), xi * (2 * xi - 1), eta * (2 * eta - 1), 4 * zeta * xi,
+      4 * xi * eta, 4 * eta * zeta;
+  point.by_xi << 1 - 4 * zeta, 4 * xi - 1, 0, 4 * (zeta - xi), 4 * eta, -4 * eta;
+  point.by_eta << 1 - 4 * zeta, 0, 4 * eta - 1, -4 * xi, 4 * xi, 4 * (zeta - eta);
+  return point;
+}
+
+template <int kNodes>
+const auto& FaceRule() {
+  if constexpr (kNodes == 3) {
+    static const std::array<FacePoint<3>, 1> rule{LinearPoint(0.5, 1.0 / 3, 1.0 / 3)};
+    return rule;
+  } else {
+    static const std::array<FacePoint<6>, 6> rule = [] {
+      constexpr double kNear = 0.44594849091596489, kNearWeight = 0.22338158967801147 / 2;
+      constexpr double kFar = 0.091576213509770743, kFarWeight = 0.10995174365532187 / 2;
+      return std::array{QuadraticPoint(kNearWeight, kNear, kNear),
+                        QuadraticPoint(kNearWeight, 1 - 2 * kNear, kNear),
+                        QuadraticPoint(kNearWeight, kNear, 1 - 2 * kNear),
+                        QuadraticPoint(kFarWeight, kFar, kFar),
+                        QuadraticPoint(kFarWeight, 1 - 2 * kFar, kFar),
+                        QuadraticPoint(kFarWeight, kFar, 1 - 2 * kFar)};
+    }();
+    return rule;
+  }
+}
+
+// The faces under pressure.
+struct PressedFaces {
+  Eigen::MatrixXi nodes;   // 3 or 6 × faces
+  std::vector<int> block;  // of nodes a, b of face f in the matrix: block[(f·n + a)·n + b]
+  bool closed = false;     // all of the boundary
+};
+
+class PressureEffect final : public Effect {
+ public:
+  enum Parameter { kPressureValue, kPoint, kNormal = kPoint + 3 };
+  static constexpr int kParameters = kNormal + 3;
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit PressureEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), kParameters);
+    if (parameters_.size() == 0 ||
+        parameters_.tail(kParameters - 1) != values.tail(kParameters - 1)) {
+      faces_.Forget();
+    }
+    parameters_ = values;
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddScaledForce(at, parameters_[kPressureValue], force);
+  }
+
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (convexify) return;
+    const double scale = weights.position * parameters_[kPressureValue];
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<3>(at, scale, tangent);
+    } else {
+      AddStiffness<6>(at, scale, tangent);
+    }
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK_EQ(parameter, kPressureValue) << "the others are settings";
+    AddScaledForce(at, 1, derivative);
+  }
+
+  // Of all of the boundary, p (V − V at rest).
+  std::optional<double> Energy(const Kinematics& at) const override {
+    if (!Faces(at.body)->closed) return std::nullopt;
+    const Eigen::VectorXd rest = at.body.mesh.nodes.reshaped();
+    const bool linear = at.body.mesh.Order() == 1;
+    const double growth = linear ? Volume<3>(at.body, at.position) - Volume<3>(at.body, rest)
+                                 : Volume<6>(at.body, at.position) - Volume<6>(at.body, rest);
+    return parameters_[kPressureValue] * growth;
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "pressure",
+        .title = "Pressure on the surface",
+        .equation = "f_a = −p ∫ N_a n dA over the deformed surface, n outward",
+        .citation =
+            "H. D. Hibbitt, Some follower forces and load stiffness, Int. J. Numer. Methods Eng. "
+            "14 (1979) 937–941; K. Schweizerhof & E. Ramm, Displacement dependent pressure loads "
+            "in nonlinear finite element analyses, Computers & Structures 18 (1984) 1099–1114",
+        .parameters = {{.name = "pressure",
+                        .meaning = "p, positive where it presses on the surface from outside, "
+                                   "negative for suction or for overpressure inside a thin shell",
+                        .dimension = kPressure,
+                        .bounds = kAnyValue,
+                        .null_value = 0,
+                        .plausible_min = -1e4,
+                        .plausible_max = 1e4,
+                        .default_value = kMustBeGiven}},
+        .residual_when_missing =
+            "a force along the normal of the surface, in proportion to area and turning with it; "
+            "from all sides the body shrinks or swells without moving, the more the farther ν is "
+            "from ½",
+        .separating_experiment =
+            "turn the body: pressure turns with it, gravity does not; open or vent the chamber: "
+            "pressure goes at once, a wrong rest shape stays",
+        .look_alikes = {"gravity"},
+        .repeatable = true,
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    AppendVector({.name = "point",
+                  .meaning = "a point of the plane that bounds the part under pressure,",
+                  .dimension = kLength,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1,
+                  .setting = true},
+                 Eigen::Vector3d::Zero(), &card);
+    AppendVector({.name = "normal",
+                  .meaning = "the pressure acts on the faces that at rest lie wholly on this side "
+                             "of the plane; left out, everywhere;",
+                  .dimension = kDimensionless,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1,
+                  .setting = true},
+                 Eigen::Vector3d::Zero(), &card);
+    return card;
+  }
+
+  std::shared_ptr<const PressedFaces> Faces(const Body& body) const {
+    return faces_.Of(body, [this](const Body& at_rest) { return ChooseFaces(at_rest); });
+  }
+
+  PressedFaces ChooseFaces(const Body& body) const {
+    const Eigen::VectorXd inside =
+        InHalfSpace(parameters_.segment<3>(kPoint), parameters_.segment<3>(kNormal), body);
+    const Eigen::MatrixXi& all = body.boundary.faces;
+    std::vector<Eigen::Index> chosen;
+    for (Eigen::Index f = 0; f < all.cols(); ++f) {
+      if (inside(all.col(f)).minCoeff() > 0) chosen.push_back(f);
+    }
+    if (chosen.empty()) {
+      throw InputError(
+          "effect pressure: no face of the body's surface lies wholly on the side of its plane "
+          "that `point` and `normal` name");
+    }
+    PressedFaces faces;
+    faces.nodes = all(Eigen::all, chosen);
+    faces.closed = faces.nodes.cols() == all.cols();
+    faces.block.reserve(faces.nodes.size() * faces.nodes.rows());
+    for (const auto& face : faces.nodes.colwise()) {
+      for (const int a : face) {
+        for (const int b : face) faces.block.push_back(body.pattern->Find(a, b));
+      }
+    }
+    return faces;
+  }
+
+  // Calls visit(face, point, x, t₁, t₂) with the nodes' positions x (3 × nodes of the face).
+  template <int kNodes, typename Visit>
+  static void ForEachPoint(const PressedFaces& faces, const Eigen::VectorXd& position,
+                           const Visit& visit) {
+    Eigen::Matrix<double, 3, kNodes> x;
+    for (Eigen::Index f = 0; f < faces.nodes.cols(); ++f) {
+      for (int a = 0; a < kNodes; ++a) x.col(a) = position.segment<3>(3 * faces.nodes(a, f));
+      // Differences keep the tangents exact far from the origin.
+      const Eigen::Matrix<double, 3, kNodes> edges = x.colwise() - Eigen::Vector3d(x.col(0));
+      for (const FacePoint<kNodes>& point : FaceRule<kNodes>()) {
+        visit(f, point, x, Eigen::Vector3d(edges * point.by_xi),
+              Eigen::Vector3d(edges * point.by_eta));
+      }
+    }
+  }
+
+  void AddScaledForce(const Kinematics& at, double pressure, Eigen::VectorXd* force) const {
+    if (at.body.mesh.Order() == 1) {
+      AddLoad<3>(at, pressure, force);
+    } else {
+      AddLoad<6>(at, pressure, force);
+    }
+  }
+
+  template <int kNodes>
+  void AddLoad(const Kinematics& at, double pressure, Eigen::VectorXd* force) const {
+    const auto faces = Faces(at.body);
+    ForEachPoint<kNodes>(*faces, at.position,
+                         [&](Eigen::Index f, const FacePoint<kNodes>& point, const auto& /*x*/,
+                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+                           const Eigen::Vector3d load = -pressure * point.weight * t1.cross(t2);
+                           for (int a = 0; a < kNodes; ++a) {
+                             force->segment<3>(3 * faces->nodes(a, f)) += point.shape[a] * load;
+                           }
+                         });
+  }
+
+  template <int kNodes>
+  void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
+    const auto faces = Faces(at.body);
+    ForEachPoint<kNodes>(*faces, at.position,
+                         [&](Eigen::Index f, const FacePoint<kNodes>& point, const auto& /*x*/,
+                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+                           const Eigen::Matrix<double, 3, kNodes> s =
+                               t1 * point.by_eta.transpose() - t2 * point.by_xi.transpose();
+                           const int* block = &faces->block[f * kNodes * kNodes];
+                           for (int a = 0; a < kNodes; ++a) {
+                             for (int b = 0; b < kNodes; ++b) {
+                               const Eigen::Vector3d c =
+                                   -0.5 * scale * point.weight *
+                                   (point.shape[a] * s.col(b) - point.shape[b] * s.col(a));
+                               Eigen::Matrix3d cross;
+                               cross << 0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0;
+                               tangent->Block(block[a * kNodes + b]) += cross;
+                             }
+                           }
+                         });
+  }
+
+  // Enclosed by the surface: ⅓ ∫ (x − a) · n dA, with a point a nearby.
+  template <int kNodes>
+  double Volume(const Body& body, const Eigen::VectorXd& position) const {
+    const Eigen::Vector3d apex = position.head<3>();
+    double volume = 0;
+    ForEachPoint<kNodes>(*Faces(body), position,
+                         [&](Eigen::Index /*f*/, const FacePoint<kNodes>& point, const auto& x,
+                             const Eigen::Vector3d& t1, const Eigen::Vector3d& t2) {
+                           volume += point.weight / 3 * (x * point.shape - apex).dot(t1.cross(t2));
+                         });
+    return volume;
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+  RestQuantity<PressedFaces> faces_;
+};
+
+}  // namespace
+
+CatalogueEntry Pressure() {
+  return {&PressureEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<PressureEffect>(parameters);
+          },
+          &ReadParametersAndVectors};
+}
+
+}  // namespace lacuna
