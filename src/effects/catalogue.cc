@@ -19,6 +19,7 @@ CatalogueEntry Drag();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
 CatalogueEntry Pressure();
+CatalogueEntry PointForce();
 CatalogueEntry ElasticSupport();
 
 const std::vector<CatalogueEntry>& Catalogue() {
@@ -30,6 +31,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       AttachedMass(),
       DensityGradient(),
       Pressure(),
+      PointForce(),
       ElasticSupport(),
   };
   return entries;

@@ -1,0 +1,171 @@
+// A constant force on a small place of the surface, for a while: a hand, a string, a weight on it.
+//
+// Spread as exp(−|X − c|²/(2 r²)) over the boundary nodes around the place c at rest, by the area
+// around each node; it keeps its direction in space. In a step from t − h to t it acts with the
+// share of the step that lies between `start` and `stop`, so that its impulse is F (stop − start)
+// whichever steps are taken; in statics it acts if start ≤ t < stop.
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "effects/rest_quantity.h"
+#include "effects/rest_region.h"
+#include "effects/vector_parameters.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+
+class PointForceEffect final : public Effect {
+ public:
+  enum Parameter { kForceValue, kCentre = kForceValue + 3, kRadius = kCentre + 3, kStart, kStop };
+  static constexpr int kParameters = kStop + 1;
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit PointForceEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), kParameters);
+    if (parameters_.size() == 0 || parameters_.segment<4>(kCentre) != values.segment<4>(kCentre)) {
+      shares_.Forget();
+    }
+    parameters_ = values;
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddShares(at, parameters_.head<3>(), force);
+  }
+
+  void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter >= 0 && parameter < 3) << "the others are settings";
+    AddShares(at, Eigen::Vector3d::Unit(parameter), derivative);
+  }
+
+  std::optional<double> Energy(const Kinematics& at) const override {
+    const auto shares = Shares(at.body);
+    const auto displacement = at.position.reshaped(3, shares->size()) - at.body.mesh.nodes;
+    return -PresentShare(at) * parameters_.head<3>().dot(displacement * *shares);
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "point_force",
+        .title = "Force on a place of the surface",
+        .equation =
+            "f_i = F s_i for start ≤ t < stop,  s_i ∝ A_i exp(−|X_i − c|²/(2 r²)),  Σ s_i = 1",
+        .citation =
+            "I. Newton, Philosophiæ Naturalis Principia Mathematica, 1687; A. J. C. Barré de "
+            "Saint-Venant, Mém. Savants Étrangers 14 (1855) (why the spread does not matter far "
+            "away)",
+        .parameters = {},
+        .residual_when_missing =
+            "a force constant in size and direction at one place, from one moment to another, "
+            "while nothing in the model changes; its reaction is in no other force",
+        .separating_experiment =
+            "shake the body: a force that is constant stays, an attached mass pulls against the "
+            "acceleration too; turn the fixture: what pulls down as before is not fixed to it",
+        .look_alikes = {"gravity", "attached_mass"},
+        .repeatable = true,
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    AppendVector({.name = "force",
+                  .meaning = "the force, F,",
+                  .dimension = kForce,
+                  .null_value = 0,
+                  .plausible_min = -5,
+                  .plausible_max = 5},
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
+    AppendVector({.name = "centre",
+                  .meaning = "the place on the body at rest where it acts,",
+                  .dimension = kLength,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1,
+                  .setting = true},
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
+    card.parameters.push_back({.name = "radius",
+                               .meaning = "spread about that place (standard deviation), r",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNoNull,
+                               .plausible_min = 1e-3,
+                               .plausible_max = 0.05,
+                               .default_value = 0.005,
+                               .log_scale = true,
+                               .setting = true});
+    card.parameters.push_back({.name = "start",
+                               .meaning = "time from which it acts",
+                               .dimension = kTime,
+                               .null_value = kNoNull,
+                               .plausible_min = 0,
+                               .plausible_max = 1e3,
+                               .default_value = 0,
+                               .setting = true});
+    card.parameters.push_back({.name = "stop",
+                               .meaning = "time from which it acts no longer (by default 1e9 s)",
+                               .dimension = kTime,
+                               .null_value = kNoNull,
+                               .plausible_min = 0,
+                               .plausible_max = 1e9,
+                               .default_value = 1e9,
+                               .setting = true});
+    return card;
+  }
+
+  std::shared_ptr<const Eigen::VectorXd> Shares(const Body& body) const {
+    return shares_.Of(body, [this](const Body& at_rest) {
+      return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], at_rest,
+                        NodeBoundaryAreas(at_rest));
+    });
+  }
+
+  // The share of the step in which the force is there.
+  double PresentShare(const Kinematics& at) const {
+    const double start = parameters_[kStart], stop = parameters_[kStop];
+    if (at.time_step == 0) return start <= at.time && at.time < stop ? 1 : 0;
+    const double from = std::max(start, at.time - at.time_step);
+    return std::clamp((std::min(stop, at.time) - from) / at.time_step, 0.0, 1.0);
+  }
+
+  void AddShares(const Kinematics& at, const Eigen::Vector3d& total, Eigen::VectorXd* force) const {
+    const auto shares = Shares(at.body);
+    force->reshaped(3, shares->size()) += PresentShare(at) * total * shares->transpose();
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+  RestQuantity<Eigen::VectorXd> shares_;
+};
+
+Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config,
+                               const Effect* material) {
+  const Eigen::VectorXd values = ReadParametersAndVectors(card, config, material);
+  if (values[PointForceEffect::kStop] <= values[PointForceEffect::kStart]) {
+    config.Fail("stop", "expected a time after start");
+  }
+  return values;
+}
+
+}  // namespace
+
+CatalogueEntry PointForce() {
+  return {&PointForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<PointForceEffect>(parameters);
+          },
+          &ReadPointForce};
+}
+
+}  // namespace lacuna

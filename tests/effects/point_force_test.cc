@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "effects/catalogue.h"
+#include "fem/simulate.h"
+#include "support/box_mesh.h"
+#include "support/check_effect.h"
+
+namespace lacuna {
+namespace {
+
+std::map<std::string, double> ForceAtTheTop(double radius) {
+  return {{"force_x", 0.2},   {"force_y", -1},    {"force_z", 3},
+          {"centre_x", 0.04}, {"centre_y", 0.02}, {"centre_z", 0.0401},
+          {"radius", radius}, {"start", 0.295},   {"stop", 0.42}};
+}
+
+TEST(PointForce, IsAnEffect) {
+  CheckEffect(MakeEffect("point_force", ForceAtTheTop(0.01)).get(), {.depends_on_position = false});
+}
+
+TEST(PointForce, ActsOnTheSurfaceAboutItsPlace) {
+  const auto effect = MakeEffect("point_force", ForceAtTheTop(0.005));
+  for (const int order : {1, 2}) {
+    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {8, 4, 4}, order), 1000);
+    const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), zero = 0 * rest, state;
+    Eigen::VectorXd force = zero;
+    effect->AddForce({body, rest, zero, zero, 0.4, 0.01, state}, &force);
+    const Eigen::Matrix3Xd nodal = force.reshaped(3, body.NodeCount());
+    EXPECT_LT((nodal.rowwise().sum() - Eigen::Vector3d(0.2, -1, 3)).norm(), 1e-13);
+    const Eigen::VectorXd areas = NodeBoundaryAreas(body);
+    for (int i = 0; i < body.NodeCount(); ++i) {
+      if (areas[i] == 0) {
+        EXPECT_EQ(nodal.col(i).norm(), 0);
+      }
+    }
+    const Eigen::Vector3d place = body.mesh.nodes * nodal.row(2).transpose() / 3;
+    // The face ends 4 standard deviations away; less than 1e-3 of the force is on other faces.
+    EXPECT_LT((place - Eigen::Vector3d(0.04, 0.02, 0.04)).norm(), 1e-4);
+  }
+}
+
+// A free body keeps F (stop − start) of momentum, for steps that do not meet start and stop.
+TEST(PointForce, GivesItsImpulse) {
+  const Model model{
+      std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {2, 1, 1}), 1000)),
+      {MakeEffect("corotational", {{"young_modulus", 1e6}, {"poisson_ratio", 0.3}}),
+       MakeEffect("point_force", ForceAtTheTop(0.02))},
+      {}};
+  MotionHistory history = RestHistory(model);
+  Stepper stepper(model, {.scheme = TimeScheme::kImplicitEuler});
+  for (int k = 0; k < 16; ++k) {
+    const StepSummary step = stepper.Step(0.03, {}, &history);
+    ASSERT_TRUE(step.IsUsable()) << step.message;
+    if (history.time < 0.295) {
+      EXPECT_EQ(history.velocity.norm(), 0);
+    }
+  }
+  const Eigen::Vector3d momentum =
+      history.velocity.reshaped(3, model.body->NodeCount()) * model.body->node_mass;
+  const Eigen::Vector3d impulse = (0.42 - 0.295) * Eigen::Vector3d(0.2, -1, 3);
+  // Implicit Euler keeps momentum; the steps are solved to 1e-8.
+  EXPECT_LT((momentum - impulse).norm(), 1e-6 * impulse.norm());
+}
+
+TEST(PointForce, ActsInStaticsFromStartAndNotAtStop) {
+  const auto effect = MakeEffect("point_force", ForceAtTheTop(0.02));
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {2, 1, 1}), 1000);
+  const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), zero = 0 * rest, state;
+  const auto size = [&](double time) {
+    Eigen::VectorXd force = zero;
+    effect->AddForce({body, rest, zero, zero, time, 0, state}, &force);
+    return force.norm();
+  };
+  EXPECT_EQ(size(0.29), 0);
+  EXPECT_GT(size(0.295), 0);
+  EXPECT_EQ(size(0.42), 0);
+}
+
+TEST(PointForce, IsReadFromYaml) {
+  const Config config = Config::Parse(
+      "effects:\n"
+      "  - {type: point_force, force: [0, 0, -2 N], centre: [1 cm, 0, 0], start: 10 ms}\n"
+      "  - {type: point_force, force: [0, 0, -2 N], centre: [1 cm, 0, 0], start: 3 s, stop: 3 s}\n"
+      "  - {type: point_force, force: [0, 0, -2 N]}\n",
+      "a.yaml");
+  const std::vector<Config> items = config.Items("effects");
+  Eigen::VectorXd expected(9);
+  expected << 0, 0, -2, 0.01, 0, 0, 0.005, 0.01, 1e9;
+  EXPECT_LT((MakeEffect(items[0])->Parameters() - expected).norm(), 1e-12);
+  EXPECT_THROW(MakeEffect(items[1]), InputError);
+  EXPECT_THROW(MakeEffect(items[2]), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
