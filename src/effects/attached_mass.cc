@@ -31,7 +31,7 @@ class AttachedMassEffect final : public AddedMass {
 
  private:
   Eigen::VectorXd MassPerUnit(const Body& body) const override {
-    return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], body,
+    return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], body.mesh.nodes,
                       NodeVolumes(body));
   }
 

@@ -21,6 +21,7 @@ CatalogueEntry DensityGradient();
 CatalogueEntry Pressure();
 CatalogueEntry PointForce();
 CatalogueEntry ElasticSupport();
+CatalogueEntry FollowerForce();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
@@ -33,6 +34,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       Pressure(),
       PointForce(),
       ElasticSupport(),
+      FollowerForce(),
   };
   return entries;
 }

@@ -127,7 +127,7 @@ class PointForceEffect final : public Effect {
 
   std::shared_ptr<const Eigen::VectorXd> Shares(const Body& body) const {
     return shares_.Of(body, [this](const Body& at_rest) {
-      return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], at_rest,
+      return BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], at_rest.mesh.nodes,
                         NodeBoundaryAreas(at_rest));
     });
   }

@@ -16,19 +16,21 @@ Eigen::VectorXd BumpAround(const Eigen::Vector3d& centre, double radius, const B
   return (-0.5 * squared / (radius * radius)).exp();
 }
 
-Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius, const Body& body,
-                           const Eigen::VectorXd& measure) {
+Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
+                           const Eigen::Matrix3Xd& places, const Eigen::VectorXd& measure) {
   CHECK_GT(radius, 0);
+  CHECK_EQ(places.cols(), measure.size());
   const Eigen::ArrayXd squared =
-      (body.mesh.nodes.colwise() - centre).colwise().squaredNorm().transpose().array();
+      (places.colwise() - centre).colwise().squaredNorm().transpose().array();
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < squared.size(); ++i) {
     if (measure[i] > 0) nearest = std::min(nearest, squared[i]);
   }
-  CHECK(std::isfinite(nearest)) << "no node has a measure";
-  // A factor common to all nodes, which keeps the nearest from underflow.
-  const Eigen::VectorXd share =
+  CHECK(std::isfinite(nearest)) << "no place has a measure";
+  // A factor common to all, which keeps the nearest from underflow.
+  Eigen::VectorXd share =
       measure.array() * (-0.5 * (squared - nearest).max(0) / (radius * radius)).exp();
+  share = (share.array() < 1e-12 * share.maxCoeff()).select(0, share);
   return share / share.sum();
 }
 

@@ -11,10 +11,11 @@ namespace lacuna {
 // exp(−|X − c|²/(2 r²)) at each node (n).
 Eigen::VectorXd BumpAround(const Eigen::Vector3d& centre, double radius, const Body& body);
 
-// `measure` (n; areas or volumes around the nodes) times that bump, scaled to the sum 1. All falls
-// on the nearest nodes that have a measure when r is small against their distances.
-Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius, const Body& body,
-                           const Eigen::VectorXd& measure);
+// `measure` (n; areas or volumes that belong to the places, 3 × n) times that bump, scaled to the
+// sum 1; 0 where it is below 1e-12 of its largest. All falls on the nearest places that have a
+// measure when r is small against their distances.
+Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
+                           const Eigen::Matrix3Xd& places, const Eigen::VectorXd& measure);
 
 // Volume around each node (n, m³): its share of the lumped mass by the density.
 Eigen::VectorXd NodeVolumes(const Body& body);

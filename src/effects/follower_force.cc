@@ -1,0 +1,259 @@
+// A force fixed to the body: it turns as the material at its place turns, such as the thrust of a
+// nozzle, the pull of a tendon or the push of a tool that is glued on.
+//
+// A force density R F, spread as exp(−|X − c|²/(2 r²)) about the place c at rest over the volume, R
+// the rotation nearest to the deformation gradient of each quadrature point:
+//   f_a = Σ_q s_q N_a R_q F,   Σ s_q = 1,
+// so that a body that turns as a whole carries the force with it. Near the surface the bump is cut
+// off, which moves the centre of the force inward by less than r.
+//
+// With w = G⁻¹ axial(δF Rᵀ − R δFᵀ), G = (tr V) I − V, F = V R the gradient, δR = [w]× R, so that
+// with h_b = R g_b and the turned force t = R F
+//   ∂f_a/∂x_b = −Σ_q s_q N_a [t]× G⁻¹ [h_b]×.
+// The force has no energy, and its tangent is neither symmetric nor definite: the definite stand-in
+// leaves it out. G is singular where two principal stretches cancel, which takes an inverted
+// element; R jumps there, and the tangent uses eigenvalues of G of at least 0.01.
+#include <glog/logging.h>
+
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "effects/rest_quantity.h"
+#include "effects/rest_region.h"
+#include "effects/vector_parameters.h"
+#include "fem/element_kinematics.h"
+#include "fem/polar_decomposition.h"
+#include "fem/shape_functions.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+
+// N_a at the quadrature points of an element (nodes × points).
+Eigen::MatrixXd ShapesAtPoints(int order) {
+  const TetQuadrature rule = ElementQuadrature(order);
+  Eigen::MatrixXd shapes(order == 1 ? 4 : 10, rule.points.cols());
+  for (Eigen::Index p = 0; p < rule.points.cols(); ++p) {
+    shapes.col(p) = ShapeValues(order, rule.points.col(p));
+  }
+  return shapes;
+}
+
+Eigen::Matrix3d CrossProduct(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d cross;
+  cross << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return cross;
+}
+
+// G⁻¹ for a deformation gradient and its rotation.
+Eigen::Matrix3d InverseSpinStiffness(const Eigen::Matrix3d& gradient,
+                                     const Eigen::Matrix3d& rotation) {
+  constexpr double kSmallest = 0.01;
+  const Eigen::Matrix3d V = gradient * rotation.transpose();
+  const Eigen::Matrix3d G = V.trace() * Eigen::Matrix3d::Identity() - 0.5 * (V + V.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(G);
+  const Eigen::Vector3d inverse = eigen.eigenvalues().cwiseMax(kSmallest).cwiseInverse();
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+class FollowerForceEffect final : public Effect {
+ public:
+  enum Parameter { kForceValue, kCentre = kForceValue + 3, kRadius = kCentre + 3 };
+  static constexpr int kParameters = kRadius + 1;
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit FollowerForceEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), kParameters);
+    if (parameters_.size() == 0 || parameters_.tail<4>() != values.tail<4>()) spread_.Forget();
+    parameters_ = values;
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddTurned(at, parameters_.head<3>(), force);
+  }
+
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (convexify || weights.position == 0) return;
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<4>(at, weights.position, tangent);
+    } else {
+      AddStiffness<10>(at, weights.position, tangent);
+    }
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter >= 0 && parameter < 3) << "the others are settings";
+    AddTurned(at, Eigen::Vector3d::Unit(parameter), derivative);
+  }
+
+ private:
+  struct Spread {
+    Eigen::MatrixXd shape;   // N_a at the points of an element (nodes × points)
+    Eigen::VectorXd share;   // s_q
+    std::vector<char> felt;  // elements: whether any of their points has a share
+  };
+
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "follower_force",
+        .title = "Force that turns with the body",
+        .equation =
+            "f_a = Σ_q s_q N_a R_q F,  R the rotation nearest to ∂x/∂X,  "
+            "s_q ∝ V_q exp(−|X_q − c|²/(2 r²)),  Σ s_q = 1",
+        .citation =
+            "V. V. Bolotin, Nonconservative Problems of the Theory of Elastic Stability, Pergamon "
+            "1963; M. Beck, Z. angew. Math. Phys. 3 (1952) 225–228",
+        .parameters = {},
+        .residual_when_missing =
+            "a force at one place that keeps its size and turns as the place turns; beside a force "
+            "of fixed direction the residual grows with the rotation there",
+        .separating_experiment =
+            "bend the body far: a force of fixed direction keeps its direction, a follower turns "
+            "with the surface; at small rotations the two are the same",
+        .look_alikes = {"point_force", "pressure"},
+        .repeatable = true,
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    AppendVector({.name = "force",
+                  .meaning = "the force as it is on the body at rest, F,",
+                  .dimension = kForce,
+                  .null_value = 0,
+                  .plausible_min = -5,
+                  .plausible_max = 5},
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
+    AppendVector({.name = "centre",
+                  .meaning = "the place on the body at rest where it acts,",
+                  .dimension = kLength,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1,
+                  .setting = true},
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
+    card.parameters.push_back({.name = "radius",
+                               .meaning = "spread about that place (standard deviation), r",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNoNull,
+                               .plausible_min = 1e-3,
+                               .plausible_max = 0.05,
+                               .default_value = 0.005,
+                               .log_scale = true,
+                               .setting = true});
+    return card;
+  }
+
+  Spread MakeSpread(const Body& body) const {
+    Spread spread{ShapesAtPoints(body.mesh.Order()), {}, {}};
+    Eigen::Matrix3Xd place = Eigen::Matrix3Xd::Zero(3, body.PointCount());
+    for (int q = 0; q < body.PointCount(); ++q) {
+      const int e = q / body.points_per_element;
+      for (Eigen::Index a = 0; a < body.mesh.tets.rows(); ++a) {
+        place.col(q) += spread.shape(a, q % body.points_per_element) *
+                        body.mesh.nodes.col(body.mesh.tets(a, e));
+      }
+    }
+    spread.share =
+        BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], place, body.weight);
+    spread.felt.assign(body.ElementCount(), 0);
+    for (int q = 0; q < body.PointCount(); ++q) {
+      if (spread.share[q] > 0) spread.felt[q / body.points_per_element] = 1;
+    }
+    return spread;
+  }
+
+  // Calls visit(element, q, N at q (nodes), ∂x/∂X) for all points with a share.
+  template <int kNodes, typename Visit>
+  void ForEachPoint(const Kinematics& at, const Spread& spread, const Visit& visit) const {
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachElement(*at.body.schedule, [&](int e) {
+      if (!spread.felt[e]) return;
+      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, e, at.position);
+      for (int p = 0; p < kPoints; ++p) {
+        const int q = e * kPoints + p;
+        if (spread.share[q] == 0) continue;
+        const Eigen::Vector<double, kNodes> shape = spread.shape.col(p);
+        visit(e, q, shape, FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q)));
+      }
+    });
+  }
+
+  void AddTurned(const Kinematics& at, const Eigen::Vector3d& at_rest,
+                 Eigen::VectorXd* force) const {
+    if (at.body.mesh.Order() == 1) {
+      AddTurned<4>(at, at_rest, force);
+    } else {
+      AddTurned<10>(at, at_rest, force);
+    }
+  }
+
+  template <int kNodes>
+  void AddTurned(const Kinematics& at, const Eigen::Vector3d& at_rest,
+                 Eigen::VectorXd* force) const {
+    const auto spread = GetSpread(at.body);
+    ForEachPoint<kNodes>(
+        at, *spread,
+        [&](int e, int q, const Eigen::Vector<double, kNodes>& shape, const Eigen::Matrix3d& F) {
+          const Eigen::Vector3d turned = spread->share[q] * (PolarRotation(F) * at_rest);
+          ScatterNodes<kNodes>(at.body, e, turned * shape.transpose(), force);
+        });
+  }
+
+  template <int kNodes>
+  void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
+    const auto spread = GetSpread(at.body);
+    const Eigen::Vector3d at_rest = parameters_.head<3>();
+    ForEachPoint<kNodes>(
+        at, *spread,
+        [&](int e, int q, const Eigen::Vector<double, kNodes>& shape, const Eigen::Matrix3d& F) {
+          const Eigen::Matrix3d rotation = PolarRotation(F);
+          const Eigen::Matrix3d turn = -0.5 * scale * spread->share[q] *
+                                       CrossProduct(rotation * at_rest) *
+                                       InverseSpinStiffness(F, rotation);
+          const Eigen::Matrix<double, 3, kNodes> h =
+              rotation * ShapeGradient<kNodes>(at.body, q).transpose();
+          std::array<Eigen::Matrix3d, kNodes> by_node;  // half of ∂(s t)/∂x_b
+          for (int b = 0; b < kNodes; ++b) by_node[b] = turn * CrossProduct(h.col(b));
+          ElementStiffness<kNodes> symmetric;
+          int pair = 0;
+          for (int a = 0; a < kNodes; ++a) {
+            for (int b = a; b < kNodes; ++b) {
+              symmetric.block[pair++] = shape[a] * by_node[b] + shape[b] * by_node[a].transpose();
+            }
+          }
+          ScatterStiffness<kNodes>(at.body, e, symmetric, tangent);
+        });
+  }
+
+  std::shared_ptr<const Spread> GetSpread(const Body& body) const {
+    return spread_.Of(body, [this](const Body& at_rest) { return MakeSpread(at_rest); });
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+  RestQuantity<Spread> spread_;
+};
+
+}  // namespace
+
+CatalogueEntry FollowerForce() {
+  return {&FollowerForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<FollowerForceEffect>(parameters);
+          },
+          &ReadParametersAndVectors};
+}
+
+}  // namespace lacuna
