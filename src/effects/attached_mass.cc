@@ -59,7 +59,7 @@ class AttachedMassEffect final : public AddedMass {
         .separating_experiment =
             "hold still, then shake: a point force stays what it was, a mass pulls against the "
             "acceleration too; turn the fixture: its weight turns with gravity",
-        .look_alikes = {"gravity"},
+        .look_alikes = {"gravity", "density_gradient", "point_force"},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -31,6 +31,7 @@
 #include <string>
 
 #include "effects/catalogue.h"
+#include "effects/rest_quantity.h"
 
 namespace lacuna {
 namespace {
@@ -217,15 +218,13 @@ class PlaneContactEffect final : public Effect {
 
   template <typename Visit>
   void ForEachContact(const Kinematics& at, const Visit& visit) const {
-    const BoundarySurface& boundary = at.body.boundary;
-    const Eigen::VectorXd areas = VertexAreas(boundary.surface);
-    for (Eigen::Index i = 0; i < areas.size(); ++i) {
-      const int node = boundary.node[i];
+    const auto areas = areas_.Of(at.body, NodeBoundaryAreas);
+    for (const int node : at.body.boundary.node) {
       const double depth = parameters_[kOffset] - normal_.dot(at.position.segment<3>(3 * node));
       if (depth <= 0) continue;
       const Eigen::Vector3d velocity = at.velocity.segment<3>(3 * node);
       const Eigen::Vector3d slip = velocity - normal_.dot(velocity) * normal_;
-      visit(Contact{node, areas[i], PenaltyAt(depth, parameters_[kSmoothing]), slip,
+      visit(Contact{node, (*areas)[node], PenaltyAt(depth, parameters_[kSmoothing]), slip,
                     std::hypot(slip.norm(), parameters_[kSlip])});
     }
   }
@@ -273,8 +272,9 @@ class PlaneContactEffect final : public Effect {
            pressure * (turn - Friction() * SlipDerivative(contact, slip_change));
   }
 
-  Eigen::VectorXd parameters_;  // in the order of the card
-  Eigen::Vector3d normal_;      // unit
+  Eigen::VectorXd parameters_;           // in the order of the card
+  Eigen::Vector3d normal_;               // unit
+  RestQuantity<Eigen::VectorXd> areas_;  // n, m²
 };
 
 // `normal: [0, 0, 1]`; the rest by their own names.

@@ -77,7 +77,7 @@ class PointForceEffect final : public Effect {
         .separating_experiment =
             "shake the body: a force that is constant stays, an attached mass pulls against the "
             "acceleration too; turn the fixture: what pulls down as before is not fixed to it",
-        .look_alikes = {"gravity", "attached_mass"},
+        .look_alikes = {"gravity", "attached_mass", "follower_force"},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
