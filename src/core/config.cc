@@ -145,6 +145,19 @@ double Config::Quantity(const std::string& key, const Dimension& dimension, cons
   return default_value;
 }
 
+MeasuredQuantity Config::AnyQuantity(const std::string& key) const {
+  const std::string expected = "a number with its unit, e.g. \"3 N/kg\"";
+  const YAML::Node entry = node_->Required(key, expected);
+  try {
+    const MeasuredQuantity quantity =
+        ParseAnyQuantity(node_->Scalar(entry, node_->Field(key), expected));
+    node_->values[key] = quantity.value;
+    return quantity;
+  } catch (const std::invalid_argument& problem) {
+    node_->Fail(entry.Mark(), node_->Field(key), problem.what());
+  }
+}
+
 double Config::Number(const std::string& key, const Bounds& bounds) const {
   return Quantity(key, kDimensionless, bounds);
 }
@@ -332,6 +345,12 @@ size_t Config::ChoiceIndex(const std::string& key, const std::vector<std::string
 
 bool Config::Has(const std::string& key) const { return static_cast<bool>(node_->Find(key)); }
 
+std::vector<std::string> Config::Keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_->yaml) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
 std::optional<Config> Config::OptionalChild(const std::string& key) const {
   if (node_->children.count(key)) {
     const auto& known = node_->children[key];
@@ -397,6 +416,12 @@ void Config::RefuseUnknownKeys() const {
 void Config::Fail(const std::string& key, const std::string& message) const {
   const YAML::Node entry = key.empty() ? node_->yaml : node_->Find(key);
   node_->Fail(entry ? entry.Mark() : node_->yaml.Mark(), node_->Field(key), message);
+}
+
+void Config::FailAtItem(const std::string& key, size_t item, const std::string& message) const {
+  const YAML::Node entry = node_->Find(key);
+  if (!entry || !entry.IsSequence() || item >= entry.size()) Fail(key, message);
+  node_->Fail(entry[item].Mark(), fmt::format("{}[{}]", node_->Field(key), item), message);
 }
 
 std::filesystem::path Config::File() const { return node_->document->file; }

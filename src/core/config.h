@@ -47,6 +47,8 @@ class Config {
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds) const;
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds,
                   double default_value) const;
+  // A quantity of whatever dimension its unit has; required.
+  MeasuredQuantity AnyQuantity(const std::string& key) const;
   double Number(const std::string& key, const Bounds& bounds) const;
   double Number(const std::string& key, const Bounds& bounds, double default_value) const;
   int Integer(const std::string& key, int min, int max) const;
@@ -79,6 +81,8 @@ class Config {
   }
 
   bool Has(const std::string& key) const;
+  // All keys of this mapping, in the order of the file.
+  std::vector<std::string> Keys() const;
   Config Child(const std::string& key) const;  // required mapping
   std::optional<Config> OptionalChild(const std::string& key) const;
   std::vector<Config> Items(const std::string& key) const;  // a list of mappings; absent: empty
@@ -88,6 +92,9 @@ class Config {
 
   // Throws InputError at `key` (or, with an empty key, at this mapping): "field: message".
   [[noreturn]] void Fail(const std::string& key, const std::string& message) const;
+  // The same at an item of the list at `key`.
+  [[noreturn]] void FailAtItem(const std::string& key, size_t item,
+                               const std::string& message) const;
 
   std::filesystem::path File() const;
   // Everything read so far, defaults included, in SI.

@@ -6,9 +6,13 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <mutex>
 #include <numbers>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace lacuna {
 namespace {
@@ -146,6 +150,57 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
+// The number that `text` begins with; `*rest` is what follows it.
+double ReadNumber(std::string_view text, std::string_view* rest) {
+  double number = 0;
+  const char* begin = text.data();
+  if (text.starts_with('+')) ++begin;
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
+  if (error != std::errc()) throw std::invalid_argument("");
+  if (!std::isfinite(number)) throw std::invalid_argument("not a finite number");
+  *rest = Trim(text.substr(end - text.data()));
+  return number;
+}
+
+// Dimensions only point to their texts; these are kept for good.
+const char* KeptText(const std::string& text) {
+  static std::mutex mutex;
+  static std::set<std::string> kept;
+  const std::lock_guard lock(mutex);
+  return kept.insert(text).first->c_str();
+}
+
+// "kg m/s^2"
+std::string UnitText(const Dimension& dimension) {
+  std::string above, below;
+  const std::pair<const char*, int> factors[] = {{"kg", dimension.kilogram},
+                                                 {"m", dimension.metre},
+                                                 {"s", dimension.second},
+                                                 {"K", dimension.kelvin},
+                                                 {"rad", dimension.radian}};
+  for (const auto& [symbol, power] : factors) {
+    if (power == 0) continue;
+    if (power > 0 && !above.empty()) above += " ";
+    (power > 0 ? above : below) += (power > 0 ? "" : "/") + std::string(symbol) +
+                                   (std::abs(power) > 1 ? fmt::format("^{}", std::abs(power)) : "");
+  }
+  return (above.empty() ? "1" : above) + below;
+}
+
+// The dimension with its words, those of a well-known one where it is one.
+Dimension InWords(const Dimension& dimension) {
+  for (const Dimension& known :
+       {kDimensionless, kLength, kArea, kVolume, kTime, kRate, kVelocity, kAcceleration, kMass,
+        kDensity, kForce, kPressure, kViscosity, kStiffness, kTemperature, kAngle}) {
+    if (known.SameAs(dimension)) return known;
+  }
+  Dimension named = dimension;
+  named.unit = KeptText(UnitText(dimension));
+  named.name = KeptText(fmt::format("a quantity in {}", named.unit));
+  named.example = KeptText(fmt::format("0.5 {}", named.unit));
+  return named;
+}
+
 }  // namespace
 
 double ParseQuantity(std::string_view text, const Dimension& expected) {
@@ -156,26 +211,32 @@ double ParseQuantity(std::string_view text, const Dimension& expected) {
                                             expected.example));
   };
   double number = 0;
-  const char* begin = trimmed.data();
-  if (trimmed.starts_with('+')) ++begin;
-  const auto [end, error] = std::from_chars(begin, trimmed.data() + trimmed.size(), number);
-  if (error != std::errc()) refuse("");
-  if (!std::isfinite(number)) refuse("not a finite number");
-
-  const std::string_view unit_text = Trim(trimmed.substr(end - trimmed.data()));
-  if (unit_text.empty()) {
-    if (!expected.SameAs(kDimensionless)) refuse("a unit is missing");
-    return number;
-  }
+  std::string_view unit_text;
+  Unit unit{"", 1, kDimensionless};
   try {
-    const Unit unit = UnitReader(unit_text).Read();
-    if (!unit.dimension.SameAs(expected)) refuse("its unit measures something else");
-    return number * unit.si;
+    number = ReadNumber(trimmed, &unit_text);
+    unit = UnitReader(unit_text).Read();
   } catch (const std::invalid_argument& problem) {
-    if (std::string_view(problem.what()).starts_with("got ")) throw;
     refuse(problem.what());
   }
-  return 0;  // not reached: refuse() throws
+  if (unit_text.empty() && !expected.SameAs(kDimensionless)) refuse("a unit is missing");
+  if (!unit.dimension.SameAs(expected)) refuse("its unit measures something else");
+  return number * unit.si;
+}
+
+MeasuredQuantity ParseAnyQuantity(std::string_view text) {
+  const std::string_view trimmed = Trim(text);
+  try {
+    std::string_view unit_text;
+    const double number = ReadNumber(trimmed, &unit_text);
+    const Unit unit = UnitReader(unit_text).Read();
+    return {number * unit.si, InWords(unit.dimension)};
+  } catch (const std::invalid_argument& problem) {
+    const std::string why = problem.what();
+    throw std::invalid_argument(
+        fmt::format("got \"{}\"{}; expected a number with its unit, e.g. \"3 N/kg\"", trimmed,
+                    why.empty() ? "" : " (" + why + ")"));
+  }
 }
 
 }  // namespace lacuna

@@ -44,6 +44,14 @@ inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 // with what was expected. Products by space, '*' or '·', quotients by '/', powers by '^'.
 double ParseQuantity(std::string_view text, const Dimension& expected);
 
+// A quantity of the dimension that its own unit has ("3 N/kg"); dimensionless without a unit.
+struct MeasuredQuantity {
+  double value = 0;  // SI
+  Dimension dimension;
+};
+// Throws std::invalid_argument for what is no number or has an unknown unit.
+MeasuredQuantity ParseAnyQuantity(std::string_view text);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_CORE_QUANTITY_H_

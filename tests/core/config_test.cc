@@ -166,5 +166,24 @@ TEST(Config, TellsAWrongKindOfEntry) {
   EXPECT_THROW(config.Child("n"), InputError);
 }
 
+TEST(Config, ListsItsKeysInOrderAndReadsQuantitiesOfAnyDimension) {
+  const Config config = Config::Parse("z: 3 N/kg\na: 20 mm\nm: 4 mmm\n", "a.yaml");
+  EXPECT_EQ(config.Keys(), (std::vector<std::string>{"z", "a", "m"}));
+  EXPECT_TRUE(config.AnyQuantity("z").dimension.SameAs(kAcceleration));
+  EXPECT_DOUBLE_EQ(config.AnyQuantity("a").value, 0.02);
+  EXPECT_DOUBLE_EQ(config.Resolved()["a"], 0.02);
+  ExpectInputError([&] { config.AnyQuantity("m"); },
+                   "a.yaml:3:4: m: got \"4 mmm\" (unknown unit \"mmm\"); expected a number with "
+                   "its unit, e.g. \"3 N/kg\"");
+  ExpectInputError([&] { config.AnyQuantity("b"); }, HasSubstr("b: is missing"));
+}
+
+TEST(Config, PointsAtAnItemOfAList) {
+  const Config config = Config::Parse("force: [\"a\",\n  \"b\"]\ntext: c\n", "a.yaml");
+  ExpectInputError([&] { config.FailAtItem("force", 1, "no"); }, "a.yaml:2:3: force[1]: no");
+  ExpectInputError([&] { config.FailAtItem("force", 2, "no"); }, "a.yaml:1:8: force: no");
+  ExpectInputError([&] { config.FailAtItem("text", 0, "no"); }, "a.yaml:3:7: text: no");
+}
+
 }  // namespace
 }  // namespace lacuna

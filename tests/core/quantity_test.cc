@@ -51,5 +51,23 @@ TEST(Quantity, RefusesWhatItCannotMeanAndSaysWhatWasExpected) {
   ExpectRefused("3 kmin", kTime, "unknown unit");  // a minute takes no prefix
 }
 
+TEST(Quantity, TellsTheDimensionOfAnyUnit) {
+  const MeasuredQuantity pull = ParseAnyQuantity("3 N/kg");
+  EXPECT_DOUBLE_EQ(pull.value, 3);
+  EXPECT_TRUE(pull.dimension.SameAs(kAcceleration));
+  EXPECT_STREQ(pull.dimension.unit, "m/s^2");
+  const MeasuredQuantity odd = ParseAnyQuantity("-2 mN s/mm^4");
+  EXPECT_DOUBLE_EQ(odd.value, -2e9);
+  EXPECT_STREQ(odd.dimension.unit, "kg/m^3/s");
+  EXPECT_STREQ(odd.dimension.name, "a quantity in kg/m^3/s");
+  // What it says of itself can be read again.
+  EXPECT_TRUE(ParseAnyQuantity(odd.dimension.example).dimension.SameAs(odd.dimension));
+  EXPECT_TRUE(ParseAnyQuantity("0.5").dimension.SameAs(kDimensionless));
+  EXPECT_TRUE(ParseAnyQuantity("4 1/mm^2").dimension.SameAs({-2, 0, 0, 0, 0}));
+  for (const char* text : {"", "m", "3 mmm", "nan s", "3 m/"}) {
+    EXPECT_THROW(ParseAnyQuantity(text), std::invalid_argument) << text;
+  }
+}
+
 }  // namespace
 }  // namespace lacuna
