@@ -12,29 +12,39 @@ CatalogueEntry CorotationalElasticity();
 CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
 CatalogueEntry Gravity();
-CatalogueEntry MassDamping();
-CatalogueEntry StiffnessDamping();
-CatalogueEntry PlaneContact();
-CatalogueEntry Drag();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
+CatalogueEntry MassDamping();
+CatalogueEntry StiffnessDamping();
+CatalogueEntry Drag();
 CatalogueEntry Pressure();
 CatalogueEntry PointForce();
-CatalogueEntry ElasticSupport();
 CatalogueEntry FollowerForce();
+CatalogueEntry PlaneContact();
+CatalogueEntry ElasticSupport();
+CatalogueEntry ExpressionForce();
 
 const std::vector<CatalogueEntry>& Catalogue() {
   static const std::vector<CatalogueEntry> entries{
-      LinearElasticity(), CorotationalElasticity(), SaintVenantKirchhoff(), NeoHookean(), Gravity(),
-      MassDamping(),      StiffnessDamping(),       PlaneContact(),
-      // Loads, inertia and supports.
-      Drag(),
+      LinearElasticity(),
+      CorotationalElasticity(),
+      SaintVenantKirchhoff(),
+      NeoHookean(),
+      // What the material does besides.
+      // Loads, inertia, damping and supports.
+      Gravity(),
       AttachedMass(),
       DensityGradient(),
+      MassDamping(),
+      StiffnessDamping(),
+      Drag(),
       Pressure(),
       PointForce(),
-      ElasticSupport(),
       FollowerForce(),
+      PlaneContact(),
+      ElasticSupport(),
+      // The user's own.
+      ExpressionForce(),
   };
   return entries;
 }
@@ -48,6 +58,7 @@ std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string&
     if (entry.kind == kind) choices.emplace_back(entry.card->type, &entry);
   }
   const CatalogueEntry* entry = config.Choice(key, choices);
+  if (entry->make_from_yaml != nullptr) return entry->make_from_yaml(config);
   return entry->make(entry->read(*entry->card, config, material));
 }
 
@@ -72,6 +83,7 @@ std::shared_ptr<Effect> MakeEffect(const std::string& type,
                                    const std::map<std::string, double>& parameters) {
   const CatalogueEntry* entry = FindEntry(type);
   CHECK(entry != nullptr) << "no effect is called " << type;
+  CHECK(entry->make != nullptr) << type << " is made from YAML alone";
   Eigen::VectorXd values(entry->card->parameters.size());
   size_t named = 0;
   for (Eigen::Index k = 0; k < values.size(); ++k) {

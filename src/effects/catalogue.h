@@ -29,6 +29,9 @@ struct CatalogueEntry {
   // effect may take what its own mapping leaves out; may be null.
   Eigen::VectorXd (*read)(const EffectCard& card, const Config& config,
                           const Effect* material) = nullptr;
+  // In place of `make` and `read`, which are then null: an effect that is more than its numbers and
+  // whose card is its own, of the same type as `card`.
+  std::shared_ptr<Effect> (*make_from_yaml)(const Config& config) = nullptr;
 };
 
 // Every entry, elasticity laws first.
@@ -46,8 +49,8 @@ std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material 
 std::shared_ptr<Effect> MakeMaterial(const Config& config);
 
 // An effect from parameters by name, SI; a parameter left out takes the card's default. A name that
-// the catalogue or the card does not have, or a parameter without value, is our own mistake
-// (CHECK).
+// the catalogue or the card does not have, an effect that YAML alone describes, or a parameter
+// without value, is our own mistake (CHECK).
 std::shared_ptr<Effect> MakeEffect(const std::string& type,
                                    const std::map<std::string, double>& parameters);
 

@@ -94,6 +94,7 @@ TEST(CommandLine, EveryEffectTellsOfItself) {
   EXPECT_EQ(list.status, 0);
   EXPECT_THAT(list.said, HasSubstr("gravity"));
   EXPECT_THAT(Lacuna("effects gravity").said, HasSubstr("to tell it apart"));
+  EXPECT_THAT(Lacuna("effects expression").said, HasSubstr("docs/expression.md"));
 }
 
 TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {
