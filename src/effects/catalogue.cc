@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lacuna {
@@ -62,6 +63,15 @@ std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string&
   return entry->make(entry->read(*entry->card, config, material));
 }
 
+// NaN when the effect has no parameter of this name.
+double ValueByName(const Effect& effect, const std::string& name) {
+  const std::vector<ParameterCard>& parameters = effect.Card().parameters;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].name == name) return effect.Parameters()[k];
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 const CatalogueEntry* FindEntry(const std::string& type) {
@@ -98,14 +108,18 @@ std::shared_ptr<Effect> MakeEffect(const std::string& type,
 }
 
 Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
-                               const Effect* /*material*/) {
+                               const Effect* material) {
   Eigen::VectorXd values(card.parameters.size());
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const ParameterCard& parameter = card.parameters[k];
-    values[k] = std::isnan(parameter.default_value)
+    double otherwise = parameter.default_value;
+    if (std::isnan(otherwise) && material != nullptr) {
+      otherwise = ValueByName(*material, parameter.name);
+    }
+    values[k] = std::isnan(otherwise)
                     ? config.Quantity(parameter.name, parameter.dimension, parameter.bounds)
                     : config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
-                                      parameter.default_value);
+                                      otherwise);
   }
   return values;
 }

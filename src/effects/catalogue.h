@@ -54,7 +54,8 @@ std::shared_ptr<Effect> MakeMaterial(const Config& config);
 std::shared_ptr<Effect> MakeEffect(const std::string& type,
                                    const std::map<std::string, double>& parameters);
 
-// The usual `read`: each parameter of the card under its own name.
+// The usual `read`: each parameter of the card under its own name. One that is left out has the
+// card's default; without one, the value of the material's parameter of the same name.
 Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
                                const Effect* material);
 

@@ -206,28 +206,6 @@ class StiffnessDampingEffect final : public Effect {
   double poisson_ratio_ = 0;
 };
 
-// The moduli are the material's unless given.
-Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
-                                 const Effect* material) {
-  Eigen::VectorXd values(card.parameters.size());
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const ParameterCard& parameter = card.parameters[k];
-    if (material != nullptr && !config.Has(parameter.name)) {
-      const std::vector<ParameterCard>& offered = material->Card().parameters;
-      const auto same = std::find_if(offered.begin(), offered.end(), [&](const ParameterCard& p) {
-        return p.name == parameter.name;
-      });
-      if (same != offered.end()) {
-        values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
-                                    material->Parameters()[same - offered.begin()]);
-        continue;
-      }
-    }
-    values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
-  }
-  return values;
-}
-
 }  // namespace
 
 CatalogueEntry StiffnessDamping() {
@@ -235,7 +213,7 @@ CatalogueEntry StiffnessDamping() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<StiffnessDampingEffect>(parameters);
           },
-          &ReadWithMaterial};
+          &ReadParameters};
 }
 
 }  // namespace lacuna
