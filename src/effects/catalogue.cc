@@ -12,6 +12,7 @@ CatalogueEntry LinearElasticity();
 CatalogueEntry CorotationalElasticity();
 CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
+CatalogueEntry ViscoelasticBranch();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
@@ -32,6 +33,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       SaintVenantKirchhoff(),
       NeoHookean(),
       // What the material does besides.
+      ViscoelasticBranch(),
       // Loads, inertia, damping and supports.
       Gravity(),
       AttachedMass(),

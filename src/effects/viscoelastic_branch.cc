@@ -1,0 +1,154 @@
+// One branch of a generalised Maxwell solid (a Prony series): a spring of modulus m and a dashpot
+// in series, beside the elasticity of the body.
+//
+// Over-stress Q with  Q̇ + Q/τ = C : Ė,  C Hooke's moduli for m and ν. This is Simo's model with the
+// second Piola–Kirchhoff stress of a branch linear in E, for the reasons in fem/memory_branch.h;
+// for τ → 0 at constant m τ it becomes stiffness_damping. The free energy of the branch is ½ Q :
+// C⁻¹ : Q, what it dissipates Q : C⁻¹ : Q/τ ≥ 0, at any strain.
+//
+// C is that of a full isotropic solid, not only of its deviator: with the Poisson ratio of the
+// material (the default) the branch is a scaled copy of it, so that m is the extra Young's modulus
+// that a sudden stretch meets, a held body relaxes without changing shape, and nearly
+// incompressible bodies stay so.
+//
+// Update (R. L. Taylor, K. S. Pister, G. L. Goudreau 1970): exact for a strain that changes
+// linearly in the step,
+//   e₁ = a e₀ + b (E₁ − E₀),    a = exp(−h/τ),    b = (1 − a) τ/h,    Q = C : e,
+// hence exact in a hold, of second order else, and stable for any h/τ. A point remembers e and E.
+// Statics is the limit of a very slow motion: e = 0.
+#include <cmath>
+#include <limits>
+
+#include "effects/catalogue.h"
+#include "fem/memory_branch.h"
+
+namespace lacuna {
+namespace {
+
+class ViscoelasticLaw {
+ public:
+  enum Parameter { kModulus, kRelaxationTime, kPoissonRatio };
+  static constexpr int kStateSize = 12;  // e, E
+  using State = Eigen::Matrix<double, kStateSize, 1>;
+
+  static const EffectCard& Card() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  ViscoelasticLaw(const Eigen::VectorXd& parameters, double time_step)
+      : moduli_(IsotropicModuli(LameByYoungModulus(parameters[kPoissonRatio]))) {
+    if (time_step == 0) return;
+    const double steps = time_step / parameters[kRelaxationTime];
+    decay_ = std::exp(-steps);
+    gain_ = -std::expm1(-steps) / steps;
+    decay_by_time_ = decay_ * steps / parameters[kRelaxationTime];
+    gain_by_time_ = (gain_ - decay_) / parameters[kRelaxationTime];
+  }
+
+  double Potential(const KelvinVector& strain, const State& state) const {
+    const KelvinVector change = strain - state.tail<6>();
+    return change.dot(moduli_ * (decay_ * state.head<6>() + 0.5 * gain_ * change));
+  }
+
+  KelvinVector Stress(const KelvinVector& strain, const State& state) const {
+    return moduli_ * SpringStrain(strain, state);
+  }
+
+  KelvinMatrix Moduli(const KelvinVector& /*strain*/, const State& /*state*/) const {
+    return gain_ * moduli_;
+  }
+
+  KelvinVector StressDerivative(const KelvinVector& strain, const State& state,
+                                int /*parameter: relaxation_time*/) const {
+    return moduli_ *
+           (decay_by_time_ * state.head<6>() + gain_by_time_ * (strain - state.tail<6>()));
+  }
+
+  State AtEnd(const KelvinVector& strain, const State& state) const {
+    return (State() << SpringStrain(strain, state), strain).finished();
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {
+        .type = "viscoelastic_branch",
+        .title = "Viscoelastic branch (Maxwell element of a Prony series)",
+        .equation =
+            "P = F Q,  dQ/dt + Q/τ = d/dt (λ (tr E) I + 2μ E),  E = ½ (FᵀF − I),  λ and μ from "
+            "modulus m and Poisson ratio;  in a sudden stretch ε held: stress m ε exp(−t/τ) "
+            "on top of the elastic one",
+        .citation =
+            "J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic Damage Model, "
+            "Computer Methods in Applied Mechanics and Engineering 60, 1987; G. A. Holzapfel, "
+            "Nonlinear Solid Mechanics, Wiley 2000, sec. 6.10; update: R. L. Taylor, K. S. "
+            "Pister, G. L. Goudreau, Thermomechanical Analysis of Viscoelastic Solids, "
+            "International Journal for Numerical Methods in Engineering 2, 1970",
+        .parameters = {{.name = "modulus",
+                        .meaning =
+                            "Young's modulus that the branch adds to a sudden stretch, m; for soft "
+                            "solids a tenth to once that of the material",
+                        .dimension = kPressure,
+                        .bounds = kNotNegative,
+                        .null_value = 0,
+                        .plausible_min = 0,
+                        .plausible_max = 3e5,
+                        .default_value = kNone,
+                        .log_scale = false},
+                       {.name = "relaxation_time",
+                        .meaning =
+                            "time in which the stress of the branch falls to 37 % in a hold, τ; "
+                            "a recording tells those between its frame interval and its duration",
+                        .dimension = kTime,
+                        .bounds = kPositive,
+                        .null_value = kNone,
+                        .plausible_min = 1e-3,
+                        .plausible_max = 1e2,
+                        .default_value = kNone,
+                        .log_scale = true},
+                       {.name = "poisson_ratio",
+                        .meaning = "Poisson's ratio of the branch (if left out: the material's)",
+                        .dimension = kDimensionless,
+                        .bounds = {-1, 0.5, true, true},
+                        .null_value = kNone,
+                        .plausible_min = 0.2,
+                        .plausible_max = 0.499,
+                        .default_value = kNone,
+                        .log_scale = false,
+                        .setting = true}},
+        .residual_when_missing =
+            "the body creeps on under a constant load, or the force of a hold decays, along "
+            "the shape of the elastic deformation; fast loading looks stiffer than slow, and "
+            "oscillations decay most where their period is about 6 τ",
+        .separating_experiment =
+            "stretch quickly, hold for several τ, release and wait: here the force decays over "
+            "τ and the rest shape comes back, stiffness-proportional damping has no force in "
+            "the hold, a yielding branch keeps its force in the hold and a permanent set after "
+            "it; two frequencies tell a branch from both kinds of damping",
+        .look_alikes = {"stiffness_damping", "mass_damping"},
+        .repeatable = true,
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+  }
+
+  KelvinVector SpringStrain(const KelvinVector& strain, const State& state) const {
+    return decay_ * state.head<6>() + gain_ * (strain - state.tail<6>());
+  }
+
+  KelvinMatrix moduli_;                          // C for m = 1
+  double decay_ = 0, gain_ = 0;                  // a, b
+  double decay_by_time_ = 0, gain_by_time_ = 0;  // ∂a/∂τ, ∂b/∂τ, 1/s
+};
+
+}  // namespace
+
+CatalogueEntry ViscoelasticBranch() {
+  return {&ViscoelasticLaw::Card(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<MemoryBranch<ViscoelasticLaw>>(parameters);
+          },
+          &ReadParameters};
+}
+
+}  // namespace lacuna

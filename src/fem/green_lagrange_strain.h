@@ -1,0 +1,85 @@
+// The Green–Lagrange strain and symmetric tensors as vectors.
+//
+// E = ½ (FᵀF − I) does not see rotations, is a polynomial of F, and works with the second
+// Piola–Kirchhoff stress: power per rest volume S : Ė, P = F S (Bonet & Wood, Nonlinear Continuum
+// Mechanics for Finite Element Analysis).
+#ifndef LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_
+#define LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "fem/lame_constants.h"
+#include "fem/stress_tangent.h"
+
+namespace lacuna {
+
+// A symmetric tensor A as (A₁₁, A₂₂, A₃₃, √2 A₂₃, √2 A₁₃, √2 A₁₂), Kelvin's notation: A : B is the
+// dot product, and fourth-order tensors become matrices with their own eigenvalues.
+using KelvinVector = Eigen::Matrix<double, 6, 1>;
+using KelvinMatrix = Eigen::Matrix<double, 6, 6>;
+
+inline KelvinVector ToKelvin(const Eigen::Matrix3d& A) {
+  KelvinVector vector;
+  vector << A(0, 0), A(1, 1), A(2, 2), M_SQRT2 * A(1, 2), M_SQRT2 * A(0, 2), M_SQRT2 * A(0, 1);
+  return vector;
+}
+
+inline Eigen::Matrix3d FromKelvin(const KelvinVector& vector) {
+  const Eigen::Vector3d shear = M_SQRT1_2 * vector.tail<3>();
+  return Eigen::Matrix3d{{vector[0], shear[2], shear[1]},
+                         {shear[2], vector[1], shear[0]},
+                         {shear[1], shear[0], vector[2]}};
+}
+
+// tr A = KelvinIdentity() · A.
+inline KelvinVector KelvinIdentity() { return (KelvinVector() << 1, 1, 1, 0, 0, 0).finished(); }
+
+inline KelvinVector Deviator(KelvinVector vector) {
+  vector.head<3>().array() -= vector.head<3>().mean();
+  return vector;
+}
+
+// Hooke's law, S = 2μ E + λ (tr E) I; the unit of the constants.
+inline KelvinMatrix IsotropicModuli(const LameConstants& constants) {
+  KelvinMatrix moduli = constants.lambda * KelvinIdentity() * KelvinIdentity().transpose();
+  moduli.diagonal().array() += 2 * constants.mu;
+  return moduli;
+}
+
+inline KelvinVector GreenLagrangeStrain(const Eigen::Matrix3d& F) {
+  KelvinVector strain = 0.5 * ToKelvin(F.transpose() * F);
+  strain.head<3>().array() -= 0.5;
+  return strain;
+}
+
+// ∂E/∂F, with F as a column-major vector.
+inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
+  Eigen::Matrix<double, 6, 9> derivative = Eigen::Matrix<double, 6, 9>::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    derivative.block<1, 3>(k, 3 * k) = F.col(k).transpose();
+    derivative.block<1, 3>(3 + k, 3 * i) = M_SQRT1_2 * F.col(j).transpose();
+    derivative.block<1, 3>(3 + k, 3 * j) = M_SQRT1_2 * F.col(i).transpose();
+  }
+  return derivative;
+}
+
+// ∂P/∂F of P = F S(E) with ∂S/∂E = `moduli`.
+inline StressTangent TangentOfSecondStress(const Eigen::Matrix3d& F, const KelvinVector& stress,
+                                           const KelvinMatrix& moduli) {
+  const Eigen::Matrix<double, 6, 9> by_gradient = StrainDerivative(F);
+  StressTangent tangent = by_gradient.transpose() * moduli * by_gradient;
+  const Eigen::Matrix3d S = FromKelvin(stress);
+  for (int j = 0; j < 3; ++j) {
+    for (int l = 0; l < 3; ++l) {
+      tangent.block<3, 3>(3 * j, 3 * l).diagonal().array() += S(j, l);
+    }
+  }
+  return tangent;
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_

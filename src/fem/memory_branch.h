@@ -1,0 +1,222 @@
+// A branch of stress that remembers past strains, parallel to the elasticity of a body, as an
+// effect: from its law at one point.
+//
+//   f_a = −Σ_q w_q P_q g_a(q),    P = F S,    S = m s(E; z, h),
+// with the modulus m in Pa (the size of the effect), the Green–Lagrange strain E at the end of a
+// step of length h and the internal variables z of the point at its start. The stress is that of an
+// incremental potential,
+//   s = ∂w(E; z, h)/∂E,    w convex in E,
+// as the variational updates of M. Ortiz and L. Stainier, CMAME 171, 1999, have it: the algorithmic
+// tangent is symmetric, and Newton's line search has an energy to descend. That "energy" is stored
+// plus dissipated, up to a constant of the step.
+//
+// Why Green–Lagrange: E and z refer to the material, so that the force follows any rotation; the
+// power is exactly S : Ė at any strain, so that a law that dissipates in (s, E) does so in the
+// body; and no polar decomposition, logarithm or inverse of F can fail in a crushed or inverted
+// element. What the measure is known for, a stiffness that fades under compression (P = F S with
+// F → 0), is weaker in a branch beside a law that does resist. With w convex, only the geometric
+// part δF S of the tangent, under pressure, can make it indefinite; the definite stand-in leaves
+// out its negative modes.
+//
+// z never depends on m, so that a branch of size zero has the memory that one of any size would.
+//
+// A `Law` is a small value type, all of it for m = 1:
+//   static const EffectCard& Card();                the first parameter is m
+//   static constexpr int kStateSize;                numbers per point; 0 at rest
+//   Law(const VectorXd& parameters, double time_step);            in the order of the card; h = 0:
+//                                                                 statics
+//   double Potential(const KelvinVector& E, const State& z) const;                 w
+//   KelvinVector Stress(E, z) const;                                               s
+//   KelvinMatrix Moduli(E, z) const;                                               ∂s/∂E
+//   KelvinVector StressDerivative(E, z, int parameter) const;     ∂s/∂(parameter > 0, no setting)
+//   State AtEnd(E, z) const;                                      z at the end of the step
+// with State a Vector<double, kStateSize>.
+#ifndef LACUNA_FEM_MEMORY_BRANCH_H_
+#define LACUNA_FEM_MEMORY_BRANCH_H_
+
+#include <glog/logging.h>
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <optional>
+
+#include "fem/effect.h"
+#include "fem/element_kinematics.h"
+#include "fem/green_lagrange_strain.h"
+#include "fem/stress_tangent.h"
+
+namespace lacuna {
+
+template <typename Law>
+class MemoryBranch final : public Effect {
+ public:
+  explicit MemoryBranch(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return Law::Card(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), static_cast<Eigen::Index>(Card().parameters.size()));
+    parameters_ = values;
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    const double modulus = Modulus();
+    const Law law(parameters_, at.time_step);
+    AddNodalStress(
+        at,
+        [&](const KelvinVector& strain, const State& state) {
+          return KelvinVector(modulus * law.Stress(strain, state));
+        },
+        force);
+  }
+
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (weights.position == 0) return;
+    if (at.body.mesh.Order() == 1) {
+      AddStiffnessMatrix<4>(at, weights.position, convexify, tangent);
+    } else {
+      AddStiffnessMatrix<10>(at, weights.position, convexify, tangent);
+    }
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter >= 0 && parameter < parameters_.size());
+    CHECK(!Card().parameters[parameter].setting);
+    const double modulus = Modulus();
+    const Law law(parameters_, at.time_step);
+    AddNodalStress(
+        at,
+        [&](const KelvinVector& strain, const State& state) {
+          return parameter == 0
+                     ? law.Stress(strain, state)
+                     : KelvinVector(modulus * law.StressDerivative(strain, state, parameter));
+        },
+        derivative);
+  }
+
+  std::optional<double> Energy(const Kinematics& at) const override {
+    return at.body.mesh.Order() == 1 ? TotalPotential<4>(at) : TotalPotential<10>(at);
+  }
+
+  Eigen::Index StateSize(const Body& body) const override {
+    return static_cast<Eigen::Index>(Law::kStateSize) * body.PointCount();
+  }
+  void InitialState(const Body& body, Eigen::VectorXd* state) const override {
+    *state = Eigen::VectorXd::Zero(StateSize(body));
+  }
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
+    CHECK_EQ(state_at_end->size(), StateSize(at.body));
+    if (at.body.mesh.Order() == 1) {
+      AdvanceState<4>(at, state_at_end);
+    } else {
+      AdvanceState<10>(at, state_at_end);
+    }
+  }
+
+ private:
+  using State = Eigen::Matrix<double, Law::kStateSize, 1>;
+
+  double Modulus() const { return parameters_[0]; }
+
+  static State StateOf(const Eigen::VectorXd& states, int q) {
+    return states.template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q);
+  }
+
+  // Calls visit(q, F) for the quadrature points of an element.
+  template <int kNodes, typename Visit>
+  static void ForEachPoint(const Kinematics& at, int element, const Visit& visit) {
+    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
+    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+      const int q = element * QuadraturePoints<kNodes>() + p;
+      visit(q, FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q)));
+    }
+  }
+
+  // Adds −Σ w F S g_a with S = stress(strain, state).
+  template <typename Stress>
+  void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    if (at.body.mesh.Order() == 1) {
+      AddNodalStress<4>(at, stress, force);
+    } else {
+      AddNodalStress<10>(at, stress, force);
+    }
+  }
+
+  template <int kNodes, typename Stress>
+  static void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
+    const Body& body = at.body;
+    ForEachElement(*body.schedule, [&](int element) {
+      Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
+        const Eigen::Matrix3d P =
+            body.weight[q] * F * FromKelvin(stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
+        nodal.noalias() -= P.lazyProduct(ShapeGradient<kNodes>(body, q).transpose());
+      });
+      ScatterNodes<kNodes>(body, element, nodal, force);
+    });
+  }
+
+  template <int kNodes>
+  void AddStiffnessMatrix(const Kinematics& at, double weight, bool convexify,
+                          BlockMatrix* tangent) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    const Law law(parameters_, at.time_step);
+    const Body& body = at.body;
+    ForEachElement(*body.schedule, [&](int element) {
+      ElementStiffness<kNodes> stiffness;
+      stiffness.SetZero();
+      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
+        const KelvinVector strain = GreenLagrangeStrain(F);
+        const State state = StateOf(at.state, q);
+        StressTangent C =
+            TangentOfSecondStress(F, law.Stress(strain, state), law.Moduli(strain, state));
+        if (convexify && !IsPositiveSemidefinite(C)) C = PositivePart(C);
+        AddStiffness<kNodes>(C, ShapeGradient<kNodes>(body, q),
+                             -weight * body.weight[q] * Modulus(), &stiffness);
+      });
+      ScatterStiffness<kNodes>(body, element, stiffness, tangent);
+    });
+  }
+
+  static StressTangent PositivePart(const StressTangent& tangent) {
+    const Eigen::SelfAdjointEigenSolver<StressTangent> modes(tangent);
+    return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() *
+           modes.eigenvectors().transpose();
+  }
+
+  template <int kNodes>
+  double TotalPotential(const Kinematics& at) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    const Law law(parameters_, at.time_step);
+    const double sum = SumOverElements(*at.body.schedule, [&](int element) {
+      double potential = 0;
+      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
+        potential +=
+            at.body.weight[q] * law.Potential(GreenLagrangeStrain(F), StateOf(at.state, q));
+      });
+      return potential;
+    });
+    return Modulus() * sum;
+  }
+
+  template <int kNodes>
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    const Law law(parameters_, at.time_step);
+    ForEachElement(*at.body.schedule, [&](int element) {
+      ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
+        state_at_end->template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q) =
+            law.AtEnd(GreenLagrangeStrain(F), StateOf(at.state, q));
+      });
+    });
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_MEMORY_BRANCH_H_
