@@ -13,6 +13,7 @@ CatalogueEntry CorotationalElasticity();
 CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
 CatalogueEntry ViscoelasticBranch();
+CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
@@ -34,6 +35,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       NeoHookean(),
       // What the material does besides.
       ViscoelasticBranch(),
+      ElastoplasticBranch(),
       // Loads, inertia, damping and supports.
       Gravity(),
       AttachedMass(),

@@ -111,11 +111,12 @@ TEST_P(MemoryBranchOf, IsSquashedAndReleasedWithTheBody) {
   EXPECT_LE(iterations, 4 * 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, MemoryBranchOf,
-                         testing::Values(BranchType{
-                             "viscoelastic_branch",
-                             {{"relaxation_time", 0.03}, {"poisson_ratio", 0.4}}}),
-                         [](const auto& info) { return info.param.type; });
+INSTANTIATE_TEST_SUITE_P(
+    All, MemoryBranchOf,
+    testing::Values(BranchType{"viscoelastic_branch",
+                               {{"relaxation_time", 0.03}, {"poisson_ratio", 0.4}}},
+                    BranchType{"elastoplastic_branch", {{"yield_strain", 0.05}}}),
+    [](const auto& info) { return info.param.type; });
 
 }  // namespace
 }  // namespace lacuna
