@@ -14,6 +14,7 @@ CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
 CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
+CatalogueEntry Softening();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
@@ -36,6 +37,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       // What the material does besides.
       ViscoelasticBranch(),
       ElastoplasticBranch(),
+      Softening(),
       // Loads, inertia, damping and supports.
       Gravity(),
       AttachedMass(),

@@ -115,7 +115,8 @@ INSTANTIATE_TEST_SUITE_P(
     All, MemoryBranchOf,
     testing::Values(BranchType{"viscoelastic_branch",
                                {{"relaxation_time", 0.03}, {"poisson_ratio", 0.4}}},
-                    BranchType{"elastoplastic_branch", {{"yield_strain", 0.05}}}),
+                    BranchType{"elastoplastic_branch", {{"yield_strain", 0.05}}},
+                    BranchType{"softening", {{"softening_strain", 0.1}, {"poisson_ratio", 0.4}}}),
     [](const auto& info) { return info.param.type; });
 
 }  // namespace

@@ -1,0 +1,145 @@
+// A branch that softens with the largest strain it has ever seen (the Mullins effect): a body is
+// stiffer on its first stretch than on later ones up to the same stretch, at any speed, without
+// permanent set.
+//
+//   S = m g(κ) C : E,   g = 1/(1 + κ/κ₀),   κ = largest √(E : C : E) so far, the present included,
+// with Hooke's moduli C for Young's modulus 1: damage driven by the energy norm of the strain (Simo
+// 1987). On first loading the stress m κ/(1 + κ/κ₀) still rises, towards m κ₀; so the incremental
+// potential is convex and no element softens at its neighbours' cost, as it would with g falling
+// faster than 1/κ. The elasticity law beside the branch is what is left when all has softened: the
+// branch adds a stiffness that wears off, it never takes any away. Independent of rate; statics is
+// a step like any other.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "effects/catalogue.h"
+#include "fem/memory_branch.h"
+
+namespace lacuna {
+namespace {
+
+class SofteningLaw {
+ public:
+  enum Parameter { kModulus, kSofteningStrain, kPoissonRatio };
+  static constexpr int kStateSize = 1;  // κ at the start
+  using State = Eigen::Matrix<double, kStateSize, 1>;
+
+  static const EffectCard& Card() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  SofteningLaw(const Eigen::VectorXd& parameters, double /*time_step*/)
+      : moduli_(IsotropicModuli(LameByYoungModulus(parameters[kPoissonRatio]))),
+        softening_strain_(parameters[kSofteningStrain]) {}
+
+  double Potential(const KelvinVector& strain, const State& state) const {
+    const double before = state[0], now = Norm(strain);
+    if (now <= before) return 0.5 * Remaining(before) * now * now;
+    // ∫ κ g(κ) dκ beyond what was seen.
+    const double c = softening_strain_;
+    return 0.5 * Remaining(before) * before * before +
+           c * (now - before - c * std::log1p((now - before) / (c + before)));
+  }
+
+  KelvinVector Stress(const KelvinVector& strain, const State& state) const {
+    return Remaining(AtEnd(strain, state)[0]) * moduli_ * strain;
+  }
+
+  KelvinMatrix Moduli(const KelvinVector& strain, const State& state) const {
+    const double now = Norm(strain);
+    if (now <= state[0]) return Remaining(state[0]) * moduli_;
+    const KelvinVector elastic = moduli_ * strain;
+    const double g = Remaining(now);
+    return g * moduli_ - (g * g / (softening_strain_ * now)) * elastic * elastic.transpose();
+  }
+
+  KelvinVector StressDerivative(const KelvinVector& strain, const State& state,
+                                int /*parameter: softening_strain*/) const {
+    const double largest = AtEnd(strain, state)[0];
+    const double g = Remaining(largest);
+    return (g * g * largest / (softening_strain_ * softening_strain_)) * moduli_ * strain;
+  }
+
+  State AtEnd(const KelvinVector& strain, const State& state) const {
+    return State(std::max(state[0], Norm(strain)));
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {
+        .type = "softening",
+        .title = "Softening by the largest past strain (Mullins effect)",
+        .equation =
+            "P = F S,  S = (λ (tr E) I + 2μ E)/(1 + κ/κ₀),  κ = largest √(E:C:E) so far (in a "
+            "bar: the largest strain),  E = ½ (FᵀF − I),  λ, μ from modulus m and Poisson "
+            "ratio, C from the same with m = 1",
+        .citation =
+            "L. Mullins, Softening of Rubber by Deformation, Rubber Chemistry and Technology "
+            "42, 1969; J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic "
+            "Damage Model, Computer Methods in Applied Mechanics and Engineering 60, 1987",
+        .parameters = {{.name = "modulus",
+                        .meaning =
+                            "Young's modulus that the untouched body has more than one softened "
+                            "for good, m; for filled rubbers up to that of the material",
+                        .dimension = kPressure,
+                        .bounds = kNotNegative,
+                        .null_value = 0,
+                        .plausible_min = 0,
+                        .plausible_max = 3e5,
+                        .default_value = kNone,
+                        .log_scale = false},
+                       {.name = "softening_strain",
+                        .meaning = "largest past strain at which half of the modulus is gone, κ₀",
+                        .dimension = kDimensionless,
+                        .bounds = kPositive,
+                        .null_value = kNone,
+                        .plausible_min = 0.01,
+                        .plausible_max = 1,
+                        .default_value = kNone,
+                        .log_scale = true},
+                       {.name = "poisson_ratio",
+                        .meaning = "Poisson's ratio of the branch (if left out: the material's)",
+                        .dimension = kDimensionless,
+                        .bounds = {-1, 0.5, true, true},
+                        .null_value = kNone,
+                        .plausible_min = 0.2,
+                        .plausible_max = 0.499,
+                        .default_value = kNone,
+                        .log_scale = false,
+                        .setting = true}},
+        .residual_when_missing =
+            "the same load moves the body further the second time; force against displacement "
+            "of the first loading lies above all later ones, which agree with each other and "
+            "end at the same rest shape",
+        .separating_experiment =
+            "repeat one cycle three times: only the first differs, whereas the loop of a "
+            "yielding or viscoelastic branch comes again each time; then stretch further: the "
+            "first curve goes on where it was left",
+        .look_alikes = {"elastoplastic_branch", "viscoelastic_branch"},
+        .repeatable = true,
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+  }
+
+  double Norm(const KelvinVector& strain) const { return std::sqrt(strain.dot(moduli_ * strain)); }
+  // g
+  double Remaining(double largest) const { return 1 / (1 + largest / softening_strain_); }
+
+  KelvinMatrix moduli_;      // C
+  double softening_strain_;  // κ₀
+};
+
+}  // namespace
+
+CatalogueEntry Softening() {
+  return {&SofteningLaw::Card(), CatalogueEntry::Kind::kEffect,
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+            return std::make_shared<MemoryBranch<SofteningLaw>>(parameters);
+          },
+          &ReadParameters};
+}
+
+}  // namespace lacuna
