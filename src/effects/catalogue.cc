@@ -76,6 +76,37 @@ double ValueByName(const Effect& effect, const std::string& name) {
     if (parameters[k].name == name) return effect.Parameters()[k];
   }
   return std::numeric_limits<double>::quiet_NaN();
+// What a parameter is when it is left out, NaN where it must be given.
+Eigen::VectorXd DefaultValues(const EffectCard& card, const Effect* material) {
+  Eigen::VectorXd values(card.parameters.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    values[k] = card.parameters[k].default_value;
+    if (material == nullptr) continue;
+    const std::vector<ParameterCard>& offered = material->Card().parameters;
+    for (size_t m = 0; m < offered.size(); ++m) {
+      if (offered[m].name == card.parameters[k].name) values[k] = material->Parameters()[m];
+    }
+  return values;
+}
+
+// "axis" where the parameters axis_x, axis_y, axis_z begin, else "".
+std::string VectorAt(const EffectCard& card, size_t k) {
+  const std::string& first = card.parameters[k].name;
+  if (k + 2 >= card.parameters.size() || !first.ends_with("_x")) return "";
+  const std::string name = first.substr(0, first.size() - 2);
+  const bool complete =
+      card.parameters[k + 1].name == name + "_y" && card.parameters[k + 2].name == name + "_z";
+  return complete ? name : "";
+}
+
+Eigen::Vector3d ReadVector(const Config& config, const std::string& name,
+                           const Dimension& dimension, const Eigen::Vector3d& default_value) {
+  const Eigen::Vector3d vector = default_value.hasNaN()
+                                     ? config.Vector(name, dimension)
+                                     : config.Vector(name, dimension, default_value);
+  if (dimension.SameAs(kDimensionless) && vector.norm() == 0) {
+    config.Fail(name, "expected a direction other than 0");
+  return vector;
 }
 
 }  // namespace
@@ -126,6 +157,20 @@ Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
                     ? config.Quantity(parameter.name, parameter.dimension, parameter.bounds)
                     : config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
                                       otherwise);
+                               const Effect* /*material*/) {
+  return ReadWithMaterial(card, config, nullptr);
+}
+
+Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
+                                 const Effect* material) {
+  Eigen::VectorXd values = DefaultValues(card, material);
+    if (const std::string vector = VectorAt(card, k); !vector.empty()) {
+      values.segment<3>(k) = ReadVector(config, vector, parameter.dimension, values.segment<3>(k));
+      k += 2;
+    } else if (std::isnan(values[k])) {
+      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
+    } else {
+      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds, values[k]);
   }
   return values;
 }

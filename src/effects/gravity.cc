@@ -96,10 +96,7 @@ Eigen::VectorXd ReadAcceleration(const EffectCard&, const Config& config, const 
 }  // namespace
 
 CatalogueEntry Gravity() {
-  return {&GravityEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<GravityEffect>(parameters);
-          },
+  return {&GravityEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<GravityEffect>,
           &ReadAcceleration};
 }
 

@@ -71,10 +71,7 @@ class LinearLaw {
 }  // namespace
 
 CatalogueEntry LinearElasticity() {
-  return {&LinearLaw::Card(), CatalogueEntry::Kind::kMaterial,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<ElasticSolid<LinearLaw>>(parameters);
-          },
+  return {&LinearLaw::Card(), CatalogueEntry::Kind::kMaterial, &MakeAs<ElasticSolid<LinearLaw>>,
           &ReadParameters};
 }
 

@@ -76,10 +76,7 @@ class MassDampingEffect final : public Effect {
 }  // namespace
 
 CatalogueEntry MassDamping() {
-  return {&MassDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<MassDampingEffect>(parameters);
-          },
+  return {&MassDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<MassDampingEffect>,
           &ReadParameters};
 }
 

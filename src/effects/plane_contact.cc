@@ -277,33 +277,11 @@ class PlaneContactEffect final : public Effect {
   RestQuantity<Eigen::VectorXd> areas_;  // n, m²
 };
 
-// `normal: [0, 0, 1]`; the rest by their own names.
-Eigen::VectorXd ReadPlane(const EffectCard& card, const Config& config, const Effect*) {
-  Eigen::VectorXd values(PlaneContactEffect::kParameters);
-  const Eigen::Vector3d normal = config.Vector("normal", kDimensionless, Eigen::Vector3d::UnitZ());
-  if (normal.norm() == 0) config.Fail("normal", "expected a direction other than 0");
-  for (int k = 0; k < values.size(); ++k) {
-    const ParameterCard& parameter = card.parameters[k];
-    if (k >= PlaneContactEffect::kNormal && k < PlaneContactEffect::kNormal + 3) {
-      values[k] = normal[k - PlaneContactEffect::kNormal];
-    } else if (std::isnan(parameter.default_value)) {
-      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
-    } else {
-      values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
-                                  parameter.default_value);
-    }
-  }
-  return values;
-}
-
 }  // namespace
 
 CatalogueEntry PlaneContact() {
   return {&PlaneContactEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<PlaneContactEffect>(parameters);
-          },
-          &ReadPlane};
+          &MakeAs<PlaneContactEffect>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -93,10 +93,7 @@ class SaintVenantKirchhoffLaw {
 
 CatalogueEntry SaintVenantKirchhoff() {
   return {&SaintVenantKirchhoffLaw::Card(), CatalogueEntry::Kind::kMaterial,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<ElasticSolid<SaintVenantKirchhoffLaw>>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<ElasticSolid<SaintVenantKirchhoffLaw>>, &ReadParameters};
 }
 
 }  // namespace lacuna

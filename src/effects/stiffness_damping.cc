@@ -214,6 +214,7 @@ CatalogueEntry StiffnessDamping() {
             return std::make_shared<StiffnessDampingEffect>(parameters);
           },
           &ReadParameters};
+          &MakeAs<StiffnessDampingEffect>, &ReadWithMaterial};
 }
 
 }  // namespace lacuna
