@@ -93,7 +93,7 @@ CatalogueEntry AttachedMass() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<AttachedMassEffect>(parameters);
           },
-          &ReadParametersAndVectors};
+          &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -69,23 +69,19 @@ std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string&
   return entry->make(entry->read(*entry->card, config, material));
 }
 
-// NaN when the effect has no parameter of this name.
-double ValueByName(const Effect& effect, const std::string& name) {
-  const std::vector<ParameterCard>& parameters = effect.Card().parameters;
-  for (size_t k = 0; k < parameters.size(); ++k) {
-    if (parameters[k].name == name) return effect.Parameters()[k];
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-// What a parameter is when it is left out, NaN where it must be given.
+// What a parameter is when it is left out: the card's default, else what the material has under the
+// same name, else NaN.
 Eigen::VectorXd DefaultValues(const EffectCard& card, const Effect* material) {
   Eigen::VectorXd values(card.parameters.size());
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     values[k] = card.parameters[k].default_value;
-    if (material == nullptr) continue;
+    if (!std::isnan(values[k]) || material == nullptr) continue;
     const std::vector<ParameterCard>& offered = material->Card().parameters;
     for (size_t m = 0; m < offered.size(); ++m) {
-      if (offered[m].name == card.parameters[k].name) values[k] = material->Parameters()[m];
+      if (offered[m].name == card.parameters[k].name)
+        values[k] = material->Parameters()[static_cast<Eigen::Index>(m)];
     }
+  }
   return values;
 }
 
@@ -104,8 +100,9 @@ Eigen::Vector3d ReadVector(const Config& config, const std::string& name,
   const Eigen::Vector3d vector = default_value.hasNaN()
                                      ? config.Vector(name, dimension)
                                      : config.Vector(name, dimension, default_value);
-  if (dimension.SameAs(kDimensionless) && vector.norm() == 0) {
+  if (dimension.SameAs(kDimensionless) && config.Has(name) && vector.norm() == 0) {
     config.Fail(name, "expected a direction other than 0");
+  }
   return vector;
 }
 
@@ -146,24 +143,9 @@ std::shared_ptr<Effect> MakeEffect(const std::string& type,
 
 Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
                                const Effect* material) {
-  Eigen::VectorXd values(card.parameters.size());
+  Eigen::VectorXd values = DefaultValues(card, material);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const ParameterCard& parameter = card.parameters[k];
-    double otherwise = parameter.default_value;
-    if (std::isnan(otherwise) && material != nullptr) {
-      otherwise = ValueByName(*material, parameter.name);
-    }
-    values[k] = std::isnan(otherwise)
-                    ? config.Quantity(parameter.name, parameter.dimension, parameter.bounds)
-                    : config.Quantity(parameter.name, parameter.dimension, parameter.bounds,
-                                      otherwise);
-                               const Effect* /*material*/) {
-  return ReadWithMaterial(card, config, nullptr);
-}
-
-Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
-                                 const Effect* material) {
-  Eigen::VectorXd values = DefaultValues(card, material);
     if (const std::string vector = VectorAt(card, k); !vector.empty()) {
       values.segment<3>(k) = ReadVector(config, vector, parameter.dimension, values.segment<3>(k));
       k += 2;
@@ -171,6 +153,7 @@ Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
       values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds);
     } else {
       values[k] = config.Quantity(parameter.name, parameter.dimension, parameter.bounds, values[k]);
+    }
   }
   return values;
 }

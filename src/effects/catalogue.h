@@ -54,8 +54,6 @@ std::shared_ptr<Effect> MakeMaterial(const Config& config);
 std::shared_ptr<Effect> MakeEffect(const std::string& type,
                                    const std::map<std::string, double>& parameters);
 
-// The usual `read`: each parameter of the card under its own name. One that is left out has the
-// card's default; without one, the value of the material's parameter of the same name.
 // The usual `make`, for a class that is made from its parameters.
 template <typename Type>
 std::shared_ptr<Effect> MakeAs(const Eigen::VectorXd& parameters) {
@@ -64,14 +62,10 @@ std::shared_ptr<Effect> MakeAs(const Eigen::VectorXd& parameters) {
 
 // The usual `read`: each parameter of the card under its own name, but three that are called n_x,
 // n_y and n_z as one vector, `n: [0, 0, 1]`. A vector without dimension is a direction: of any
-// length, but not of length 0.
+// length, but not of length 0 (InputError). One that is left out has the card's default; without
+// one, the value of the material's parameter of the same name.
 Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
                                const Effect* material);
-
-// The same, but a parameter that is left out and that the material has under the same name is the
-// material's.
-Eigen::VectorXd ReadWithMaterial(const EffectCard& card, const Config& config,
-                                 const Effect* material);
 
 }  // namespace lacuna
 

@@ -99,7 +99,7 @@ CatalogueEntry DensityGradient() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<DensityGradientEffect>(parameters);
           },
-          &ReadParametersAndVectors};
+          &ReadParameters};
 }
 
 }  // namespace lacuna

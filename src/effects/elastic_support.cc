@@ -162,7 +162,7 @@ CatalogueEntry ElasticSupport() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<ElasticSupportEffect>(parameters);
           },
-          &ReadParametersAndVectors};
+          &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -253,7 +253,7 @@ CatalogueEntry FollowerForce() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<FollowerForceEffect>(parameters);
           },
-          &ReadParametersAndVectors};
+          &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -151,7 +151,7 @@ class PointForceEffect final : public Effect {
 
 Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config,
                                const Effect* material) {
-  const Eigen::VectorXd values = ReadParametersAndVectors(card, config, material);
+  const Eigen::VectorXd values = ReadParameters(card, config, material);
   if (values[PointForceEffect::kStop] <= values[PointForceEffect::kStart]) {
     config.Fail("stop", "expected a time after start");
   }

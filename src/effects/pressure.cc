@@ -298,7 +298,7 @@ CatalogueEntry Pressure() {
           [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
             return std::make_shared<PressureEffect>(parameters);
           },
-          &ReadParametersAndVectors};
+          &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -210,11 +210,7 @@ class StiffnessDampingEffect final : public Effect {
 
 CatalogueEntry StiffnessDamping() {
   return {&StiffnessDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<StiffnessDampingEffect>(parameters);
-          },
-          &ReadParameters};
-          &MakeAs<StiffnessDampingEffect>, &ReadWithMaterial};
+          &MakeAs<StiffnessDampingEffect>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -4,7 +4,6 @@
 #define LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
 
 #include <Eigen/Core>
-#include <string>
 
 #include "effects/catalogue.h"
 
@@ -17,11 +16,6 @@ void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_va
 
 // `gravity` as a setting: the acceleration of free fall, by default 9.80665 m/s² down z.
 void AppendGravitySetting(EffectCard* card);
-
-// Reads the parameters of the card, those of vectors from their vector. A vector without dimension
-// is a direction; one of length zero is refused (InputError) where the user gives it.
-Eigen::VectorXd ReadParametersAndVectors(const EffectCard& card, const Config& config,
-                                         const Effect* material);
 
 }  // namespace lacuna
 
