@@ -84,8 +84,7 @@ class CorotationalLaw {
 
   explicit CorotationalLaw(const LameConstants& lame) : lame_(lame) {}
 
-  double EnergyDensity(const Eigen::Matrix3d& F) const {
-    const Eigen::Matrix3d R = PolarRotation(F);
+  double EnergyDensity(const Eigen::Matrix3d& F, const Eigen::Matrix3d& R) const {
     const double trace = R.cwiseProduct(F).sum() - 3;
     return lame_.mu * (F - R).squaredNorm() + 0.5 * lame_.lambda * trace * trace;
   }
@@ -140,10 +139,7 @@ class CorotationalLaw {
 
 CatalogueEntry CorotationalElasticity() {
   return {&CorotationalLaw::Card(), CatalogueEntry::Kind::kMaterial,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
-            return std::make_shared<ElasticSolid<CorotationalLaw>>(parameters);
-          },
-          &ReadParameters};
+          &MakeAs<ElasticSolid<CorotationalLaw>>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -34,6 +34,16 @@ inline std::vector<ParameterCard> ElasticParameters() {
            .log_scale = false}};
 }
 
+// The same two as settings of an effect, which takes them from the material when it is not told.
+inline std::vector<ParameterCard> ElasticSettings() {
+  std::vector<ParameterCard> settings = ElasticParameters();
+  for (ParameterCard& setting : settings) {
+    setting.meaning += "; if left out: the material's";
+    setting.setting = true;
+  }
+  return settings;
+}
+
 }  // namespace lacuna
 
 #endif  // LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_

@@ -40,13 +40,16 @@ void Integrate(Body* body) {
   const int nodes = static_cast<int>(mesh.tets.rows());
   const int points = static_cast<int>(rule.weights.size());
   body->points_per_element = points;
+  body->point.resize(3, body->PointCount());
   body->weight.resize(body->PointCount());
   body->shape_gradient.resize(nodes, 3 * body->PointCount());
 
   // ∂N/∂ξ along the edges that leave corner 0 (the four coordinates sum to 1).
   const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Eigen::MatrixX3d> reference(points);
+  std::vector<Eigen::VectorXd> shape(points);
   for (int p = 0; p < points; ++p) {
+    shape[p] = ShapeValues(mesh.Order(), rule.points.col(p));
     reference[p] = ShapeDerivatives(mesh.Order(), rule.points.col(p)) * along_edges;
   }
 
@@ -64,6 +67,7 @@ void Integrate(Body* body) {
             mesh.tets(3, e), volume));
       }
       const int q = e * points + p;
+      body->point.col(q) = corner * shape[p];
       body->weight[q] = rule.weights[p] * volume;
       body->shape_gradient.middleCols<3>(3 * q) = reference[p] * jacobian.inverse();
     }

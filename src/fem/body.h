@@ -23,6 +23,7 @@ struct Body {
   // Quadrature: 1 point per linear tet, 4 per quadratic tet (exact to degree 2). Point p of element
   // e is q = e·points_per_element + p.
   int points_per_element = 0;
+  Eigen::Matrix3Xd point;          // 3 × points: rest position, m
   Eigen::VectorXd weight;          // points: volume that each stands for, m³
   Eigen::MatrixXd shape_gradient;  // (nodes per element) × (3·points): ∂N/∂X, 1/m; columns 3q…3q+2
 

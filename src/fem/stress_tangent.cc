@@ -18,6 +18,29 @@ Vector9d Dyad(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
 
 }  // namespace
 
+PrincipalTangent PrincipalTangent::Zero() {
+  return {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+void PrincipalTangent::AddIsotropic(double c) {
+  stretch.diagonal().array() += c;
+  twist.array() += c;
+  flip.array() += c;
+}
+
+void PrincipalTangent::AddVolumetric(const Eigen::Vector3d& s, double slope, double curvature) {
+  const Eigen::Vector3d area(s[1] * s[2], s[2] * s[0], s[0] * s[1]);
+  stretch += curvature * area * area.transpose();
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3;
+    const int j = (k + 2) % 3;
+    stretch(i, j) += slope * s[k];
+    stretch(j, i) += slope * s[k];
+    twist[k] += slope * s[k];
+    flip[k] -= slope * s[k];
+  }
+}
+
 StressTangent ProjectedTangent(const SignedSvd& axes, const PrincipalTangent& principal) {
   StressTangent tangent = StressTangent::Zero();
   const auto add_mode = [&tangent](double eigenvalue, const Vector9d& mode) {

@@ -52,6 +52,26 @@ void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNod
   }
 }
 
+// tangent += scale · ∂²(det F)/∂F².
+inline void AddCofactorDerivative(const Eigen::Matrix3d& F, double scale, StressTangent* tangent) {
+  // block += c [v]×
+  const auto add_cross = [](double c, const auto& v, auto block) {
+    block(0, 1) -= c * v.z();
+    block(0, 2) += c * v.y();
+    block(1, 0) += c * v.z();
+    block(1, 2) -= c * v.x();
+    block(2, 0) -= c * v.y();
+    block(2, 1) += c * v.x();
+  };
+  // Column j of the cofactor is the cross product of the two other columns of F.
+  for (int j = 0; j < 3; ++j) {
+    const int k = (j + 1) % 3;
+    const int l = (j + 2) % 3;
+    add_cross(-scale, F.col(l), tangent->block<3, 3>(3 * j, 3 * k));
+    add_cross(scale, F.col(k), tangent->block<3, 3>(3 * j, 3 * l));
+  }
+}
+
 // The tangent of an isotropic law in the axes of the principal stretches s (Smith, de Goes & Kim
 // 2019, "Analytic eigensystems for isotropic distortion energies"), ψ_i = ∂ψ/∂s_i. Entry k of
 // `twist` and `flip` belongs to the pair (i, j) of the two other axes:
@@ -59,6 +79,12 @@ void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNod
 struct PrincipalTangent {
   Eigen::Matrix3d stretch;
   Eigen::Vector3d twist, flip;
+
+  static PrincipalTangent Zero();
+  // Adds that of c/2 F:F, with every value c.
+  void AddIsotropic(double c);
+  // Adds what comes of a dependence on J = s₀s₁s₂: ∂ψ/∂J and ∂²ψ/∂J² at fixed F:F.
+  void AddVolumetric(const Eigen::Vector3d& s, double slope, double curvature);
 };
 
 // The tangent with these principal values, negative eigenvalues replaced by zero.

@@ -7,6 +7,7 @@
 #include "effects/catalogue.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
+#include "support/one_element.h"
 
 namespace lacuna {
 namespace {
@@ -18,33 +19,6 @@ std::shared_ptr<Effect> Law(const std::string& type, double young = kYoung,
                             double poisson = kPoisson) {
   return MakeEffect(type, {{"young_modulus", young}, {"poisson_ratio", poisson}});
 }
-
-// Forces on the four nodes of one tetrahedron with the deformation gradient F.
-struct OneElement {
-  Body body = MakeBody(
-      {.nodes = Eigen::Matrix3Xd{{0, 0.03, 0, 0.005}, {0, 0, 0.02, 0.004}, {0, 0.002, 0, 0.025}},
-       .tets = Eigen::Vector4i(0, 1, 2, 3)},
-      1000);
-  Eigen::VectorXd velocity = Eigen::VectorXd::Zero(12), state;
-
-  Eigen::VectorXd Position(const Eigen::Matrix3d& F) const {
-    return (F * body.mesh.nodes).reshaped();
-  }
-  Eigen::VectorXd Force(const Effect& effect, const Eigen::Matrix3d& F) const {
-    const Eigen::VectorXd position = Position(F);
-    Eigen::VectorXd force = Eigen::VectorXd::Zero(12);
-    effect.AddForce({body, position, velocity, velocity, 0, 0, state}, &force);
-    return force;
-  }
-  double Energy(const Effect& effect, const Eigen::Matrix3d& F) const {
-    const Eigen::VectorXd position = Position(F);
-    return *effect.Energy({body, position, velocity, velocity, 0, 0, state});
-  }
-  // P from nodal forces: with f_a = −V P g_a and Σ_a g_a X_aᵀ = I, P = −Σ f_a X_aᵀ / V.
-  Eigen::Matrix3d Stress(const Effect& effect, const Eigen::Matrix3d& F) const {
-    return -Force(effect, F).reshaped(3, 4) * body.mesh.nodes.transpose() / body.weight.sum();
-  }
-};
 
 class ElasticityLaw : public testing::TestWithParam<std::string> {};
 

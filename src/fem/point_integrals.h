@@ -1,0 +1,112 @@
+// Nodal forces, stiffness matrix and energy of a body from the stress P, its tangent ∂P/∂F and the
+// energy density ψ at the quadrature points:
+//   f_a = −Σ_q w_q P_q g_a(q),    ∂f_a/∂x_b = −Σ_q w_q K_ab(q),    E = Σ_q w_q ψ_q
+// with quadrature weights w_q and shape gradients g_a of the body (Bonet & Wood, Nonlinear
+// Continuum Mechanics for Finite Element Analysis); K_ab as in stress_tangent.h.
+//
+// A law that is evaluated faster for many points at a time gets a batch of them: Points<kNodes> is
+// made as Points<kNodes>(at, begin, end) for the points of elements [begin, end), at most
+// ElementSchedule::kElementsPerBatch, and the functions given here are called as
+// function(points, k) for the k-th of these points.
+#ifndef LACUNA_FEM_POINT_INTEGRALS_H_
+#define LACUNA_FEM_POINT_INTEGRALS_H_
+
+#include <Eigen/Core>
+#include <type_traits>
+
+#include "fem/effect.h"
+#include "fem/element_kinematics.h"
+#include "fem/stress_tangent.h"
+
+namespace lacuna {
+
+// visit(std::integral_constant<int, nodes per element>).
+template <typename Visit>
+auto WithNodesPerElement(const Body& body, const Visit& visit) {
+  if (body.mesh.Order() == 1) return visit(std::integral_constant<int, 4>());
+  return visit(std::integral_constant<int, 10>());
+}
+
+// The deformation gradients F of a batch.
+template <int kNodes>
+struct DeformationGradients {
+  DeformationGradients(const Kinematics& at, int begin, int end) {
+    for (int element = begin; element < end; ++element) {
+      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
+      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+        const int q = element * QuadraturePoints<kNodes>() + p;
+        gradient[points++] = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(at.body, q));
+      }
+    }
+  }
+
+  static constexpr int kMost = ElementSchedule::kElementsPerBatch * QuadraturePoints<kNodes>();
+  int points = 0;
+  Eigen::Matrix3d gradient[kMost];
+};
+
+// force += f.
+template <template <int> class Points, typename Stress>
+void AddNodalForces(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
+  WithNodesPerElement(at.body, [&](auto nodes) {
+    constexpr int kNodes = decltype(nodes)::value;
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachBatch(*at.body.schedule, [&](int begin, int end) {
+      const Points<kNodes> points(at, begin, end);
+      for (int element = begin; element < end; ++element) {
+        Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
+        for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
+          const Eigen::Matrix3d P = stress(points, q - begin * kPoints);
+          nodal.noalias() -=
+              (at.body.weight[q] * P).lazyProduct(ShapeGradient<kNodes>(at.body, q).transpose());
+        }
+        ScatterNodes<kNodes>(at.body, element, nodal, force);
+      }
+    });
+  });
+}
+
+// tangent += weight · ∂f/∂x. The function gives a StressTangent, or a type of its own for which
+// AddStiffness(tangent, …) is overloaded.
+template <template <int> class Points, typename TangentOf>
+void AddStiffnessMatrix(const Kinematics& at, double weight, const TangentOf& tangent_of,
+                        BlockMatrix* tangent) {
+  WithNodesPerElement(at.body, [&](auto nodes) {
+    constexpr int kNodes = decltype(nodes)::value;
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachBatch(*at.body.schedule, [&](int begin, int end) {
+      const Points<kNodes> points(at, begin, end);
+      for (int element = begin; element < end; ++element) {
+        ElementStiffness<kNodes> stiffness;
+        stiffness.SetZero();
+        for (int q = element * kPoints; q < (element + 1) * kPoints; ++q) {
+          AddStiffness<kNodes>(tangent_of(points, q - begin * kPoints),
+                               ShapeGradient<kNodes>(at.body, q), -weight * at.body.weight[q],
+                               &stiffness);
+        }
+        ScatterStiffness<kNodes>(at.body, element, stiffness, tangent);
+      }
+    });
+  });
+}
+
+// E, J.
+template <template <int> class Points, typename Density>
+double TotalEnergy(const Kinematics& at, const Density& density) {
+  return WithNodesPerElement(at.body, [&](auto nodes) {
+    constexpr int kNodes = decltype(nodes)::value;
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    return SumOverElements(*at.body.schedule, [&](int element) {
+      const Points<kNodes> points(at, element, element + 1);
+      double energy = 0;
+      for (int p = 0; p < kPoints; ++p) {
+        energy += at.body.weight[element * kPoints + p] * density(points, p);
+      }
+      return energy;
+    });
+  });
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FEM_POINT_INTEGRALS_H_
