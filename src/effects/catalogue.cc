@@ -12,6 +12,7 @@ CatalogueEntry LinearElasticity();
 CatalogueEntry CorotationalElasticity();
 CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
+CatalogueEntry StrainStiffening();
 CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
@@ -35,6 +36,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       SaintVenantKirchhoff(),
       NeoHookean(),
       // What the material does besides.
+      StrainStiffening(),
       ViscoelasticBranch(),
       ElastoplasticBranch(),
       Softening(),
