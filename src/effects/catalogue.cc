@@ -13,6 +13,7 @@ CatalogueEntry CorotationalElasticity();
 CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
 CatalogueEntry StrainStiffening();
+CatalogueEntry FibreStiffness();
 CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
@@ -37,6 +38,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       NeoHookean(),
       // What the material does besides.
       StrainStiffening(),
+      FibreStiffness(),
       ViscoelasticBranch(),
       ElastoplasticBranch(),
       Softening(),

@@ -55,9 +55,12 @@ TEST_P(PointEnergy, IsProportionalToItsSizeAndSoIsKnownWhenAbsent) {
   EXPECT_EQ(element.Energy(*absent, F), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PointEnergy,
-                         testing::Values(Case{"strain_stiffening", {{"modulus", 2e4}}, false}),
-                         [](const auto& info) { return info.param.type; });
+INSTANTIATE_TEST_SUITE_P(
+    All, PointEnergy,
+    testing::Values(Case{"strain_stiffening", {{"modulus", 2e4}}, false},
+                    Case{"fibre_stiffness",
+                         {{"modulus", 5e4}, {"azimuth", 0.7}, {"inclination", -0.4}}}),
+    [](const auto& info) { return info.param.type; });
 
 }  // namespace
 }  // namespace lacuna
