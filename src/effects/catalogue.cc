@@ -14,6 +14,8 @@ CatalogueEntry SaintVenantKirchhoff();
 CatalogueEntry NeoHookean();
 CatalogueEntry StrainStiffening();
 CatalogueEntry FibreStiffness();
+CatalogueEntry Inclusion();
+CatalogueEntry StiffnessGradient();
 CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
@@ -39,6 +41,8 @@ const std::vector<CatalogueEntry>& Catalogue() {
       // What the material does besides.
       StrainStiffening(),
       FibreStiffness(),
+      Inclusion(),
+      StiffnessGradient(),
       ViscoelasticBranch(),
       ElastoplasticBranch(),
       Softening(),

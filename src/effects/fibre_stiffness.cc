@@ -99,7 +99,7 @@ class FibreStiffnessLaw {
         .separating_experiment =
             "turn the body by 90° about the load and load it again: with fibres the response "
             "changes, with a stiffness that differs from place to place it turns with the place",
-        .look_alikes = {"strain_stiffening"},
+        .look_alikes = {"strain_stiffening", "inclusion", "stiffness_gradient"},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -1,0 +1,99 @@
+// A stiffer or softer lump inside the body, with a smooth boundary.
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "effects/catalogue.h"
+#include "effects/extra_stiffness.h"
+
+namespace lacuna {
+namespace {
+
+class BumpWeight {
+ public:
+  enum Parameter { kDifference, kCentre, kRadius = kCentre + 3 };
+
+  static const EffectCard& Card() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit BumpWeight(const Eigen::VectorXd& parameters)
+      : centre_(parameters.segment<3>(kCentre)), radius_(parameters[kRadius]) {
+    CHECK_GT(radius_, 0);
+  }
+
+  double Value(const Eigen::Vector3d& X) const {
+    return std::exp(-(X - centre_).squaredNorm() / (2 * radius_ * radius_));
+  }
+
+  double Derivative(const Eigen::Vector3d& X, int parameter) const {
+    const Eigen::Vector3d arm = X - centre_;
+    const double by_log =
+        parameter == kRadius ? arm.squaredNorm() / radius_ : arm[parameter - kCentre];
+    return Value(X) * by_log / (radius_ * radius_);
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    EffectCard card{
+        .type = "inclusion",
+        .title = "A stiffer or softer inclusion",
+        .equation =
+            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = exp(−|X − c|²/(2 r²)),  ψ_nH the neo-Hookean energy",
+        .citation =
+            "J. D. Eshelby, The Determination of the Elastic Field of an Ellipsoidal Inclusion, "
+            "and Related Problems, Proc. R. Soc. A 241, 1957, 376–396; smooth lumps in "
+            "elastography: A. A. Oberai et al., Inverse Problems 19, 2003, 297–313",
+        .parameters = {},
+        .residual_when_missing =
+            "the surface moves too much on one side of a place inside the body and too little "
+            "around it, at the same place of the body under every load that strains it there, in "
+            "proportion to the strain",
+        .separating_experiment =
+            "turn the load, or press elsewhere: the residual stays where the lump is and vanishes "
+            "under loads that do not strain it; a residual of fibres follows the direction of the "
+            "load, one of the grip stays at the grip",
+        .look_alikes = {"stiffness_gradient", "fibre_stiffness"},
+        .repeatable = true,
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+    card.parameters.push_back(YoungModulusDifference("at the centre of the lump"));
+    for (const char* axis : {"x", "y", "z"}) {
+      card.parameters.push_back(
+          {.name = std::string("centre_") + axis,
+           .meaning = std::string("place of the lump in the rest shape, ") + axis + " coordinate",
+           .dimension = kLength,
+           .bounds = kAnyValue,
+           .null_value = kNone,
+           .plausible_min = -0.2,
+           .plausible_max = 0.2,
+           .default_value = kNone});
+    }
+    card.parameters.push_back({.name = "radius",
+                               .meaning = "distance from the centre at which 61 % of the "
+                                          "difference is left, r; some element sizes at least",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNone,
+                               .plausible_min = 0.002,
+                               .plausible_max = 0.05,
+                               .default_value = kNone,
+                               .log_scale = true});
+    card.parameters.push_back(ElasticSettings()[1]);
+    return card;
+  }
+
+  Eigen::Vector3d centre_;  // m
+  double radius_;           // m
+};
+
+}  // namespace
+
+CatalogueEntry Inclusion() {
+  return {&BumpWeight::Card(), CatalogueEntry::Kind::kEffect,
+          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<BumpWeight>>>, &ReadWithMaterial};
+}
+
+}  // namespace lacuna

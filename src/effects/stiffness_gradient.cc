@@ -1,0 +1,103 @@
+// Stiffness that changes evenly along a direction of the body, as of a casting that cured or
+// settled unevenly.
+#include <limits>
+#include <string>
+
+#include "effects/catalogue.h"
+#include "effects/extra_stiffness.h"
+
+namespace lacuna {
+namespace {
+
+class LinearWeight {
+ public:
+  enum Parameter { kDifference, kOrigin, kAxis = kOrigin + 3, kLengthScale = kAxis + 3 };
+
+  static const EffectCard& Card() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit LinearWeight(const Eigen::VectorXd& parameters)
+      : origin_(parameters.segment<3>(kOrigin)),
+        gradient_(parameters.segment<3>(kAxis).normalized() / parameters[kLengthScale]) {
+    CHECK_GT(parameters.segment<3>(kAxis).norm(), 0) << "a gradient needs a direction";
+    CHECK_GT(parameters[kLengthScale], 0);
+  }
+
+  double Value(const Eigen::Vector3d& X) const { return gradient_.dot(X - origin_); }
+
+ private:
+  static EffectCard MakeCard() {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    EffectCard card{
+        .type = "stiffness_gradient",
+        .title = "Stiffness that changes along the body",
+        .equation =
+            "ψ = w(X) ψ_nH(F; ΔE, ν),  w = a·(X − o)/L with |a| = 1,  ψ_nH the neo-Hookean energy",
+        .citation =
+            "S. Suresh, A. Mortensen, Fundamentals of Functionally Graded Materials, IOM "
+            "Communications 1998; neo-Hookean energy: B. Smith, F. de Goes, T. Kim, ACM TOG 37(2), "
+            "2018, Eq. 13",
+        .parameters = {},
+        .residual_when_missing =
+            "strain is predicted too small towards one end of the body and too large towards the "
+            "other, in proportion to the load and whatever its direction",
+        .separating_experiment =
+            "hold the body at its other end and load it again: the soft end stays soft, whereas an "
+            "error of the grip or of the load changes ends with the grip",
+        .look_alikes = {"inclusion", "fibre_stiffness"},
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+    card.parameters.push_back(YoungModulusDifference("over the length L, evenly along a"));
+    for (const char* axis : {"x", "y", "z"}) {
+      card.parameters.push_back(
+          {.name = std::string("origin_") + axis,
+           .meaning =
+               std::string("place in the rest shape where nothing is added, o, along ") + axis,
+           .dimension = kLength,
+           .bounds = kAnyValue,
+           .null_value = kNone,
+           .plausible_min = -0.2,
+           .plausible_max = 0.2,
+           .default_value = 0,
+           .setting = true});
+    }
+    for (const char* axis : {"x", "y", "z"}) {
+      card.parameters.push_back(
+          {.name = std::string("axis_") + axis,
+           .meaning =
+               std::string("direction in which stiffness grows, of any length, along ") + axis,
+           .dimension = kDimensionless,
+           .bounds = kAnyValue,
+           .null_value = kNone,
+           .plausible_min = -1,
+           .plausible_max = 1,
+           .default_value = kNone,
+           .setting = true});
+    }
+    card.parameters.push_back({.name = "length",
+                               .meaning = "distance over which the difference is added, L",
+                               .dimension = kLength,
+                               .bounds = kPositive,
+                               .null_value = kNone,
+                               .plausible_min = 0.01,
+                               .plausible_max = 1,
+                               .default_value = 0.1,
+                               .setting = true});
+    card.parameters.push_back(ElasticSettings()[1]);
+    return card;
+  }
+
+  Eigen::Vector3d origin_;    // m
+  Eigen::Vector3d gradient_;  // a/L, 1/m
+};
+
+}  // namespace
+
+CatalogueEntry StiffnessGradient() {
+  return {&LinearWeight::Card(), CatalogueEntry::Kind::kEffect,
+          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<LinearWeight>>>, &ReadWithMaterial};
+}
+
+}  // namespace lacuna
