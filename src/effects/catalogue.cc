@@ -19,6 +19,7 @@ CatalogueEntry StiffnessGradient();
 CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
+CatalogueEntry Swelling();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
@@ -46,6 +47,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       ViscoelasticBranch(),
       ElastoplasticBranch(),
       Softening(),
+      Swelling(),
       // Loads, inertia, damping and supports.
       Gravity(),
       AttachedMass(),

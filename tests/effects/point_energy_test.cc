@@ -57,25 +57,26 @@ TEST_P(PointEnergy, IsProportionalToItsSizeAndSoIsKnownWhenAbsent) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, PointEnergy,
-    testing::Values(Case{"strain_stiffening", {{"modulus", 2e4}}, false},
-                    Case{"fibre_stiffness",
-                         {{"modulus", 5e4}, {"azimuth", 0.7}, {"inclination", -0.4}}},
-                    // At the edge of the block of CheckEffect.
-                    Case{"inclusion",
-                         {{"young_modulus_difference", 6e4},
-                          {"centre_x", 0.04},
-                          {"centre_y", -0.02},
-                          {"centre_z", 0.03},
-                          {"radius", 0.02},
-                          {"poisson_ratio", 0.4}}},
-                    Case{"stiffness_gradient",
-                         {{"young_modulus_difference", 6e4},
-                          {"origin_x", 0.02},
-                          {"axis_x", 1},
-                          {"axis_y", -0.5},
-                          {"axis_z", 0.3},
-                          {"length", 0.05},
-                          {"poisson_ratio", 0.4}}}),
+    testing::Values(
+        Case{"strain_stiffening", {{"modulus", 2e4}}, false},
+        Case{"fibre_stiffness", {{"modulus", 5e4}, {"azimuth", 0.7}, {"inclination", -0.4}}},
+        // At the edge of the block of CheckEffect.
+        Case{"inclusion",
+             {{"young_modulus_difference", 6e4},
+              {"centre_x", 0.04},
+              {"centre_y", -0.02},
+              {"centre_z", 0.03},
+              {"radius", 0.02},
+              {"poisson_ratio", 0.4}}},
+        Case{"stiffness_gradient",
+             {{"young_modulus_difference", 6e4},
+              {"origin_x", 0.02},
+              {"axis_x", 1},
+              {"axis_y", -0.5},
+              {"axis_z", 0.3},
+              {"length", 0.05},
+              {"poisson_ratio", 0.4}}},
+        Case{"swelling", {{"strain", 0.04}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}}),
     [](const auto& info) { return info.param.type; });
 
 }  // namespace

@@ -1,0 +1,108 @@
+// Swelling or shrinking: without stress the body would be larger than its rest shape by a linear
+// strain ε, by uptake of a liquid, by heat (ε = α ΔT) or by curing (ε < 0).
+//
+//   ψ = −3 K ε (J − 1)
+// adds the true stress −3 K ε I wherever the body is and however it is strained, which is the
+// thermal stress of small-strain elasticity: a body free to do so grows by ε (to first order), one
+// held on all sides pushes with 3 K ε = E ε/(1 − 2ν). As that stress is the same everywhere, its
+// nodal forces act on the boundary only. K belongs to the effect: when a fit changes the material's
+// modulus, the push 3 K ε stays what it was, and ε is to be read with the K given here.
+#include <Eigen/LU>
+#include <limits>
+
+#include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
+#include "effects/strain_invariants.h"
+#include "fem/point_energy_effect.h"
+
+namespace lacuna {
+namespace {
+
+class SwellingLaw {
+ public:
+  enum Parameter { kStrain, kYoungModulus, kPoissonRatio };
+
+  static const EffectCard& Card() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit SwellingLaw(const Eigen::VectorXd& parameters)
+      : strain_(parameters[kStrain]),
+        pressure_per_strain_(parameters[kYoungModulus] / (1 - 2 * parameters[kPoissonRatio])) {}
+
+  double EnergyDensity(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/) const {
+    return -Pressure() * InvariantsOf(F).dilatation;
+  }
+
+  Eigen::Matrix3d Stress(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/) const {
+    return -Pressure() * Cofactor(F);
+  }
+
+  StressTangent Tangent(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/,
+                        bool convexify) const {
+    if (convexify) {
+      const SignedSvd axes = ComputeSignedSvd(F);
+      PrincipalTangent principal = PrincipalTangent::Zero();
+      principal.AddVolumetric(axes.stretch, -Pressure(), 0);
+      return ProjectedTangent(axes, principal);
+    }
+    StressTangent tangent = StressTangent::Zero();
+    AddCofactorDerivative(F, -Pressure(), &tangent);
+    return tangent;
+  }
+
+  Eigen::Matrix3d StressDerivative(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/,
+                                   int /*parameter*/) const {
+    return -pressure_per_strain_ * Cofactor(F);
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "swelling",
+        .title = "Swelling, shrinking or thermal expansion",
+        .equation = "ψ = −3 K ε (J − 1),  J = det F,  3 K = E/(1 − 2ν),  P = −3 K ε ∂J/∂F",
+        .citation =
+            "J. M. C. Duhamel, Second mémoire sur les phénomènes thermo-mécaniques, J. de l'École "
+            "Polytechnique 15, 1837, 1–57; B. A. Boley, J. H. Weiner, Theory of Thermal Stresses, "
+            "Wiley 1960, ch. 1",
+        .parameters = {},
+        .residual_when_missing =
+            "already without load the body is larger, or smaller, than its rest shape by the same "
+            "share in all directions, and bulges beside a clamp that keeps it from growing; the "
+            "residual does not change with the load",
+        .separating_experiment =
+            "take all load away and turn the body upside down: swelling stays as it is, the sag of "
+            "gravity changes sign; free the clamp: a swollen body is then of the same shape, only "
+            "larger",
+        .look_alikes = {"gravity"},
+        .conserves_momentum = true,
+        .conserves_angular_momentum = true};
+    card.parameters.push_back({.name = "strain",
+                               .meaning = "linear strain that the body would have if it were free, "
+                                          "ε; negative where it shrinks",
+                               .dimension = kDimensionless,
+                               .bounds = {-1, 10, true, false},
+                               .null_value = 0,
+                               .plausible_min = -0.1,
+                               .plausible_max = 0.1,
+                               .default_value = std::numeric_limits<double>::quiet_NaN()});
+    for (ParameterCard& setting : ElasticSettings()) card.parameters.push_back(std::move(setting));
+    return card;
+  }
+
+  double Pressure() const { return pressure_per_strain_ * strain_; }
+
+  double strain_;               // ε
+  double pressure_per_strain_;  // 3 K, Pa
+};
+
+}  // namespace
+
+CatalogueEntry Swelling() {
+  return {&SwellingLaw::Card(), CatalogueEntry::Kind::kEffect,
+          &MakeAs<PointEnergyEffect<SwellingLaw>>, &ReadWithMaterial};
+}
+
+}  // namespace lacuna
