@@ -20,6 +20,7 @@ CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
 CatalogueEntry Swelling();
+CatalogueEntry ActiveContraction();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
 CatalogueEntry DensityGradient();
@@ -48,6 +49,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       ElastoplasticBranch(),
       Softening(),
       Swelling(),
+      ActiveContraction(),
       // Loads, inertia, damping and supports.
       Gravity(),
       AttachedMass(),
