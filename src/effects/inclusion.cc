@@ -93,7 +93,7 @@ class BumpWeight {
 
 CatalogueEntry Inclusion() {
   return {&BumpWeight::Card(), CatalogueEntry::Kind::kEffect,
-          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<BumpWeight>>>, &ReadWithMaterial};
+          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<BumpWeight>>>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -97,7 +97,7 @@ class LinearWeight {
 
 CatalogueEntry StiffnessGradient() {
   return {&LinearWeight::Card(), CatalogueEntry::Kind::kEffect,
-          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<LinearWeight>>>, &ReadWithMaterial};
+          &MakeAs<PointEnergyEffect<ExtraStiffnessLaw<LinearWeight>>>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -102,7 +102,7 @@ class SwellingLaw {
 
 CatalogueEntry Swelling() {
   return {&SwellingLaw::Card(), CatalogueEntry::Kind::kEffect,
-          &MakeAs<PointEnergyEffect<SwellingLaw>>, &ReadWithMaterial};
+          &MakeAs<PointEnergyEffect<SwellingLaw>>, &ReadParameters};
 }
 
 }  // namespace lacuna

@@ -16,7 +16,8 @@ enum class Pivots {
 };
 
 // panel ← [L₁₁; L₂₁] with L₁₁ L₁₁ᵀ = its upper part, update ← update − L₂₁ L₂₁ᵀ. Blocks of a few
-// columns on the diagonal of L₁₁ are stored inverted. Stops at the first pivot that is not positive.
+// columns on the diagonal of L₁₁ are stored inverted. Stops at the first pivot that is not
+// positive.
 Pivots EliminateColumns(int m, int p, float* panel, float* update);
 
 // y ← [z; y₂ − L₂₁ z] with z = L₁₁⁻¹ y₁; y of length m.

@@ -20,8 +20,8 @@ struct StepOptions {
   // effect and the external force); smaller: more iterations, one or two where they are quadratic.
   double relative_tolerance = 1e-8;
   LinearSolverOptions linear = {};
-  // A step that ends with an inverted element is not usable. Switch off for linear elasticity, whose
-  // small-strain law does not know inversion.
+  // A step that ends with an inverted element is not usable. Switch off for linear elasticity,
+  // whose small-strain law does not know inversion.
   bool refuse_inverted = true;
 };
 

@@ -40,7 +40,7 @@ class PredictionCost : public ceres::CostFunction {
     Eigen::VectorXd values(count);
     for (int k = 0; k < count; ++k) values[k] = FromFree(parameters_[k], free[k][0]);
     // Nearly every trial is accepted and then asked for its Jacobian: both come from one run.
-    if (values != last_values_) {
+    if (last_values_.size() == 0 || values != last_values_) {
       ++predictions_;
       last_ = predict_(values, /*with_jacobian=*/true);
       last_values_ = values;

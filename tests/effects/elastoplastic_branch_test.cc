@@ -108,7 +108,7 @@ TEST(ElastoplasticBranch, LeavesTheClosedFormSetBesideASpring) {
   const double loaded = sigma / (9 * kBulk) + (sigma - sigma_y) / kThreeShear;
   const double set = (sigma - sigma_y) / kThreeShear - sigma / (kThreeShear + kModulus);
   EXPECT_NEAR(draw(sigma), loaded, 1e-3 * loaded);
-  EXPECT_NEAR(draw(0), set, 1e-3 * loaded);
+  EXPECT_NEAR(draw(0), set, 1e-3 * set);
   EXPECT_GT(set, 0.1 * loaded);
 }
 

@@ -54,8 +54,12 @@ TEST(FibreStiffness, IsTheTransverselyIsotropicSolidOfSmallStrain) {
     const double along = a.dot(isotropic(pull) * a);
     const Eigen::Matrix3d strain =
         isotropic(pull) - kModulus * along / (1 + kModulus / kYoung) * isotropic(a * a.transpose());
-    if (degrees == 0) EXPECT_NEAR(strain(0, 0), pull(0, 0) / (kYoung + kModulus), 1e-18);
-    if (degrees == 35) EXPECT_GT(std::abs(strain(0, 1)), 0.05 * strain(0, 0));
+    if (degrees == 0) {
+      EXPECT_NEAR(strain(0, 0), pull(0, 0) / (kYoung + kModulus), 1e-18);
+    }
+    if (degrees == 35) {
+      EXPECT_GT(std::abs(strain(0, 1)), 0.05 * strain(0, 0));
+    }
     const Eigen::Matrix3d stress = element.Stress(*solid, identity + strain) +
                                    element.Stress(*Fibres(azimuth, 0), identity + strain);
     // The next order in the strain is 1e-7 of it.
