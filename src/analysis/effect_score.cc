@@ -88,7 +88,7 @@ EffectScore ScoreEffect(const FittedModel& fitted, const Eigen::MatrixXd& by,
   return score;
 }
 
-double Similarity(const FittedModel& fitted, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+double Collinearity(const FittedModel& fitted, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   const auto whitener = [&](const Eigen::MatrixXd& columns) {
     const Eigen::MatrixXd gram = Symmetric(fitted.Product(columns, columns));
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);

@@ -58,7 +58,7 @@ EffectScore ScoreEffect(const FittedModel& fitted, const Eigen::MatrixXd& by,
 // The largest canonical correlation of two effects' derivatives after what is fitted has been taken
 // away, 0 to 1: near 1, this measurement cannot tell them apart by first order; 0 as well where one
 // of them is absorbed whole.
-double Similarity(const FittedModel& fitted, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+double Collinearity(const FittedModel& fitted, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 }  // namespace lacuna
 

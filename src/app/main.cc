@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   std::function<int()> command;
   lacuna::AddReconstruct(&app, &command);
   lacuna::AddFit(&app, &command);
+  lacuna::AddDiagnose(&app, &command);
   lacuna::AddSimulate(&app, &command);
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);

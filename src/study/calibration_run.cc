@@ -264,6 +264,26 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
   return stage.record;
 }
 
+FittedRun OpenRun(const std::filesystem::path& run) {
+  FittedRun opened;
+  opened.record = LoadCalibration(run);
+  if (!opened.record.usable) {
+    throw InputError(
+        fmt::format("{}: its fit is not usable: {}", run.string(), opened.record.message));
+  }
+  const std::filesystem::path experiment = (run / opened.record.experiment).lexically_normal();
+  opened.study = ReadPredictionStudy(Config::Load(experiment));
+  if (opened.study.configuration != LoadManifest(run / "manifest.json").configuration) {
+    throw InputError(fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(),
+                                 experiment.string()));
+  }
+  opened.mesh = ReadReferenceBody(FinishedStage(run, "mesh")).mesh;
+  opened.values.resize(static_cast<Eigen::Index>(opened.record.parameters.size()));
+  for (size_t k = 0; k < opened.record.parameters.size(); ++k)
+    opened.values[static_cast<Eigen::Index>(k)] = opened.record.parameters[k].estimate.value;
+  return opened;
+}
+
 CalibrationRecord LoadCalibration(const std::filesystem::path& run) {
   return ReadCalibrationFile(FinishedStage(run, "calibration") / "calibration.json");
 }

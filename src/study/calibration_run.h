@@ -44,6 +44,17 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
 // Of a finished run. Throws InputError.
 CalibrationRecord LoadCalibration(const std::filesystem::path& run);
 
+// A finished run, opened again: its experiment is read anew and must be the one that was fitted.
+struct FittedRun {
+  PredictionStudy study;
+  CalibrationRecord record;
+  TetMesh mesh;
+  Eigen::VectorXd values;  // of all parameters
+};
+// Throws InputError when the run is not finished or its fit not usable, or when the experiment has
+// changed since.
+FittedRun OpenRun(const std::filesystem::path& run);
+
 std::string VerdictName(ParameterEstimate::Verdict verdict);
 
 }  // namespace lacuna

@@ -82,7 +82,7 @@ TEST(EffectScore, IsRarelyLargeWithoutAnEffect) {
   EXPECT_LE(alarms, 1);
 }
 
-TEST(Similarity, IsTheCosineOfWhatIsLeftOfTwoDerivatives) {
+TEST(Collinearity, IsTheCosineOfWhatIsLeftOfTwoDerivatives) {
   std::mt19937 random(13);
   const Eigen::MatrixXd J = Random(kRows, 2, &random);
   const Eigen::MatrixXd basis = Random(kRows, 4, &random).householderQr().householderQ() *
@@ -91,9 +91,9 @@ TEST(Similarity, IsTheCosineOfWhatIsLeftOfTwoDerivatives) {
                            Eigen::Vector2d::Constant(INFINITY));
   const Eigen::VectorXd a = basis.col(2) + 5 * basis.col(0);
   const Eigen::VectorXd b = 3 * basis.col(2) + 4 * basis.col(3) - basis.col(1);
-  EXPECT_NEAR(Similarity(fitted, a, b), 0.6, 1e-6);
-  EXPECT_NEAR(Similarity(fitted, a, a), 1, 1e-6);
-  EXPECT_EQ(Similarity(fitted, a, basis.col(0)), 0);
+  EXPECT_NEAR(Collinearity(fitted, a, b), 0.6, 1e-6);
+  EXPECT_NEAR(Collinearity(fitted, a, a), 1, 1e-6);
+  EXPECT_EQ(Collinearity(fitted, a, basis.col(0)), 0);
 }
 
 }  // namespace

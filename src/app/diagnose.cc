@@ -1,0 +1,88 @@
+// lacuna diagnose RUN
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "app/commands.h"
+#include "core/atomic_file.h"
+#include "study/calibration_run.h"
+#include "study/diagnosis.h"
+
+namespace lacuna {
+namespace {
+
+std::string Sizes(const RankedEffect& effect) {
+  std::vector<std::string> sizes;
+  for (size_t k = 0; k < effect.parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    sizes.push_back(
+        fmt::format("{:.3g} ± {:.2g}", effect.score.size[at], effect.score.deviation[at]));
+  }
+  return fmt::format("{} {}", fmt::join(sizes, ", "), effect.units.front());
+}
+
+void PrintRanking(const Diagnosis& diagnosis) {
+  fmt::print("\n  {:22} {:>9} {:>10} {:>9}  {:34} {}\n", "effect", "evidence", "explains",
+             "absorbed", "expected size", "held-out error after a refit");
+  constexpr size_t kShown = 12;
+  for (size_t k = 0; k < std::min(kShown, diagnosis.ranking.size()); ++k) {
+    const RankedEffect& effect = diagnosis.ranking[k];
+    std::string refit = "-";
+    if (effect.refitted)
+      refit = effect.refit_message.empty()
+                  ? fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * effect.held_out_rms, effect.in_noise)
+                  : effect.refit_message;
+    fmt::print("  {:22} {:>9.1f} {:>9.0f}% {:>8.0f}%  {:34} {}\n", effect.candidate.type,
+               effect.score.evidence, 100 * effect.score.explained, 100 * effect.score.absorbed,
+               Sizes(effect), refit);
+    if (!effect.candidate.variant.empty()) fmt::print("      {}\n", effect.candidate.variant);
+  }
+}
+
+void PrintVerdict(const Diagnosis& diagnosis) {
+  fmt::print("\n  {} of the {} error changes with a finer mesh and step\n",
+             fmt::format("{:.0f} %", 100 * diagnosis.mesh_share),
+             diagnosis.has_held_out ? "fitted" : "whole");
+  fmt::print(
+      "\n{}{}\n  {}\n", VerdictName(diagnosis.verdict),
+      diagnosis.effects.empty() ? "" : fmt::format(" {{{}}}", fmt::join(diagnosis.effects, ", ")),
+      diagnosis.explanation);
+  if (!diagnosis.experiment.empty()) fmt::print("  what would tell: {}\n", diagnosis.experiment);
+}
+
+int RunDiagnose(const std::filesystem::path& run, int refits) {
+  const FittedRun opened = OpenRun(run);
+  const CalibrationProblem problem(opened.study, opened.mesh);
+  Progress progress;
+  const Diagnosis diagnosis =
+      Diagnose(problem, opened.mesh, opened.values, {.refits = refits}, &progress);
+  const std::filesystem::path folder = run / "diagnosis";
+  MakeFolder(folder);
+  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
+  PrintRanking(diagnosis);
+  PrintVerdict(diagnosis);
+  fmt::print("\n{} holds all of it\n", (folder / "diagnosis.json").string());
+  return 0;
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App* app, std::function<int()>* command) {
+  CLI::App* diagnose =
+      app->add_subcommand("diagnose", "Which physical effect a fitted model lacks");
+  diagnose->footer(
+      "RUN is the folder of a finished `lacuna fit`. Every effect of the catalogue is scored "
+      "along\n"
+      "the fitted motion; the best are fitted, and judged by frames and recordings held out.");
+  auto run = std::make_shared<std::string>();
+  auto refits = std::make_shared<int>(3);
+  diagnose->add_option("run", *run, "The run's folder")->required();
+  diagnose->add_option("--refits", *refits, "How many effects to fit")->check(CLI::Range(0, 50));
+  diagnose->callback(
+      [command, run, refits] { *command = [run, refits] { return RunDiagnose(*run, *refits); }; });
+}
+
+}  // namespace lacuna

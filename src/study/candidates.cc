@@ -1,0 +1,198 @@
+#include "study/candidates.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "effects/catalogue.h"
+#include "record/effect_card.h"
+
+namespace lacuna {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+struct Variant {
+  std::string name;
+  Values values;
+};
+
+// The object's shape in a few numbers.
+struct Extent {
+  Eigen::Vector3d centre;
+  Eigen::Matrix3d axis;    // columns: longest first, each pointing to its larger coordinate
+  Eigen::Vector3d length;  // along them
+};
+
+Extent Measure(const Body& body) {
+  Extent extent;
+  const Eigen::VectorXd& mass = body.node_mass;
+  extent.centre = body.mesh.nodes * mass / mass.sum();
+  const Eigen::Matrix3Xd from = body.mesh.nodes.colwise() - extent.centre;
+  const Eigen::Matrix3d inertia = from * mass.asDiagonal() * from.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(inertia);
+  // Only the longest axis means something where a section is square or round; the others are taken
+  // near those of the coordinates then.
+  constexpr double kDistinct = 1.1;
+  const Eigen::Vector3d moment = eigen.eigenvalues();
+  Eigen::Vector3d longest = eigen.eigenvectors().col(2);
+  if (moment[2] < kDistinct * moment[1]) longest = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d second = eigen.eigenvectors().col(1);
+  if (moment[1] < kDistinct * moment[0] || moment[2] < kDistinct * moment[1]) {
+    Eigen::Index least;
+    longest.cwiseAbs().minCoeff(&least);
+    second = Eigen::Vector3d::Unit(least);
+    second = (second - longest.dot(second) * longest).normalized();
+  }
+  extent.axis << longest, second, longest.cross(second);
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Vector3d axis = extent.axis.col(k);
+    Eigen::Index largest;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis[largest] < 0) axis = -axis;
+    extent.axis.col(k) = axis;
+    const Eigen::RowVectorXd along = axis.transpose() * from;
+    extent.length[k] = along.maxCoeff() - along.minCoeff();
+  }
+  return extent;
+}
+
+void SetVector(const std::string& name, const Eigen::Vector3d& vector, Values* values) {
+  (*values)[name + "_x"] = vector.x();
+  (*values)[name + "_y"] = vector.y();
+  (*values)[name + "_z"] = vector.z();
+}
+
+std::string AxisName(const Eigen::Vector3d& axis) {
+  return fmt::format("along ({:.2g}, {:.2g}, {:.2g})", axis.x() + 0.0, axis.y() + 0.0,
+                     axis.z() + 0.0);
+}
+
+// Along the object's longest axis, at these shares of its length.
+std::vector<Variant> Places(const Extent& extent, const std::vector<double>& shares,
+                            double radius_share) {
+  std::vector<Variant> variants;
+  for (const double share : shares) {
+    Variant variant;
+    const Eigen::Vector3d place =
+        extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0);
+    variant.name = fmt::format("at {:.0f} % of the length", 100 * share);
+    SetVector("centre", place, &variant.values);
+    variant.values["radius"] = radius_share * extent.length[0];
+    variants.push_back(variant);
+  }
+  return variants;
+}
+
+std::vector<Variant> Directions(const Extent& extent, int count) {
+  std::vector<Variant> variants;
+  for (int k = 0; k < count; ++k) {
+    Variant variant;
+    const Eigen::Vector3d axis = extent.axis.col(k);
+    variant.name = AxisName(axis);
+    SetVector("axis", axis, &variant.values);
+    variant.values["azimuth"] = std::atan2(axis.y(), axis.x());
+    variant.values["inclination"] = std::asin(std::clamp(axis.z(), -1.0, 1.0));
+    SetVector("origin", extent.centre, &variant.values);
+    variant.values["length"] = extent.length[k];
+    variants.push_back(variant);
+  }
+  return variants;
+}
+
+std::vector<Variant> Numbers(const std::string& parameter, const std::string& symbol,
+                             const std::string& unit, const std::vector<double>& numbers) {
+  std::vector<Variant> variants;
+  for (const double number : numbers)
+    variants.push_back(
+        {fmt::format("{} = {:.2g}{}{}", symbol, number, unit.empty() ? "" : " ", unit),
+         {{parameter, number}}});
+  return variants;
+}
+
+std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
+  std::vector<double> times;
+  for (double time = std::max(4 * setting.time_step, 0.003 * setting.duration);
+       time <= setting.duration; time *= 4)
+    times.push_back(time);
+  if (times.empty()) times.push_back(setting.duration);
+  return times;
+}
+
+std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
+                                const CandidateSetting& setting) {
+  if (type == "inclusion") return Places(extent, {0.2, 0.5, 0.8}, 0.15);
+  if (type == "attached_mass") return Places(extent, {0.05, 0.5, 0.95}, 0.05);
+  if (type == "point_force" || type == "follower_force")
+    return Places(extent, {0.05, 0.5, 0.95}, 0.1);
+  if (type == "fibre_stiffness") return Directions(extent, 3);
+  if (type == "active_contraction") return Directions(extent, 3);
+  if (type == "stiffness_gradient" || type == "density_gradient") return Directions(extent, 1);
+  if (type == "viscoelastic_branch")
+    return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
+  if (type == "elastoplastic_branch")
+    return Numbers("yield_strain", "yield at a strain", "", {0.01, 0.05});
+  if (type == "softening") return Numbers("softening_strain", "κ₀", "", {0.1});
+  return {{"", {}}};
+}
+
+Eigen::Vector3d GravityOf(const std::vector<std::shared_ptr<Effect>>& effects) {
+  for (const auto& effect : effects)
+    if (effect->Card().type == "gravity") return effect->Parameters();
+  return Eigen::Vector3d::Zero();
+}
+
+// The first parameter, or three where it begins a vector.
+std::vector<int> AmplitudeOf(const EffectCard& card) {
+  const bool is_vector = card.parameters[0].name.ends_with("_x");
+  return is_vector ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
+}
+
+// The card's parameters, from the variant, the model, the defaults; NaN where none tells.
+Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
+                         const CandidateSetting& setting) {
+  Values known = variant.values;
+  SetVector("gravity", GravityOf(setting.effects), &known);
+  const Effect& material = *setting.effects.front();
+  for (size_t m = 0; m < material.Card().parameters.size(); ++m)
+    known.try_emplace(material.Card().parameters[m].name,
+                      material.Parameters()[static_cast<Eigen::Index>(m)]);
+  Eigen::VectorXd values(card.parameters.size());
+  for (size_t k = 0; k < card.parameters.size(); ++k) {
+    const auto found = known.find(card.parameters[k].name);
+    values[static_cast<Eigen::Index>(k)] =
+        found != known.end() ? found->second : card.parameters[k].default_value;
+  }
+  for (const int k : AmplitudeOf(card)) values[k] = card.parameters[k].null_value;
+  return values;
+}
+
+}  // namespace
+
+std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
+  const Extent extent = Measure(setting.body);
+  std::vector<CandidateEffect> candidates;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const EffectCard& card = *entry.card;
+    if (entry.kind != CatalogueEntry::Kind::kEffect || entry.make == nullptr) continue;
+    if (card.parameters.empty() || std::isnan(card.parameters[0].null_value)) continue;
+    if (card.type == "plane_contact") continue;
+    const bool present =
+        std::any_of(setting.effects.begin(), setting.effects.end(),
+                    [&](const auto& effect) { return effect->Card().type == card.type; });
+    if (present && !card.repeatable) continue;
+    for (const Variant& variant : VariantsOf(card.type, extent, setting)) {
+      const Eigen::VectorXd values = ValuesOf(card, variant, setting);
+      CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
+      candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
+    }
+  }
+  return candidates;
+}
+
+}  // namespace lacuna

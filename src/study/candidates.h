@@ -1,0 +1,41 @@
+// The effects that a model may lack, each at its null value and in the variants that cannot be
+// found by a derivative: places, directions, times.
+#ifndef LACUNA_STUDY_CANDIDATES_H_
+#define LACUNA_STUDY_CANDIDATES_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/body.h"
+#include "fem/model.h"
+
+namespace lacuna {
+
+struct CandidateEffect {
+  std::string type;                // of the effect
+  std::string variant;             // "τ = 0.3 s", "at the tip"; empty where there is one only
+  std::shared_ptr<Effect> effect;  // at its null value
+  // The parameters that make its size: one, or the three components of a vector.
+  std::vector<int> amplitude;
+};
+
+// What the variants are chosen for.
+struct CandidateSetting {
+  const Body& body;
+  // The model's effects, the material first: what effects take from the material, gravity, and
+  // which effects it has already.
+  const std::vector<std::shared_ptr<Effect>>& effects;
+  double time_step = 0;  // s: of the simulation,
+  double duration = 0;   // s: and of the recording; relaxation times lie between them
+};
+
+// All effects of the catalogue whose size has a null value and that the model does not have yet.
+// Contact, which has no derivative at its null value, and effects that only YAML describes are not
+// among them.
+std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_CANDIDATES_H_

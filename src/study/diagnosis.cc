@@ -1,0 +1,406 @@
+#include "study/diagnosis.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/atomic_file.h"
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+using Verdict = Diagnosis::Verdict;
+
+// First order cannot tell effects apart whose derivatives are this parallel.
+constexpr double kLookAlike = 0.95;
+// The price of each rival, so that a larger catalogue does not find more.
+double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
+// What is left is noise below so many standard deviations.
+constexpr double kAtNoise = 1.2;
+// An effect must take this share of the held-out square error away to be worth naming, and a rival
+// must leave at least this much more rms than the best to be ruled out.
+constexpr double kWorthNaming = 0.1;
+constexpr double kRuledOut = 1.1;
+// Evidence (a natural logarithm) below which an effect is not worth a refit.
+constexpr double kNoEvidence = 3;
+
+struct Errors {
+  double in_fit = 0, held_out = 0, in_noise = 0;
+  bool has_held_out = false;
+};
+
+// Over all recordings; without held-out frames the fitted ones stand for them.
+Errors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  double fitted = 0, held_out = 0;
+  int fitted_points = 0, held_out_points = 0;
+  for (const RecordingMisfit& recording : problem.Misfits(values)) {
+    fitted += recording.in_fit.rms * recording.in_fit.rms * recording.in_fit.points;
+    fitted_points += recording.in_fit.points;
+    held_out += recording.held_out.rms * recording.held_out.rms * recording.held_out.points;
+    held_out_points += recording.held_out.points;
+  }
+  Errors errors;
+  errors.has_held_out = held_out_points > 0;
+  if (fitted_points > 0) errors.in_fit = std::sqrt(fitted / fitted_points);
+  errors.held_out = errors.has_held_out ? std::sqrt(held_out / held_out_points) : errors.in_fit;
+  errors.in_noise = errors.held_out / (std::sqrt(3.0) * problem.noise());
+  return errors;
+}
+
+double PlausibleScale(const ParameterCard& card) {
+  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
+}
+
+// Columns of all candidates' amplitudes.
+std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
+  std::vector<MisfitDirection> directions;
+  for (const CandidateEffect& candidate : candidates)
+    for (const int parameter : candidate.amplitude)
+      directions.push_back({{.effect = candidate.effect, .parameter = parameter}});
+  return directions;
+}
+
+struct Scored {
+  EffectScore score;
+  Eigen::MatrixXd by;
+};
+
+Scored Score(const FittedModel& fitted, const CandidateEffect& candidate,
+             const Eigen::MatrixXd& by) {
+  const EffectCard& card = candidate.effect->Card();
+  Eigen::VectorXd scale(by.cols());
+  std::vector<bool> one_sided;
+  for (Eigen::Index k = 0; k < by.cols(); ++k) {
+    const ParameterCard& parameter = card.parameters[candidate.amplitude[k]];
+    scale[k] = PlausibleScale(parameter);
+    one_sided.push_back(parameter.bounds.min >= parameter.null_value);
+  }
+  return {ScoreEffect(fitted, by, scale, one_sided), by};
+}
+
+// The residual's change when mesh and step are refined.
+std::optional<Eigen::VectorXd> RefinedDifference(const CalibrationProblem& problem,
+                                                 const Eigen::VectorXd& values,
+                                                 const Eigen::VectorXd& residual) {
+  PredictionStudy fine = problem.study();
+  fine.noise = problem.noise();
+  fine.mesh.tets.max_volume /= 3;
+  fine.time_step /= 2;
+  try {
+    const PredictedRecording& first = fine.recordings.front();
+    const ReferenceBody reference = MakeReferenceBody(
+        {fine.name, first.recording, fine.mesh, fine.sheet_layers, first.frames.front()});
+    const Prediction refined = CalibrationProblem(fine, reference.mesh).Predict(values, false);
+    if (!refined.usable) return std::nullopt;
+    return refined.residual - residual;
+  } catch (const InputError&) {
+    return std::nullopt;  // a shape that cannot be meshed more finely
+  }
+}
+
+void Refit(const CalibrationProblem& problem, const TetMesh& mesh, const Eigen::VectorXd& values,
+           RankedEffect* ranked, Progress* progress) {
+  const PredictionStudy study = WithEffect(problem.study(), *ranked);
+  const CalibrationProblem with(study, mesh);
+  const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
+  const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;
+  Eigen::VectorXd start = with.Start();
+  start.head(shared) = values.head(shared);
+  start.tail(start.size() - shared - added) = values.tail(values.size() - shared);
+  ranked->refitted = true;
+  ranked->calibration = with.Fit(start, progress);
+  if (ranked->calibration.estimates.empty()) {
+    ranked->refit_message = ranked->calibration.message;
+    return;
+  }
+  const Errors errors = ErrorsOf(with, ranked->calibration.parameters);
+  ranked->in_fit_rms = errors.in_fit;
+  ranked->held_out_rms = errors.held_out;
+  ranked->in_noise = errors.in_noise;
+  // An amplitude far outside what the card calls plausible explains by not being itself.
+  for (Eigen::Index k = 0; k < added; ++k) {
+    const auto& [effect, index] = study.fitted[shared + k].places.front();
+    const ParameterCard& card = effect->Card().parameters[index];
+    const double value = ranked->calibration.parameters[shared + k];
+    if (std::abs(value) > 3 * PlausibleScale(card))
+      ranked->refit_message = fmt::format("{} would be {:.3g} {}, far beyond {:.3g}", card.name,
+                                          value, card.dimension.unit, PlausibleScale(card));
+  }
+}
+
+const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::string& type) {
+  for (const RankedEffect& effect : ranking)
+    if (effect.candidate.type == type) return &effect;
+  return nullptr;
+}
+
+std::string Titles(const std::vector<std::string>& types) {
+  std::vector<std::string> titles;
+  for (const std::string& type : types) titles.push_back(FindEntry(type)->card->title);
+  return fmt::format("{}", fmt::join(titles, "; "));
+}
+
+void Decide(Diagnosis* diagnosis) {
+  std::vector<const RankedEffect*> refitted;
+  for (const RankedEffect& effect : diagnosis->ranking)
+    if (effect.refitted && effect.refit_message.empty()) refitted.push_back(&effect);
+  std::stable_sort(refitted.begin(), refitted.end(),
+                   [](const auto* a, const auto* b) { return a->held_out_rms < b->held_out_rms; });
+  const double base = diagnosis->held_out_rms;
+  const double best_left = refitted.empty() ? base : refitted.front()->held_out_rms;
+  const double gain = base > 0 ? 1 - best_left * best_left / (base * base) : 0;
+  const bool something = diagnosis->in_noise > kAtNoise;
+
+  if (!something && gain < kWorthNaming) {
+    diagnosis->verdict = Verdict::kAdequate;
+    diagnosis->explanation = fmt::format(
+        "the error, {:.3f} mm or {:.1f} σ, is that of the noise; no effect would lower "
+        "it by more than {:.0f} %",
+        1e3 * base, diagnosis->in_noise, 100 * kWorthNaming);
+    return;
+  }
+  const double best_explained =
+      diagnosis->ranking.empty() ? 0 : diagnosis->ranking.front().score.explained;
+  if (gain < kWorthNaming) {
+    if (diagnosis->mesh_share > std::max(0.2, best_explained)) {
+      diagnosis->verdict = Verdict::kNuisance;
+      diagnosis->effects = {"mesh"};
+      diagnosis->explanation = fmt::format(
+          "{:.0f} % of what is left changes with the mesh and the step: refine them "
+          "before looking for physics",
+          100 * diagnosis->mesh_share);
+    } else {
+      diagnosis->verdict = Verdict::kNotInLibrary;
+      diagnosis->explanation = fmt::format(
+          "{:.3f} mm or {:.1f} σ are left, and no effect of the catalogue lowers the "
+          "held-out error by more than {:.0f} %",
+          1e3 * base, diagnosis->in_noise, 100 * std::max(gain, 0.0));
+    }
+    return;
+  }
+  const RankedEffect& best = *refitted.front();
+  diagnosis->effects = {best.candidate.type};
+  for (size_t k = 1; k < refitted.size(); ++k)
+    if (refitted[k]->held_out_rms < kRuledOut * best_left)
+      diagnosis->effects.push_back(refitted[k]->candidate.type);
+  // Look-alikes that were not refitted cannot be ruled out either.
+  for (const std::string& other : best.look_alikes) {
+    const RankedEffect* rival = Find(diagnosis->ranking, other);
+    if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
+  }
+  const std::string drop =
+      fmt::format("from {:.3f} mm ({:.1f} σ) to {:.3f} mm ({:.1f} σ)", 1e3 * base,
+                  diagnosis->in_noise, 1e3 * best_left, best.in_noise);
+  const std::string where = diagnosis->has_held_out ? "held-out" : "fitted";
+  if (diagnosis->effects.size() == 1) {
+    diagnosis->verdict = Verdict::kMissing;
+    diagnosis->explanation =
+        fmt::format("{}: with it the {} error falls {}", Titles(diagnosis->effects), where, drop);
+  } else {
+    diagnosis->verdict = Verdict::kAmbiguous;
+    diagnosis->explanation = fmt::format(
+        "{}: this recording cannot tell them apart; with the best the {} error falls {}",
+        Titles(diagnosis->effects), where, drop);
+    diagnosis->experiment = best.candidate.effect->Card().separating_experiment;
+  }
+}
+
+nlohmann::json Number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+}  // namespace
+
+std::string VerdictName(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAdequate:
+      return "adequate";
+    case Verdict::kMissing:
+      return "missing";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+    case Verdict::kNuisance:
+      return "nuisance";
+    case Verdict::kNotInLibrary:
+      return "not in library";
+    case Verdict::kNoPower:
+      break;
+  }
+  return "no power";
+}
+
+PredictionStudy WithEffect(const PredictionStudy& study, const RankedEffect& ranked) {
+  PredictionStudy with = study;
+  const CatalogueEntry* entry = FindEntry(ranked.candidate.type);
+  Eigen::VectorXd values = ranked.candidate.effect->Parameters();
+  const EffectCard& card = *entry->card;
+  for (size_t k = 0; k < ranked.candidate.amplitude.size(); ++k) {
+    const int index = ranked.candidate.amplitude[k];
+    const ParameterCard& parameter = card.parameters[index];
+    const double size = ranked.score.size[static_cast<Eigen::Index>(k)];
+    // Within what is plausible, and not at the null value, where other parameters have no meaning.
+    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
+    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
+    values[index] = start;
+  }
+  const std::shared_ptr<Effect> effect = entry->make(values);
+  with.effects.push_back(effect);
+  for (ModelParameter& parameter : ModelParameters(with.effects)) {
+    if (parameter.places.front().first == effect) {
+      with.fitted.push_back(parameter);
+      continue;
+    }
+    // A modulus that the effect shares with the material moves with it.
+    for (ModelParameter& known : with.fitted)
+      if (known.places.front() == parameter.places.front()) known.places = parameter.places;
+  }
+  return with;
+}
+
+Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
+                   const Eigen::VectorXd& values, const DiagnosisOptions& options,
+                   Progress* progress) {
+  Diagnosis diagnosis;
+  diagnosis.noise = problem.noise();
+  const PredictionStudy& study = problem.study();
+  double duration = 0;
+  for (const PredictedRecording& item : study.recordings)
+    duration = std::max(duration, item.recording.times[item.frames.back()] -
+                                      item.recording.times[item.frames.front()]);
+
+  progress->Begin("score", 0);
+  problem.Predict(values, false, 0);  // the effects as fitted: candidates take moduli from them
+  const std::vector<CandidateEffect> candidates =
+      MakeCandidates({*problem.body(), study.effects, study.time_step, duration});
+  const Prediction linear = problem.Predict(values, true, std::numeric_limits<double>::infinity(),
+                                            DirectionsOf(candidates));
+  CHECK(linear.usable) << "the fitted model could be predicted before: " << linear.message;
+  const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
+  Eigen::VectorXd prior(known);
+  for (Eigen::Index k = 0; k < known; ++k) {
+    const CalibratedParameter& parameter = problem.parameters()[k];
+    prior[k] = parameter.prior_deviation * (parameter.log_scale ? values[k] : 1);
+  }
+  const std::optional<Eigen::VectorXd> refined =
+      RefinedDifference(problem, values, linear.residual);
+  problem.Predict(values, false, 0);  // the refined run has used the same effects
+  Eigen::MatrixXd jacobian = linear.jacobian.leftCols(known);
+  if (refined) {
+    const FittedModel before(linear.residual, jacobian, prior);
+    diagnosis.mesh_share =
+        ScoreEffect(before, *refined, Eigen::VectorXd::Constant(1, 1), {false}).explained;
+    // What finer discretisation would do is nobody's merit.
+    jacobian.conservativeResize(Eigen::NoChange, known + 1);
+    jacobian.col(known) = *refined;
+    prior.conservativeResize(known + 1);
+    prior[known] = 1;
+  }
+  const FittedModel fitted(linear.residual, jacobian, prior);
+
+  // The best variant of each effect.
+  struct Entry {
+    RankedEffect ranked;
+    Eigen::MatrixXd by;
+    int variants = 0;
+  };
+  std::vector<Entry> entries;
+  Eigen::Index column = known;
+  for (const CandidateEffect& candidate : candidates) {
+    const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
+    Scored scored = Score(fitted, candidate, linear.jacobian.middleCols(column, width));
+    column += width;
+    auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
+      return entry.ranked.candidate.type == candidate.type;
+    });
+    if (same == entries.end()) same = entries.insert(entries.end(), Entry{});
+    ++same->variants;
+    if (same->variants > 1 && scored.score.evidence <= same->ranked.score.evidence) continue;
+    same->ranked.candidate = candidate;
+    same->ranked.score = scored.score;
+    same->by = std::move(scored.by);
+  }
+  for (Entry& entry : entries) {
+    entry.ranked.score.evidence -= Price(entry.variants) + Price(entries.size());
+    const EffectCard& card = entry.ranked.candidate.effect->Card();
+    for (const int parameter : entry.ranked.candidate.amplitude) {
+      entry.ranked.parameters.push_back(card.parameters[parameter].name);
+      entry.ranked.units.emplace_back(card.parameters[parameter].dimension.unit);
+    }
+  }
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.ranked.score.evidence > b.ranked.score.evidence;
+  });
+  diagnosis.scored = static_cast<int>(candidates.size());
+  for (size_t i = 0; i < entries.size(); ++i) {
+    for (size_t j = 0; j < entries.size(); ++j)
+      if (i != j && Collinearity(fitted, entries[i].by, entries[j].by) > kLookAlike)
+        entries[i].ranked.look_alikes.push_back(entries[j].ranked.candidate.type);
+    diagnosis.ranking.push_back(entries[i].ranked);
+  }
+  progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));
+
+  const Errors errors = ErrorsOf(problem, values);
+  diagnosis.in_fit_rms = errors.in_fit;
+  diagnosis.held_out_rms = errors.held_out;
+  diagnosis.in_noise = errors.in_noise;
+  diagnosis.has_held_out = errors.has_held_out;
+
+  int refits = 0;
+  for (RankedEffect& ranked : diagnosis.ranking) {
+    if (refits == options.refits || ranked.score.evidence < kNoEvidence) break;
+    ++refits;
+    Refit(problem, mesh, values, &ranked, progress);
+    // The refit has changed effects that both models share.
+    problem.Predict(values, false, 0);
+  }
+  Decide(&diagnosis);
+  return diagnosis;
+}
+
+void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file) {
+  nlohmann::json ranking = nlohmann::json::array();
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    nlohmann::json sizes = nlohmann::json::array();
+    for (size_t k = 0; k < effect.parameters.size(); ++k) {
+      const Eigen::Index at = static_cast<Eigen::Index>(k);
+      sizes.push_back({{"parameter", effect.parameters[k]},
+                       {"unit", effect.units[k]},
+                       {"expected", effect.score.size[at]},
+                       {"deviation", Number(effect.score.deviation[at])},
+                       {"detectable", Number(effect.score.detectable[at])}});
+    }
+    nlohmann::json entry = {
+        {"effect", effect.candidate.type},         {"variant", effect.candidate.variant},
+        {"evidence", effect.score.evidence},       {"explained_share", effect.score.explained},
+        {"absorbed_share", effect.score.absorbed}, {"sizes", sizes},
+        {"look_alikes", effect.look_alikes},       {"refitted", effect.refitted}};
+    if (effect.refitted) {
+      entry["refit"] = {{"message", effect.refit_message},
+                        {"in_fit_rms_m", effect.in_fit_rms},
+                        {"held_out_rms_m", effect.held_out_rms},
+                        {"held_out_in_noise", effect.in_noise}};
+    }
+    ranking.push_back(entry);
+  }
+  const nlohmann::json all = {{"schema_version", 1},
+                              {"verdict", VerdictName(diagnosis.verdict)},
+                              {"effects", diagnosis.effects},
+                              {"explanation", diagnosis.explanation},
+                              {"experiment", diagnosis.experiment},
+                              {"noise_m", diagnosis.noise},
+                              {"in_fit_rms_m", diagnosis.in_fit_rms},
+                              {"held_out_rms_m", diagnosis.held_out_rms},
+                              {"held_out_in_noise", diagnosis.in_noise},
+                              {"has_held_out", diagnosis.has_held_out},
+                              {"mesh_share", diagnosis.mesh_share},
+                              {"ranking", ranking}};
+  WriteFileAtomically(file, all.dump(2) + "\n");
+}
+
+}  // namespace lacuna
