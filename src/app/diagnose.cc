@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-std::string Sizes(const RankedEffect& effect) {
+std::string Sizes(const ScoredEffect& effect) {
   std::vector<std::string> sizes;
   for (size_t k = 0; k < effect.parameters.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k);
@@ -35,10 +35,11 @@ void PrintRanking(const Diagnosis& diagnosis) {
       refit = effect.refit_message.empty()
                   ? fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * effect.held_out_rms, effect.in_noise)
                   : effect.refit_message;
-    fmt::print("  {:22} {:>9.1f} {:>9.0f}% {:>8.0f}%  {:34} {}\n", effect.candidate.type,
-               effect.score.evidence, 100 * effect.score.explained, 100 * effect.score.absorbed,
-               Sizes(effect), refit);
-    if (!effect.candidate.variant.empty()) fmt::print("      {}\n", effect.candidate.variant);
+    fmt::print("  {:22} {:>9.1f} {:>9.0f}% {:>8.0f}%  {:34} {}\n", effect.scored.candidate.type,
+               effect.scored.score.evidence, 100 * effect.scored.score.explained,
+               100 * effect.scored.score.absorbed, Sizes(effect.scored), refit);
+    if (!effect.scored.candidate.variant.empty())
+      fmt::print("      {}\n", effect.scored.candidate.variant);
   }
 }
 

@@ -212,7 +212,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.max_num_iterations = options.max_iterations;
-    solver.function_tolerance = options.function_tolerance;
+    solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
+                                                             1, first.residual.size()));
     solver.parameter_tolerance = 1e-7;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

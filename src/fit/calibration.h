@@ -39,8 +39,10 @@ using PredictionFunction =
     std::function<Prediction(const Eigen::VectorXd& parameters, bool with_jacobian)>;
 
 struct CalibrationOptions {
-  int max_iterations = 30;           // more: slower to give up
-  double function_tolerance = 1e-5;  // relative decrease of the cost at which to stop
+  int max_iterations = 30;  // more: slower to give up
+  // Stop when a step lowers the cost by less than this share of a measurement's mean cost; smaller:
+  // more iterations for changes within the intervals.
+  double cost_tolerance = 0.05;
 };
 
 // What the data says of one parameter.

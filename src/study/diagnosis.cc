@@ -17,16 +17,14 @@ namespace {
 
 using Verdict = Diagnosis::Verdict;
 
-// First order cannot tell effects apart whose derivatives are this parallel.
-constexpr double kLookAlike = 0.95;
-// The price of each rival, so that a larger catalogue does not find more.
-double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
 // An effect must take this share of the held-out square error away to be worth naming, and a rival
 // must leave at least this much more rms than the best to be ruled out.
 constexpr double kWorthNaming = 0.1;
 constexpr double kRuledOut = 1.1;
+// How far beyond the plausible range a refit may go, in parts of that range.
+constexpr double kMargin = 0.1;
 // Evidence (a natural logarithm) below which an effect is not worth a refit.
 constexpr double kNoEvidence = 3;
 
@@ -57,56 +55,9 @@ double PlausibleScale(const ParameterCard& card) {
   return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
 }
 
-// Columns of all candidates' amplitudes.
-std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
-  std::vector<MisfitDirection> directions;
-  for (const CandidateEffect& candidate : candidates)
-    for (const int parameter : candidate.amplitude)
-      directions.push_back({{.effect = candidate.effect, .parameter = parameter}});
-  return directions;
-}
-
-struct Scored {
-  EffectScore score;
-  Eigen::MatrixXd by;
-};
-
-Scored Score(const FittedModel& fitted, const CandidateEffect& candidate,
-             const Eigen::MatrixXd& by) {
-  const EffectCard& card = candidate.effect->Card();
-  Eigen::VectorXd scale(by.cols());
-  std::vector<bool> one_sided;
-  for (Eigen::Index k = 0; k < by.cols(); ++k) {
-    const ParameterCard& parameter = card.parameters[candidate.amplitude[k]];
-    scale[k] = PlausibleScale(parameter);
-    one_sided.push_back(parameter.bounds.min >= parameter.null_value);
-  }
-  return {ScoreEffect(fitted, by, scale, one_sided), by};
-}
-
-// The residual's change when mesh and step are refined.
-std::optional<Eigen::VectorXd> RefinedDifference(const CalibrationProblem& problem,
-                                                 const Eigen::VectorXd& values,
-                                                 const Eigen::VectorXd& residual) {
-  PredictionStudy fine = problem.study();
-  fine.noise = problem.noise();
-  fine.mesh.tets.max_volume /= 3;
-  fine.time_step /= 2;
-  try {
-    const PredictedRecording& first = fine.recordings.front();
-    const ReferenceBody reference = MakeReferenceBody(
-        {fine.name, first.recording, fine.mesh, fine.sheet_layers, first.frames.front()});
-    const Prediction refined = CalibrationProblem(fine, reference.mesh).Predict(values, false);
-    if (!refined.usable) return std::nullopt;
-    return refined.residual - residual;
-  } catch (const InputError&) {
-    return std::nullopt;  // a shape that cannot be meshed more finely
-  }
-}
-
 void Refit(const CalibrationProblem& problem, const TetMesh& mesh, const Eigen::VectorXd& values,
            RankedEffect* ranked, Progress* progress) {
-  const PredictionStudy study = WithEffect(problem.study(), *ranked);
+  const PredictionStudy study = WithEffect(problem.study(), ranked->scored);
   const CalibrationProblem with(study, mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
   const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;
@@ -123,20 +74,11 @@ void Refit(const CalibrationProblem& problem, const TetMesh& mesh, const Eigen::
   ranked->in_fit_rms = errors.in_fit;
   ranked->held_out_rms = errors.held_out;
   ranked->in_noise = errors.in_noise;
-  // An amplitude far outside what the card calls plausible explains by not being itself.
-  for (Eigen::Index k = 0; k < added; ++k) {
-    const auto& [effect, index] = study.fitted[shared + k].places.front();
-    const ParameterCard& card = effect->Card().parameters[index];
-    const double value = ranked->calibration.parameters[shared + k];
-    if (std::abs(value) > 3 * PlausibleScale(card))
-      ranked->refit_message = fmt::format("{} would be {:.3g} {}, far beyond {:.3g}", card.name,
-                                          value, card.dimension.unit, PlausibleScale(card));
-  }
 }
 
 const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::string& type) {
   for (const RankedEffect& effect : ranking)
-    if (effect.candidate.type == type) return &effect;
+    if (effect.scored.candidate.type == type) return &effect;
   return nullptr;
 }
 
@@ -166,7 +108,7 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const double best_explained =
-      diagnosis->ranking.empty() ? 0 : diagnosis->ranking.front().score.explained;
+      diagnosis->ranking.empty() ? 0 : diagnosis->ranking.front().scored.score.explained;
   if (gain < kWorthNaming) {
     if (diagnosis->mesh_share > std::max(0.2, best_explained)) {
       diagnosis->verdict = Verdict::kNuisance;
@@ -185,12 +127,12 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const RankedEffect& best = *refitted.front();
-  diagnosis->effects = {best.candidate.type};
+  diagnosis->effects = {best.scored.candidate.type};
   for (size_t k = 1; k < refitted.size(); ++k)
     if (refitted[k]->held_out_rms < kRuledOut * best_left)
-      diagnosis->effects.push_back(refitted[k]->candidate.type);
+      diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
   // Look-alikes that were not refitted cannot be ruled out either.
-  for (const std::string& other : best.look_alikes) {
+  for (const std::string& other : best.scored.look_alikes) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
@@ -207,7 +149,7 @@ void Decide(Diagnosis* diagnosis) {
     diagnosis->explanation = fmt::format(
         "{}: this recording cannot tell them apart; with the best the {} error falls {}",
         Titles(diagnosis->effects), where, drop);
-    diagnosis->experiment = best.candidate.effect->Card().separating_experiment;
+    diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
   }
 }
 
@@ -235,15 +177,15 @@ std::string VerdictName(Verdict verdict) {
   return "no power";
 }
 
-PredictionStudy WithEffect(const PredictionStudy& study, const RankedEffect& ranked) {
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
   PredictionStudy with = study;
-  const CatalogueEntry* entry = FindEntry(ranked.candidate.type);
-  Eigen::VectorXd values = ranked.candidate.effect->Parameters();
+  const CatalogueEntry* entry = FindEntry(scored.candidate.type);
+  Eigen::VectorXd values = scored.candidate.effect->Parameters();
   const EffectCard& card = *entry->card;
-  for (size_t k = 0; k < ranked.candidate.amplitude.size(); ++k) {
-    const int index = ranked.candidate.amplitude[k];
+  for (size_t k = 0; k < scored.candidate.amplitude.size(); ++k) {
+    const int index = scored.candidate.amplitude[k];
     const ParameterCard& parameter = card.parameters[index];
-    const double size = ranked.score.size[static_cast<Eigen::Index>(k)];
+    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
     // Within what is plausible, and not at the null value, where other parameters have no meaning.
     double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
     if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
@@ -253,6 +195,15 @@ PredictionStudy WithEffect(const PredictionStudy& study, const RankedEffect& ran
   with.effects.push_back(effect);
   for (ModelParameter& parameter : ModelParameters(with.effects)) {
     if (parameter.places.front().first == effect) {
+      // Where another effect is what is missing, a fit would make this one do its work at any size.
+      const auto& [place, index] = parameter.places.front();
+      const ParameterCard& plausible = place->Card().parameters[index];
+      const double margin = kMargin * (plausible.plausible_max - plausible.plausible_min);
+      CalibratedParameter& prior = parameter.prior;
+      prior.max = std::min(prior.max, plausible.plausible_max + margin);
+      prior.min = std::max(prior.min, plausible.log_scale && plausible.plausible_min > 0
+                                          ? 0.5 * plausible.plausible_min
+                                          : plausible.plausible_min - margin);
       with.fitted.push_back(parameter);
       continue;
     }
@@ -268,82 +219,13 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
                    Progress* progress) {
   Diagnosis diagnosis;
   diagnosis.noise = problem.noise();
-  const PredictionStudy& study = problem.study();
-  double duration = 0;
-  for (const PredictedRecording& item : study.recordings)
-    duration = std::max(duration, item.recording.times[item.frames.back()] -
-                                      item.recording.times[item.frames.front()]);
-
-  progress->Begin("score", 0);
-  problem.Predict(values, false, 0);  // the effects as fitted: candidates take moduli from them
-  const std::vector<CandidateEffect> candidates =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, duration});
-  const Prediction linear = problem.Predict(values, true, std::numeric_limits<double>::infinity(),
-                                            DirectionsOf(candidates));
-  CHECK(linear.usable) << "the fitted model could be predicted before: " << linear.message;
-  const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
-  Eigen::VectorXd prior(known);
-  for (Eigen::Index k = 0; k < known; ++k) {
-    const CalibratedParameter& parameter = problem.parameters()[k];
-    prior[k] = parameter.prior_deviation * (parameter.log_scale ? values[k] : 1);
+  EffectRanking ranking = RankEffects(problem, values, progress);
+  diagnosis.mesh_share = ranking.mesh_share;
+  diagnosis.scored = ranking.variants;
+  for (ScoredEffect& effect : ranking.effects) {
+    diagnosis.ranking.emplace_back();
+    diagnosis.ranking.back().scored = std::move(effect);
   }
-  const std::optional<Eigen::VectorXd> refined =
-      RefinedDifference(problem, values, linear.residual);
-  problem.Predict(values, false, 0);  // the refined run has used the same effects
-  Eigen::MatrixXd jacobian = linear.jacobian.leftCols(known);
-  if (refined) {
-    const FittedModel before(linear.residual, jacobian, prior);
-    diagnosis.mesh_share =
-        ScoreEffect(before, *refined, Eigen::VectorXd::Constant(1, 1), {false}).explained;
-    // What finer discretisation would do is nobody's merit.
-    jacobian.conservativeResize(Eigen::NoChange, known + 1);
-    jacobian.col(known) = *refined;
-    prior.conservativeResize(known + 1);
-    prior[known] = 1;
-  }
-  const FittedModel fitted(linear.residual, jacobian, prior);
-
-  // The best variant of each effect.
-  struct Entry {
-    RankedEffect ranked;
-    Eigen::MatrixXd by;
-    int variants = 0;
-  };
-  std::vector<Entry> entries;
-  Eigen::Index column = known;
-  for (const CandidateEffect& candidate : candidates) {
-    const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
-    Scored scored = Score(fitted, candidate, linear.jacobian.middleCols(column, width));
-    column += width;
-    auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
-      return entry.ranked.candidate.type == candidate.type;
-    });
-    if (same == entries.end()) same = entries.insert(entries.end(), Entry{});
-    ++same->variants;
-    if (same->variants > 1 && scored.score.evidence <= same->ranked.score.evidence) continue;
-    same->ranked.candidate = candidate;
-    same->ranked.score = scored.score;
-    same->by = std::move(scored.by);
-  }
-  for (Entry& entry : entries) {
-    entry.ranked.score.evidence -= Price(entry.variants) + Price(entries.size());
-    const EffectCard& card = entry.ranked.candidate.effect->Card();
-    for (const int parameter : entry.ranked.candidate.amplitude) {
-      entry.ranked.parameters.push_back(card.parameters[parameter].name);
-      entry.ranked.units.emplace_back(card.parameters[parameter].dimension.unit);
-    }
-  }
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.ranked.score.evidence > b.ranked.score.evidence;
-  });
-  diagnosis.scored = static_cast<int>(candidates.size());
-  for (size_t i = 0; i < entries.size(); ++i) {
-    for (size_t j = 0; j < entries.size(); ++j)
-      if (i != j && Collinearity(fitted, entries[i].by, entries[j].by) > kLookAlike)
-        entries[i].ranked.look_alikes.push_back(entries[j].ranked.candidate.type);
-    diagnosis.ranking.push_back(entries[i].ranked);
-  }
-  progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));
 
   const Errors errors = ErrorsOf(problem, values);
   diagnosis.in_fit_rms = errors.in_fit;
@@ -353,7 +235,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
 
   int refits = 0;
   for (RankedEffect& ranked : diagnosis.ranking) {
-    if (refits == options.refits || ranked.score.evidence < kNoEvidence) break;
+    if (refits == options.refits || ranked.scored.score.evidence < kNoEvidence) break;
     ++refits;
     Refit(problem, mesh, values, &ranked, progress);
     // The refit has changed effects that both models share.
@@ -367,19 +249,22 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   nlohmann::json ranking = nlohmann::json::array();
   for (const RankedEffect& effect : diagnosis.ranking) {
     nlohmann::json sizes = nlohmann::json::array();
-    for (size_t k = 0; k < effect.parameters.size(); ++k) {
+    for (size_t k = 0; k < effect.scored.parameters.size(); ++k) {
       const Eigen::Index at = static_cast<Eigen::Index>(k);
-      sizes.push_back({{"parameter", effect.parameters[k]},
-                       {"unit", effect.units[k]},
-                       {"expected", effect.score.size[at]},
-                       {"deviation", Number(effect.score.deviation[at])},
-                       {"detectable", Number(effect.score.detectable[at])}});
+      sizes.push_back({{"parameter", effect.scored.parameters[k]},
+                       {"unit", effect.scored.units[k]},
+                       {"expected", effect.scored.score.size[at]},
+                       {"deviation", Number(effect.scored.score.deviation[at])},
+                       {"detectable", Number(effect.scored.score.detectable[at])}});
     }
-    nlohmann::json entry = {
-        {"effect", effect.candidate.type},         {"variant", effect.candidate.variant},
-        {"evidence", effect.score.evidence},       {"explained_share", effect.score.explained},
-        {"absorbed_share", effect.score.absorbed}, {"sizes", sizes},
-        {"look_alikes", effect.look_alikes},       {"refitted", effect.refitted}};
+    nlohmann::json entry = {{"effect", effect.scored.candidate.type},
+                            {"variant", effect.scored.candidate.variant},
+                            {"evidence", effect.scored.score.evidence},
+                            {"explained_share", effect.scored.score.explained},
+                            {"absorbed_share", effect.scored.score.absorbed},
+                            {"sizes", sizes},
+                            {"look_alikes", effect.scored.look_alikes},
+                            {"refitted", effect.refitted}};
     if (effect.refitted) {
       entry["refit"] = {{"message", effect.refit_message},
                         {"in_fit_rms_m", effect.in_fit_rms},

@@ -16,10 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/effect_score.h"
 #include "core/progress.h"
 #include "study/calibration_problem.h"
-#include "study/candidates.h"
+#include "study/effect_ranking.h"
 
 namespace lacuna {
 
@@ -27,12 +26,9 @@ struct DiagnosisOptions {
   int refits = 3;  // of the best scored effects; more: slower, a wrong ranking is forgiven
 };
 
-// One effect, in the best of its variants.
+// A scored effect, and what came of fitting it.
 struct RankedEffect {
-  CandidateEffect candidate;
-  EffectScore score;  // evidence already less the price of having tried several variants
-  std::vector<std::string> parameters, units;  // of score.size
-  std::vector<std::string> look_alikes;        // effects that first order cannot tell from this one
+  ScoredEffect scored;
   // After the refit, where there was one.
   bool refitted = false;
   std::string refit_message;                // why it is not usable; empty: it is
@@ -63,7 +59,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
                    Progress* progress);
 
 // The study with the effect in its model, all of whose parameters are fitted.
-PredictionStudy WithEffect(const PredictionStudy& study, const RankedEffect& effect);
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& effect);
 
 // diagnosis.json
 void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file);
