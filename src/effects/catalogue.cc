@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "effects/vector_parameters.h"
+
 namespace lacuna {
 
 CatalogueEntry LinearElasticity();
@@ -97,16 +99,6 @@ Eigen::VectorXd DefaultValues(const EffectCard& card, const Effect* material) {
   return values;
 }
 
-// "axis" where the parameters axis_x, axis_y, axis_z begin, else "".
-std::string VectorAt(const EffectCard& card, size_t k) {
-  const std::string& first = card.parameters[k].name;
-  if (k + 2 >= card.parameters.size() || !first.ends_with("_x")) return "";
-  const std::string name = first.substr(0, first.size() - 2);
-  const bool complete =
-      card.parameters[k + 1].name == name + "_y" && card.parameters[k + 2].name == name + "_z";
-  return complete ? name : "";
-}
-
 Eigen::Vector3d ReadVector(const Config& config, const std::string& name,
                            const Dimension& dimension, const Eigen::Vector3d& default_value) {
   const Eigen::Vector3d vector = default_value.hasNaN()
@@ -158,7 +150,7 @@ Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
   Eigen::VectorXd values = DefaultValues(card, material);
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const ParameterCard& parameter = card.parameters[k];
-    if (const std::string vector = VectorAt(card, k); !vector.empty()) {
+    if (const std::string vector = VectorNameAt(card, k); !vector.empty()) {
       values.segment<3>(k) = ReadVector(config, vector, parameter.dimension, values.segment<3>(k));
       k += 2;
     } else if (std::isnan(values[k])) {

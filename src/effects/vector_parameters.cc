@@ -19,6 +19,15 @@ void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_va
   }
 }
 
+std::string VectorNameAt(const EffectCard& card, size_t k) {
+  const std::string& first = card.parameters[k].name;
+  if (k + 2 >= card.parameters.size() || !first.ends_with("_x")) return "";
+  const std::string name = first.substr(0, first.size() - 2);
+  const bool complete =
+      card.parameters[k + 1].name == name + "_y" && card.parameters[k + 2].name == name + "_z";
+  return complete ? name : "";
+}
+
 void AppendGravitySetting(EffectCard* card) {
   AppendVector({.name = "gravity",
                 .meaning = "acceleration of free fall, which must be that of the model's gravity "

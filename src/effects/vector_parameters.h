@@ -4,6 +4,7 @@
 #define LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
 
 #include <Eigen/Core>
+#include <string>
 
 #include "effects/catalogue.h"
 
@@ -13,6 +14,9 @@ namespace lacuna {
 // with NaN: the user must give it.
 void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_value,
                   EffectCard* card);
+
+// "axis" where the parameters axis_x, axis_y, axis_z begin, else "".
+std::string VectorNameAt(const EffectCard& card, size_t k);
 
 // `gravity` as a setting: the acceleration of free fall, by default 9.80665 m/s² down z.
 void AppendGravitySetting(EffectCard* card);
