@@ -76,7 +76,7 @@ class CorotationalLaw {
             "bend or twist a slender part by more than 20°: linear elasticity swells, this law "
             "does not; stretch by more than 20 %: its force stays proportional to the "
             "elongation, a hyperelastic one does not",
-        .look_alikes = {"linear", "st_venant_kirchhoff", "neo_hookean"},
+        .look_alikes = {"linear", "st_venant_kirchhoff", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     return card;

@@ -99,7 +99,8 @@ class FibreStiffnessLaw {
         .separating_experiment =
             "turn the body by 90° about the load and load it again: with fibres the response "
             "changes, with a stiffness that differs from place to place it turns with the place",
-        .look_alikes = {"strain_stiffening", "inclusion", "stiffness_gradient"},
+        .look_alikes = {"strain_stiffening", "inclusion", "stiffness_gradient",
+                        "active_contraction"},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -68,7 +68,8 @@ class GravityEffect final : public Effect {
         .separating_experiment =
             "turn the fixture upside down and scan again: sag changes sign "
             "with gravity, swelling or a wrong rest shape does not",
-        .look_alikes = {},
+        .look_alikes = {"attached_mass", "density_gradient", "point_force", "swelling", "pressure",
+                        "plane_contact", "active_contraction"},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
     for (const char* axis : {"x", "y", "z"}) {

@@ -24,7 +24,7 @@ class LinearLaw {
         .separating_experiment =
             "load in small steps: the linear law's displacements are proportional to the load at "
             "every amplitude and its body swells when it turns; a corotational body does neither",
-        .look_alikes = {"corotational", "st_venant_kirchhoff", "neo_hookean"},
+        .look_alikes = {"corotational", "st_venant_kirchhoff", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         // Torques balance about the rest positions only: the law does not know of rotations.
         .conserves_angular_momentum = false};

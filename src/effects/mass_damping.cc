@@ -30,7 +30,8 @@ class MassDampingEffect final : public Effect {
             "compare the decay of a slow and a fast mode: here both decay at the same rate, with "
             "stiffness-proportional damping the fast one decays by the square of its frequency "
             "sooner; or let it fall freely",
-        .look_alikes = {"stiffness_damping"},
+        .look_alikes = {"stiffness_damping", "drag", "viscoelastic_branch", "elastoplastic_branch",
+                        "plane_contact"},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
     return card;

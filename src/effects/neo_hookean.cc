@@ -30,7 +30,7 @@ class NeoHookeanLaw : public NeoHookeanEnergy {
             "stretch by more than 30 %: a rubber's force falls below the "
             "straight line, St. Venant–Kirchhoff's rises above it; squeeze to "
             "half: only this law resists without buckling of elements",
-        .look_alikes = {"corotational", "st_venant_kirchhoff"},
+        .look_alikes = {"linear", "corotational", "st_venant_kirchhoff", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     return card;

@@ -162,7 +162,7 @@ class PressureEffect final : public Effect {
         .separating_experiment =
             "turn the body: pressure turns with it, gravity does not; open or vent the chamber: "
             "pressure goes at once, a wrong rest shape stays",
-        .look_alikes = {"gravity", "follower_force"},
+        .look_alikes = {"gravity", "follower_force", "swelling"},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

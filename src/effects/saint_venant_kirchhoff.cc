@@ -22,7 +22,7 @@ class SaintVenantKirchhoffLaw {
             "stretch and squeeze by more than 20 %: only this law stiffens in "
             "tension and softens in compression; in bending of thin parts it "
             "cannot be told from the corotational law",
-        .look_alikes = {"corotational", "neo_hookean"},
+        .look_alikes = {"linear", "corotational", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     return card;

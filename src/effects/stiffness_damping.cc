@@ -97,7 +97,7 @@ class StiffnessDampingEffect final : public Effect {
             "compare the decay of two modes: here the decay rate grows as the square of the "
             "frequency, with mass-proportional damping it is the same; strain it and hold: stress "
             "relaxes at once, with a viscoelastic branch it takes the branch's time",
-        .look_alikes = {"mass_damping", "viscoelastic_branch"},
+        .look_alikes = {"mass_damping", "viscoelastic_branch", "elastoplastic_branch", "drag"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     card.parameters.push_back({.name = "beta",

@@ -45,7 +45,8 @@ class StrainStiffeningLaw {
         .separating_experiment =
             "double and treble the load: the missing force grows as the third power of the strain; "
             "that of an added linear stiffness grows in proportion",
-        .look_alikes = {"st_venant_kirchhoff"},
+        .look_alikes = {"linear", "corotational", "st_venant_kirchhoff", "neo_hookean",
+                        "fibre_stiffness"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     return card;

@@ -76,7 +76,7 @@ class SwellingLaw {
             "take all load away and turn the body upside down: swelling stays as it is, the sag of "
             "gravity changes sign; free the clamp: a swollen body is then of the same shape, only "
             "larger",
-        .look_alikes = {"gravity", "active_contraction"},
+        .look_alikes = {"gravity", "active_contraction", "pressure"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     card.parameters.push_back({.name = "strain",

@@ -126,7 +126,7 @@ class ViscoelasticLaw {
             "τ and the rest shape comes back, stiffness-proportional damping has no force in "
             "the hold, a yielding branch keeps its force in the hold and a permanent set after "
             "it; two frequencies tell a branch from both kinds of damping",
-        .look_alikes = {"stiffness_damping", "mass_damping", "elastoplastic_branch"},
+        .look_alikes = {"stiffness_damping", "mass_damping", "elastoplastic_branch", "softening"},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -36,6 +36,17 @@ TEST(Catalogue, NamesOnlyLookAlikesThatExist) {
   }
 }
 
+// What one is easily taken for is easily taken for it.
+TEST(Catalogue, NamesLookAlikesBothWays) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    for (const std::string& other : entry.card->look_alikes) {
+      ASSERT_NE(FindEntry(other), nullptr) << other;
+      EXPECT_THAT(FindEntry(other)->card->look_alikes, testing::Contains(entry.card->type))
+          << "among those of " << other;
+    }
+  }
+}
+
 TEST(Catalogue, MakesAMaterialFromYaml) {
   const Config config = Config::Parse(
       "material: {law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}\n", "a.yaml");
