@@ -18,6 +18,7 @@ void AddSimulate(CLI::App* app, std::function<int()>* command);
 void AddInfo(CLI::App* app, std::function<int()>* command);
 void AddValidate(CLI::App* app, std::function<int()>* command);
 void AddEffects(CLI::App* app, std::function<int()>* command);
+void AddExplain(CLI::App* app, std::function<int()>* command);
 
 }  // namespace lacuna
 

@@ -26,6 +26,7 @@ constexpr char kFooter[] = R"(Start here:
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
   lacuna effects                               what physics a model can have
+  lacuna explain gravity                       one of them in full
 
 Exit status: 0 done; 1 a result is not usable (the record says why); 2 unusable input;
 130 stopped by Ctrl-C (run the same command again to resume).)";
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);
   lacuna::AddEffects(&app, &command);
+  lacuna::AddExplain(&app, &command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

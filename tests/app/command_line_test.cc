@@ -9,9 +9,12 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 
+#include "core/config.h"
+#include "effects/catalogue.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -61,7 +64,7 @@ scanner: {cameras: 2, look_at: [0 m, 0 m, 0 m], distance: 0.4 m, field_of_view: 
 TEST(CommandLine, HelpNamesEveryCommand) {
   const Ending help = Lacuna("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"reconstruct", "simulate", "info", "validate", "effects"})
+  for (const char* command : {"reconstruct", "simulate", "info", "validate", "effects", "explain"})
     EXPECT_THAT(help.said, HasSubstr(command));
   EXPECT_EQ(Lacuna("--version").status, 0);
 }
@@ -89,12 +92,46 @@ TEST(CommandLine, ValidatesTheBundledExperimentsAndScenes) {
               HasSubstr("young_modulus"));
 }
 
-TEST(CommandLine, EveryEffectTellsOfItself) {
+TEST(CommandLine, ListsTheEffects) {
   const Ending list = Lacuna("effects");
   EXPECT_EQ(list.status, 0);
-  EXPECT_THAT(list.said, HasSubstr("gravity"));
-  EXPECT_THAT(Lacuna("effects gravity").said, HasSubstr("to tell it apart"));
-  EXPECT_THAT(Lacuna("effects expression").said, HasSubstr("docs/expression.md"));
+  for (const CatalogueEntry& entry : Catalogue())
+    EXPECT_THAT(list.said, HasSubstr(entry.card->type));
+  EXPECT_EQ(Lacuna("effects gravity").said, Lacuna("explain gravity").said);
+  EXPECT_THAT(Lacuna("explain gravty").said, HasSubstr("did you mean \"gravity\"?"));
+  EXPECT_EQ(Lacuna("explain").status, 2);
+}
+
+// The YAML that `explain` ends with can be pasted as it is.
+void ExpectUnderstood(const std::string& yaml, const CatalogueEntry& entry) {
+  const auto material = MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}});
+  const Config config = Config::Parse(yaml, "pasted.yaml");
+  std::shared_ptr<Effect> effect;
+  if (entry.kind == CatalogueEntry::Kind::kMaterial) {
+    ASSERT_NO_THROW(effect = MakeMaterial(config.Child("material")));
+  } else {
+    ASSERT_NO_THROW(effect = MakeEffect(config.Items("effects").at(0), material.get()));
+  }
+  EXPECT_NO_THROW(config.RefuseUnknownKeys());
+  EXPECT_EQ(effect->Card().type, entry.card->type);
+}
+
+TEST(CommandLine, EveryEffectTellsOfItself) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const Ending told = Lacuna("explain " + entry.card->type);
+    SCOPED_TRACE(told.said);
+    EXPECT_EQ(told.status, 0);
+    EXPECT_THAT(told.said, HasSubstr(entry.card->title));
+    for (const char* section :
+         {"Equation", "Source", "Parameters", "When it is missing", "To tell it apart"})
+      EXPECT_THAT(told.said, HasSubstr("\n" + std::string(section) + "\n  "));
+    for (const std::string& other : entry.card->look_alikes)
+      EXPECT_THAT(told.said, HasSubstr(FindEntry(other)->card->title));
+    const size_t paste = told.said.find("\nTo paste");
+    ASSERT_NE(paste, std::string::npos);
+    ExpectUnderstood(told.said.substr(told.said.find('\n', paste + 1) + 1), entry);
+  }
+  EXPECT_THAT(Lacuna("explain expression").said, HasSubstr("docs/expression.md"));
 }
 
 TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {

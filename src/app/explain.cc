@@ -1,0 +1,216 @@
+// lacuna explain
+#include "app/explain.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "app/commands.h"
+#include "app/effect_examples.h"
+#include "core/error.h"
+#include "core/suggestion.h"
+#include "effects/catalogue.h"
+#include "effects/effect_text.h"
+#include "effects/vector_parameters.h"
+
+namespace lacuna {
+namespace {
+
+constexpr size_t kLineWidth = 96;  // characters
+
+// Of UTF-8: bytes that begin a character.
+size_t Width(const std::string& text) {
+  return static_cast<size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
+}
+
+void PrintWrapped(const std::string& text, size_t indent) {
+  std::istringstream words(text);
+  std::string line;
+  const auto print = [&] { fmt::print("{:{}}{}\n", "", indent, line); };
+  for (std::string word; words >> word;) {
+    if (!line.empty() && indent + Width(line) + 1 + Width(word) > kLineWidth) {
+      print();
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  if (!line.empty()) print();
+}
+
+void PrintSection(const std::string& heading, const std::string& text) {
+  fmt::print("\n{}\n", heading);
+  PrintWrapped(text, 2);
+}
+
+const CatalogueEntry& RequireEntry(const std::string& type) {
+  if (const CatalogueEntry* entry = FindEntry(type)) return *entry;
+  std::vector<std::string> known;
+  for (const CatalogueEntry& each : Catalogue()) known.push_back(each.card->type);
+  throw InputError(fmt::format("no effect is called \"{}\"{}; `lacuna effects` lists them", type,
+                               Suggestion(type, known)));
+}
+
+bool IsOfMaterials(const std::string& parameter) {
+  return std::any_of(Catalogue().begin(), Catalogue().end(), [&](const CatalogueEntry& entry) {
+    const auto& cards = entry.card->parameters;
+    return entry.kind == CatalogueEntry::Kind::kMaterial &&
+           std::any_of(cards.begin(), cards.end(),
+                       [&](const ParameterCard& card) { return card.name == parameter; });
+  });
+}
+
+std::string InUnit(const std::string& numbers, const Dimension& dimension) {
+  const std::string unit = dimension.unit;
+  return numbers + (unit.empty() ? "" : " " + unit);
+}
+
+bool IsDirection(const ParameterCard& parameter, size_t count) {
+  return count == 3 && parameter.dimension.SameAs(kDimensionless);
+}
+
+// The card's default of one parameter, or of the `count` of a vector.
+std::string DefaultText(const CatalogueEntry& entry, size_t k, size_t count) {
+  const ParameterCard& first = entry.card->parameters[k];
+  if (std::isnan(first.default_value)) {
+    const bool from_material =
+        entry.kind == CatalogueEntry::Kind::kEffect && IsOfMaterials(first.name);
+    return from_material ? "default: the material's" : "must be given";
+  }
+  std::string numbers;
+  bool is_zero = true;
+  for (size_t i = k; i < k + count; ++i) {
+    const double value = entry.card->parameters[i].default_value;
+    numbers += fmt::format("{}{:g}", i > k ? ", " : "", value);
+    is_zero = is_zero && value == 0;
+  }
+  if (IsDirection(first, count) && is_zero) return "default: none";
+  return "default " + InUnit(count > 1 ? "[" + numbers + "]" : numbers, first.dimension);
+}
+
+// What the three components' meanings begin with: "direction of the pull" of "… along x".
+std::string OfWholeVector(const std::string& meaning) {
+  std::string common = meaning;
+  for (const std::string component : {" along x", " x coordinate"})
+    if (common.ends_with(component)) common.resize(common.size() - component.size());
+  while (common.ends_with(',') || common.ends_with(';')) common.pop_back();
+  return common;
+}
+
+// Of one parameter, or of the `count` of a vector.
+std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
+  const ParameterCard& parameter = entry.card->parameters[k];
+  std::string facts = parameter.dimension.name;
+  if (IsDirection(parameter, count)) {
+    facts = "a direction";
+  } else {
+    if (count > 1) facts += " for each axis";
+    facts += ", usually " +
+             InUnit(fmt::format("{:g} to {:g}", parameter.plausible_min, parameter.plausible_max),
+                    parameter.dimension);
+  }
+  facts += "; " + DefaultText(entry, k, count);
+  if (parameter.setting) return facts + "; a setting: given, never fitted";
+  facts += "; can be fitted";
+  if (parameter.log_scale) facts += ", on a logarithmic scale";
+  if (!std::isnan(parameter.null_value))
+    facts += fmt::format("; no effect at {:g}", parameter.null_value);
+  return facts;
+}
+
+void PrintParameters(const CatalogueEntry& entry) {
+  const std::vector<ParameterCard>& parameters = entry.card->parameters;
+  fmt::print("\nParameters\n");
+  if (parameters.empty()) PrintWrapped("Your own, as docs/expression.md describes.", 2);
+  for (size_t k = 0; k < parameters.size();) {
+    const std::string vector = VectorNameAt(*entry.card, k);
+    const size_t count = vector.empty() ? 1 : 3;
+    fmt::print("  {}\n", vector.empty() ? parameters[k].name : vector + ": [x, y, z]");
+    PrintWrapped(count > 1 ? OfWholeVector(parameters[k].meaning) : parameters[k].meaning, 6);
+    PrintWrapped(Facts(entry, k, count), 6);
+    k += count;
+  }
+}
+
+std::string Invariances(const EffectCard& card) {
+  if (card.conserves_momentum && card.conserves_angular_momentum)
+    return "Internal: its forces and their torques sum to zero, so it neither moves nor turns a "
+           "body that nothing holds.";
+  if (card.conserves_momentum)
+    return "Its forces sum to zero, so it does not move a body that nothing holds; their torques "
+           "need not.";
+  return "Acts from outside: its forces need not sum to zero.";
+}
+
+// In the middle of what is usual, in two digits.
+double Typical(const ParameterCard& parameter) {
+  if (!std::isnan(parameter.default_value)) return parameter.default_value;
+  const double low = parameter.plausible_min, high = parameter.plausible_max;
+  const double middle = parameter.log_scale && low > 0 ? std::sqrt(low * high) : 0.5 * (low + high);
+  return std::stod(fmt::format("{:.2g}", middle));
+}
+
+// Lines of YAML with what they come from: the first file of configs/effects about the effect, else
+// typical values.
+struct Snippet {
+  std::string origin;
+  std::string yaml;
+};
+
+Snippet SnippetOf(const CatalogueEntry& entry) {
+  for (const EffectExample& example : EffectExamples()) {
+    if (Config::Parse(example.text, example.file).Text("type") != entry.card->type) continue;
+    Snippet snippet{fmt::format("configs/effects/{}", example.file), ""};
+    std::istringstream lines(example.text);
+    bool begun = false;
+    for (std::string line; std::getline(lines, line);) {
+      const bool comment = line.starts_with('#');
+      snippet.yaml += (begun ? "    " : comment ? "  " : "  - ") + line + "\n";
+      begun = begun || !comment;
+    }
+    snippet.yaml = "effects:\n" + snippet.yaml;
+    return snippet;
+  }
+  Eigen::VectorXd values(entry.card->parameters.size());
+  for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = Typical(entry.card->parameters[k]);
+  const std::string text = FormatEffect(*entry.make(values)).value();
+  const bool is_material = entry.kind == CatalogueEntry::Kind::kMaterial;
+  return {"values in the middle of what is usual",
+          is_material ? "material: " + text + "\n" : "effects:\n  - " + text + "\n"};
+}
+
+}  // namespace
+
+int Explain(const std::string& type) {
+  const CatalogueEntry& entry = RequireEntry(type);
+  const EffectCard& card = *entry.card;
+  fmt::print("{}  ({})\n", card.title, card.type);
+  PrintSection("Equation", card.equation);
+  PrintSection("Source", card.citation);
+  PrintParameters(entry);
+  PrintSection("When it is missing", card.residual_when_missing);
+  PrintSection("To tell it apart", card.separating_experiment);
+  if (!card.look_alikes.empty()) {
+    fmt::print("\nEasily taken for\n");
+    for (const std::string& other : card.look_alikes)
+      fmt::print("  {:22} {}\n", other, FindEntry(other)->card->title);
+  }
+  PrintSection("Invariances",
+               Invariances(card) + (card.repeatable ? " A model may have several of it." : ""));
+  const Snippet snippet = SnippetOf(entry);
+  fmt::print("\nTo paste ({})\n{}", snippet.origin, snippet.yaml);
+  return 0;
+}
+
+void AddExplain(CLI::App* app, std::function<int()>* command) {
+  CLI::App* explain = app->add_subcommand("explain", "Tell all about one effect");
+  auto type = std::make_shared<std::string>();
+  explain->add_option("effect", *type, "Its name, as `lacuna effects` lists it")->required();
+  explain->callback([command, type] { *command = [type] { return Explain(*type); }; });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,15 @@
+// An effect in full, for people: `lacuna explain NAME` and `lacuna effects NAME`.
+#ifndef LACUNA_APP_EXPLAIN_H_
+#define LACUNA_APP_EXPLAIN_H_
+
+#include <string>
+
+namespace lacuna {
+
+// Prints all that the card of this effect says, and YAML to paste. Throws InputError with the
+// nearest name when there is no such effect. Returns the exit status.
+int Explain(const std::string& type);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_APP_EXPLAIN_H_
