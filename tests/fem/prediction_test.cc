@@ -1,0 +1,235 @@
+#include "fem/prediction.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "effects/catalogue.h"
+#include "fem/prescribed_force.h"
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kTimeStep = 0.01;  // s
+constexpr double kStart = 0.2;      // s
+
+// What a prediction visited.
+struct Visited {
+  PredictionSummary summary;
+  std::vector<int> index;
+  std::vector<Eigen::VectorXd> position, velocity;
+  std::vector<Eigen::MatrixXd> position_by, velocity_by;
+};
+
+// A bar in its weight, clamped at one end and pulled aside at the other until it is let go.
+struct HeldBar {
+  std::shared_ptr<const Body> body;
+  std::vector<std::shared_ptr<Effect>> effects;
+  Eigen::VectorXi clamped;
+  Eigen::VectorXd pull;  // 3n, N
+  PredictionOptions options;
+
+  HeldBar() {
+    const TetMesh mesh = Jittered(BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {4, 1, 1}), 0.02, 0.1, 3);
+    body = std::make_shared<Body>(MakeBody(mesh, 1000));
+    effects = {MakeEffect("neo_hookean", {{"young_modulus", 5e4}, {"poisson_ratio", 0.4}}),
+               MakeEffect("gravity", {{"acceleration_z", -9.80665}})};
+    clamped = NodesWhere(body->mesh, [](const Eigen::Vector3d& at) { return at.x() < 0.005; });
+    const Eigen::VectorXi tip =
+        NodesWhere(body->mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.075; });
+    pull.setZero(3 * body->NodeCount());
+    for (const int node : tip) pull.segment<3>(3 * node) << 0, 0.02, 0.01;
+    options.start_time = kStart;
+    options.held_force = pull;
+    options.time_step = kTimeStep;
+    options.step.relative_tolerance = 1e-12;
+    options.step.linear.method = LinearSolverOptions::Method::kDirect;
+    options.step.linear.relative_tolerance = 1e-13;
+  }
+
+  Model MakeModel() const { return {body, effects, {Grip{clamped, {}}}}; }
+
+  Visited Run(const std::vector<double>& times,
+              const std::vector<Perturbation>& perturbations = {}) const {
+    Visited visited;
+    visited.summary = Predict(MakeModel(), options, times, perturbations,
+                              [&](int index, const PredictedState& state) {
+                                EXPECT_EQ(state.time, times[index]);
+                                visited.index.push_back(index);
+                                visited.position.push_back(state.position);
+                                visited.velocity.push_back(state.velocity);
+                                visited.position_by.push_back(state.position_by);
+                                visited.velocity_by.push_back(state.velocity_by);
+                              });
+    return visited;
+  }
+
+  // The largest distance of a node from where `other` has it at the same times.
+  static double LargestDistance(const Visited& one, const Visited& other) {
+    double largest = 0;
+    for (size_t k = 0; k < one.position.size(); ++k)
+      largest = std::max(largest, (one.position[k] - other.position[k]).cwiseAbs().maxCoeff());
+    return largest;
+  }
+};
+
+TEST(Prediction, IsTheSteppersMotionWhereStepsEnd) {
+  const HeldBar bar;
+  const Model model = bar.MakeModel();
+  Stepper stepper(model, bar.options.step);
+  MotionHistory history = RestHistory(model);
+  history.time = kStart;
+  ASSERT_TRUE(stepper.Equilibrium(bar.pull, &history).IsUsable());
+  std::vector<double> times{history.time};
+  std::vector<Eigen::VectorXd> position{history.position}, velocity{history.velocity};
+  for (int step = 0; step < 6; ++step) {
+    ASSERT_TRUE(stepper.Step(kTimeStep, {}, &history).IsUsable());
+    times.push_back(history.time);
+    position.push_back(history.position);
+    velocity.push_back(history.velocity);
+  }
+  const Visited visited = bar.Run(times);
+  ASSERT_TRUE(visited.summary.IsUsable()) << visited.summary.message;
+  EXPECT_EQ(visited.summary.steps, 6);
+  EXPECT_EQ(visited.summary.states, 7);
+  for (size_t k = 0; k < times.size(); ++k) {
+    // The cubic ends in its knots; its slope there is theirs, but for rounding of 1 m / h.
+    EXPECT_LT((visited.position[k] - position[k]).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((visited.velocity[k] - velocity[k]).cwiseAbs().maxCoeff(), 1e-11);
+  }
+}
+
+TEST(Prediction, IsAsGoodBetweenStepsAsWhereTheyEnd) {
+  // Damped and after a while, so that no mode moves that the steps cannot follow.
+  constexpr double kStep = 2e-3;
+  constexpr int kFirst = 20, kIntervals = 20;
+  HeldBar bar;
+  bar.effects.push_back(MakeEffect(
+      "stiffness_damping", {{"beta", 5e-3}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}));
+  std::vector<double> times;  // ends and middles of steps in turn
+  for (int k = 0; k <= 2 * kIntervals; ++k) times.push_back(kStart + (kFirst + 0.5 * k) * kStep);
+  const auto run = [&](double time_step) {
+    bar.options.time_step = time_step;
+    return bar.Run(times).position;
+  };
+  const auto truth = run(kStep / 16), whole = run(kStep), half = run(kStep / 2);
+  double bend = 0, unfollowed = 0, error = 0, half_error = 0;
+  for (size_t k = 1; k + 1 < times.size(); k += 2) {
+    const auto past_line = [k](const std::vector<Eigen::VectorXd>& at) {
+      return Eigen::VectorXd(at[k] - 0.5 * (at[k - 1] + at[k + 1]));
+    };
+    bend += past_line(truth).squaredNorm();
+    unfollowed += (past_line(whole) - past_line(truth)).squaredNorm();
+    error += (whole[k] - truth[k]).squaredNorm();
+    half_error += (half[k] - truth[k]).squaredNorm();
+  }
+  // Between two ends the motion bends by h² a / 8, which the cubic follows.
+  EXPECT_LT(unfollowed, 0.05 * 0.05 * bend);
+  // Half the step, which ends at these times as well, has a fourth of the error.
+  EXPECT_LT(half_error, 0.3 * 0.3 * error);
+}
+
+TEST(Prediction, StartsInEquilibriumAndIsLetGo) {
+  HeldBar bar;
+  const Visited held = bar.Run({kStart - 0.1, kStart, kStart + kTimeStep});
+  ASSERT_TRUE(held.summary.IsUsable());
+  EXPECT_EQ(held.position[0], held.position[1]);
+  EXPECT_EQ(held.velocity[1].norm(), 0);
+  EXPECT_GT(held.velocity[2].norm(), 1e-2);
+  // The forces at the start balance at the free nodes.
+  const Model model = bar.MakeModel();
+  const MotionHistory rest = RestHistory(model);
+  Eigen::VectorXd residual;
+  StepEquation(model, rest, TimeScheme::kQuasiStatic, 0).Residual(held.position[0], &residual);
+  residual -= bar.pull;
+  for (const int node : bar.clamped) residual.segment<3>(3 * node).setZero();
+  EXPECT_LT(residual.norm(), 1e-9 * bar.pull.norm());
+
+  // Nothing held it: it hangs still.
+  bar.options.held_force = {};
+  const Visited hanging = bar.Run({kStart, kStart + 5 * kTimeStep});
+  // Newton's tolerance, 1e-12 of the forces, over a stiffness of some N/m.
+  EXPECT_LT(HeldBar::LargestDistance({{}, {}, {hanging.position[0]}, {}, {}, {}},
+                                     {{}, {}, {hanging.position[1]}, {}, {}, {}}),
+            1e-10);
+}
+
+// At step ends and between them.
+void ExpectDerivative(HeldBar* bar, const Perturbation& perturbation, double step,
+                      const std::function<void(double)>& shift) {
+  const std::vector<double> times{kStart, kStart + 0.3 * kTimeStep, kStart + 4 * kTimeStep,
+                                  kStart + 7.6 * kTimeStep};
+  const Visited here = bar->Run(times, {perturbation});
+  ASSERT_TRUE(here.summary.IsUsable()) << here.summary.message;
+  shift(step);
+  const Visited plus = bar->Run(times);
+  shift(-step);
+  const Visited minus = bar->Run(times);
+  shift(0);
+  for (size_t k = 0; k < times.size(); ++k) {
+    const Eigen::VectorXd by = (plus.position[k] - minus.position[k]) / (2 * step);
+    const Eigen::VectorXd velocity_by = (plus.velocity[k] - minus.velocity[k]) / (2 * step);
+    // Truncation of the differences and the trajectories' own accuracy.
+    EXPECT_LT((here.position_by[k].col(0) - by).norm(), 1e-5 * by.norm()) << times[k];
+    EXPECT_LE((here.velocity_by[k].col(0) - velocity_by).norm(), 1e-5 * velocity_by.norm())
+        << times[k];
+    EXPECT_GT(by.norm(), 0);
+  }
+}
+
+TEST(Prediction, SensitivityToTheHoldAgreesWithDifferences) {
+  HeldBar bar;
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(bar.pull.size());
+  for (Eigen::Index i = 0; i < direction.size(); ++i)
+    if (bar.pull[i] != 0) direction[i] = 0.25 + 0.1 * (i % 3);
+  ExpectDerivative(&bar, {.held_force = direction}, 1e-4,
+                   [&](double by) { bar.options.held_force = bar.pull + by * direction; });
+}
+
+TEST(Prediction, SensitivityToTheModelAgreesWithDifferencesBetweenSteps) {
+  HeldBar bar;
+  const Eigen::VectorXd values = bar.effects[0]->Parameters();
+  ExpectDerivative(&bar, {.effect = bar.effects[0], .parameter = 0}, 50, [&](double by) {
+    bar.effects[0]->SetParameters(values + Eigen::Vector2d(by, 0));
+  });
+}
+
+TEST(Prediction, TellsWhereItStopped) {
+  HeldBar bar;
+  const Eigen::VectorXd share =
+      Eigen::VectorXd::Constant(bar.body->NodeCount(), 1.0 / bar.body->NodeCount());
+  bar.effects.push_back(std::make_shared<PrescribedForce>(share, [](double time) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    return Eigen::Vector3d(time > kStart + 3.5 * kTimeStep ? unknown : 0, 0, 0);
+  }));
+  const std::vector<double> times{kStart, kStart + 1.5 * kTimeStep, kStart + 2.5 * kTimeStep,
+                                  kStart + 3.2 * kTimeStep, kStart + 6 * kTimeStep};
+  const Visited visited = bar.Run(times);
+  EXPECT_EQ(visited.summary.status, PredictionSummary::Status::kStopped);
+  EXPECT_FALSE(visited.summary.IsUsable());
+  EXPECT_NE(visited.summary.message, "");
+  // The fourth lies in the step that fails, which is the fourth as well.
+  EXPECT_EQ(visited.summary.steps, 3);
+  EXPECT_EQ(visited.summary.states, 3);
+  EXPECT_THAT(visited.index, testing::ElementsAre(0, 1, 2));
+  // What was visited is what a model without the trouble does.
+  bar.effects.pop_back();
+  EXPECT_LT(HeldBar::LargestDistance(visited, bar.Run(times)), 1e-12);
+}
+
+TEST(Prediction, TellsThatItCannotStart) {
+  HeldBar bar;
+  bar.options.held_force.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Visited visited = bar.Run({kStart});
+  EXPECT_EQ(visited.summary.status, PredictionSummary::Status::kStopped);
+  EXPECT_THAT(visited.summary.message, testing::HasSubstr("no equilibrium to start from"));
+  EXPECT_EQ(visited.summary.states, 0);
+}
+
+}  // namespace
+}  // namespace lacuna
