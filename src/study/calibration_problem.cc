@@ -70,7 +70,7 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
     first_nuisance_.push_back(item.fitted ? static_cast<Eigen::Index>(parameters_.size()) : -1);
     if (item.fitted)
       for (const auto& nuisance : models_.back().nuisances()) parameters_.push_back(nuisance.prior);
-    noises.push_back(EstimateMarkerNoise(item));
+    noises.push_back(EstimateMarkerNoise(item, models_.back().FittedFrames()));
   }
   for (CalibratedParameter& parameter : parameters_) parameter.prior_mean = parameter.start;
   if (noise_ == 0) noise_ = *std::max_element(noises.begin(), noises.end());

@@ -207,9 +207,10 @@ CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& r
   progress->Begin("predict", 0);
   const std::vector<RecordingMisfit> misfits = problem.Misfits(calibration.parameters);
   for (size_t r = 0; r < misfits.size(); ++r) {
-    record.recordings.push_back({misfits[r].name, study.recordings[r].fitted,
-                                 EstimateMarkerNoise(study.recordings[r]), misfits[r].in_fit,
-                                 misfits[r].held_out});
+    record.recordings.push_back(
+        {misfits[r].name, study.recordings[r].fitted,
+         EstimateMarkerNoise(study.recordings[r], study.recordings[r].frames), misfits[r].in_fit,
+         misfits[r].held_out});
   }
   stage.misfit = MisfitTable(problem, misfits);
   progress->End();

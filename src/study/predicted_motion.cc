@@ -183,19 +183,18 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& o
   return white;
 }
 
-double EstimateMarkerNoise(const PredictedRecording& item) {
+double EstimateMarkerNoise(const PredictedRecording& item, const std::vector<int>& frames) {
   const auto& positions = item.recording.markers.positions;
-  const Eigen::Index markers = positions[item.frames[0]].cols();
+  const Eigen::Index markers = item.recording.marker_places.cols();
   std::vector<double> deviations;
   for (Eigen::Index m = 0; m < markers; ++m) {
     for (int axis = 0; axis < 3; ++axis) {
       // The median of |second differences|, of normal noise, is 0.6745 √6 σ; motion is smooth or
       // rare enough not to move a median.
       std::vector<double> second;
-      for (size_t k = 1; k + 1 < item.frames.size(); ++k) {
-        const double value = positions[item.frames[k - 1]](axis, m) -
-                             2 * positions[item.frames[k]](axis, m) +
-                             positions[item.frames[k + 1]](axis, m);
+      for (size_t k = 1; k + 1 < frames.size(); ++k) {
+        const double value = positions[frames[k - 1]](axis, m) - 2 * positions[frames[k]](axis, m) +
+                             positions[frames[k + 1]](axis, m);
         if (std::isfinite(value)) second.push_back(std::abs(value));
       }
       if (second.empty()) continue;

@@ -72,9 +72,9 @@ class RecordingModel {
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& observed,
                          int markers, double noise, double place_deviation);
 
-// The white part of a recording's noise, m, from the second differences of its coordinates: the
-// median over the markers.
-double EstimateMarkerNoise(const PredictedRecording& item);
+// The white part of a recording's noise, m, from the second differences of its coordinates in these
+// frames (ascending): the median over the markers. 0 of fewer than three frames.
+double EstimateMarkerNoise(const PredictedRecording& item, const std::vector<int>& frames);
 
 }  // namespace lacuna
 
