@@ -32,16 +32,25 @@ Hold ReadHold(const Config& config, const Recording& recording) {
   return hold;
 }
 
+// Of the markers that are seen in both.
+double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  double largest = 0;
+  for (Eigen::Index m = 0; m < from.cols(); ++m) {
+    const double move = (to.col(m) - from.col(m)).norm();
+    if (move > largest) largest = move;
+  }
+  return largest;
+}
+
 void RequireStaticStart(const Config& config, const PredictedRecording& item) {
   const Recording& recording = item.recording;
   if (item.hold || recording.kind != FrameKind::kMarkers) return;
   // Without a hold the first frame must be an equilibrium. A body that already moves is not.
   const auto& positions = recording.markers.positions;
   if (item.frames.size() < 3) return;
-  const Eigen::Matrix3Xd first = positions[item.frames[0]], second = positions[item.frames[1]];
-  const Eigen::Matrix3Xd last = positions[item.frames.back()];
-  const double step = (second - first).colwise().norm().maxCoeff();
-  const double whole = (last - first).colwise().norm().maxCoeff();
+  const Eigen::Matrix3Xd& first = positions[item.frames[0]];
+  const double step = LargestMove(first, positions[item.frames[1]]);
+  const double whole = LargestMove(first, positions[item.frames.back()]);
   if (step > 0.25 * whole && step > 0)
     config.Fail("recording",
                 "the object moves already between its first two frames; a prediction starts from "
