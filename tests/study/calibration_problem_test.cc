@@ -1,0 +1,212 @@
+#include "study/calibration_problem.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "study/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+// Coarser than what was filmed.
+TetMesh StudyMesh() { return BarMesh({6, 1, 1}, 2); }
+
+Calibration FitOf(const CalibrationProblem& problem) {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  return problem.Fit(problem.Start(), &progress);
+}
+
+TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study =
+      ReadBarStudy(folder.Path(), {{"{name: mass_damping.alpha}",
+                                    "{name: poisson_ratio}, {name: mass_damping.alpha}, "
+                                    "{name: gravity.acceleration_z}"}});
+  const CalibrationProblem problem(study, StudyMesh());
+  std::vector<std::string> names;
+  for (const CalibratedParameter& parameter : problem.parameters()) names.push_back(parameter.name);
+  EXPECT_THAT(names, testing::ElementsAre("young_modulus", "poisson_ratio", "mass_damping.alpha",
+                                          "gravity.acceleration_z", "bar.hold_force_x",
+                                          "bar.hold_force_y", "bar.hold_force_z", "bar.clock"));
+  Eigen::VectorXd at = problem.Start();
+  at.tail(4) << 0.01, 0.03, -0.02, 0.001;
+  const Eigen::VectorXd steps =
+      (Eigen::VectorXd(8) << 200, 1e-3, 1e-2, 1e-2, 2e-3, 2e-3, 2e-3, 1e-4).finished();
+  const Prediction here = problem.Predict(at, true);
+  ASSERT_TRUE(here.usable) << here.message;
+  ASSERT_EQ(here.jacobian.cols(), 8);
+  for (Eigen::Index k = 0; k < 8; ++k) {
+    const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(8, k);
+    const Eigen::VectorXd difference = (problem.Predict(at + shift, false).residual -
+                                        problem.Predict(at - shift, false).residual) /
+                                       (2 * steps[k]);
+    // Truncation, and trajectories that are known to 1e-8 of the forces only.
+    EXPECT_LT((here.jacobian.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
+  }
+}
+
+TEST(CalibrationProblem, RecoversWhatWasFilmed) {
+  const TemporaryFolder folder;
+  const HeldBarTruth truth;
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, StudyMesh());
+  const Calibration fit = FitOf(problem);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  const ParameterEstimate& modulus = fit.estimates[0];
+  // A coarser mesh of the same elements is 2 % stiffer, longer steps are 1 % slower.
+  EXPECT_NEAR(modulus.value, truth.young_modulus, 0.04 * truth.young_modulus);
+  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_LT(modulus.low, modulus.value);
+  EXPECT_GT(modulus.high, modulus.value);
+  const double width = modulus.high - modulus.low;
+  EXPECT_GT(width, 0.005 * modulus.value);
+  EXPECT_LT(width, 0.1 * modulus.value);
+  EXPECT_LT(std::abs(modulus.value - truth.young_modulus), width);  // mesh and steps included
+  const ParameterEstimate& alpha = fit.estimates[1];
+  EXPECT_LT(alpha.low, truth.alpha);
+  EXPECT_GT(alpha.high, truth.alpha);
+  const Eigen::VectorXd nuisance = problem.NuisanceOf(0, fit.parameters);
+  // Within the intervals, some 2 mN and, along the bar, where it moves nothing, 12 mN; 0.5 ms.
+  EXPECT_NEAR(nuisance[0], truth.hold_force.x(), 0.015);
+  EXPECT_NEAR(nuisance[1], truth.hold_force.y(), 0.003);
+  EXPECT_NEAR(nuisance[2], truth.hold_force.z(), 0.003);
+  EXPECT_NEAR(nuisance[3], truth.clock, 5e-4);
+
+  EXPECT_LT(fit.rms, 1.3);
+  EXPECT_GT(fit.start_rms, 2 * fit.rms);
+  const std::vector<RecordingMisfit> misfits = problem.Misfits(fit.parameters);
+  ASSERT_EQ(misfits.size(), 1u);
+  EXPECT_EQ(misfits[0].in_fit.frames, 16);  // 0 to 0.15 s
+  EXPECT_EQ(misfits[0].held_out.frames, kFrames - 16);
+  EXPECT_EQ(misfits[0].held_out.points, (kFrames - 16) * kMarkers);
+  EXPECT_LT(misfits[0].in_fit.in_noise, 1.3);
+  // The discretisation shows in the frames that were not fitted: 0.14 mm after 20 mm of motion.
+  EXPECT_LT(misfits[0].held_out.in_noise, 2.5);
+  EXPECT_GE(misfits[0].held_out.largest, misfits[0].held_out.rms);
+}
+
+// Neither the frames after `fit_until` nor a recording that is only predicted, not even through the
+// estimate of the noise.
+TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
+  const TemporaryFolder folder;
+  const std::vector<Eigen::Matrix3Xd> filmed = FilmHeldBar({});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.005, 0.005);
+  const auto shifted_from = [&](size_t first) {
+    std::vector<Eigen::Matrix3Xd> altered = filmed;
+    for (size_t frame = first; frame < altered.size(); ++frame)
+      for (double& coordinate : altered[frame].reshaped()) coordinate += shift(random);
+    return altered;
+  };
+  const auto fit = [&](const std::string& name, const std::vector<Eigen::Matrix3Xd>& first,
+                       const std::vector<Eigen::Matrix3Xd>& second) {
+    WriteBarRecording(folder / name, first);
+    WriteBarRecording(folder / name / "other", second);
+    const PredictionStudy study = ReadBarStudy(
+        folder / name, {{"noise: 0.05 mm\n", ""},
+                        {"recordings:\n",
+                         "recordings:\n  - recording: other/recording.yaml\n    name: other\n"
+                         "    fitted: false\n    hold:\n      region: {half_space: {point: "
+                         "[0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n      release: 0.0437 s\n"}});
+    const CalibrationProblem problem(study, BarMesh({3, 1, 1}, 2));
+    const Calibration calibration = FitOf(problem);
+    EXPECT_TRUE(calibration.usable) << calibration.message;
+    return calibration;
+  };
+  const Calibration plain = fit("plain", filmed, filmed);
+  const Calibration altered = fit("altered", shifted_from(16), shifted_from(8));
+  EXPECT_EQ(altered.parameters, plain.parameters);
+  EXPECT_EQ(altered.covariance, plain.covariance);
+  const Calibration other = fit("other", shifted_from(15), filmed);
+  EXPECT_NE(other.parameters, plain.parameters);
+}
+
+// Markers that are not seen, or not in all frames, have a covariance of their own.
+TEST(Whitening, IsByTheInverseRootOfTheCovariance) {
+  constexpr int kOf = 3, kAt = 7, kColumns = 5;  // markers, frames
+  constexpr double kNoise = 0.3, kPlace = 2.0;
+  std::vector<char> observed(kOf * kAt, 1);
+  observed[0] = observed[3 * kOf] = 0;                      // the first twice not
+  for (int f = 0; f < kAt; ++f) observed[f * kOf + 2] = 0;  // the last never
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Random(3 * kOf * kAt, kColumns);
+  for (int k = 0; k < kOf * kAt; ++k)
+    if (!observed[k]) rows.middleRows(3 * k, 3).setZero();
+  const Eigen::MatrixXd white = Whitened(rows, observed, kOf, kNoise, kPlace);
+
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(kColumns, kColumns);
+  for (int m = 0; m < kOf; ++m) {
+    std::vector<Eigen::Index> seen;
+    for (int f = 0; f < kAt; ++f)
+      if (observed[f * kOf + m]) seen.push_back(3 * (f * kOf + m));
+    const Eigen::Index count = static_cast<Eigen::Index>(seen.size());
+    if (count == 0) continue;
+    const Eigen::MatrixXd covariance = kNoise * kNoise * Eigen::MatrixXd::Identity(count, count) +
+                                       kPlace * kPlace * Eigen::MatrixXd::Ones(count, count);
+    const Eigen::MatrixXd root =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).operatorInverseSqrt();
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::MatrixXd own(count, kColumns);
+      for (Eigen::Index k = 0; k < count; ++k) own.row(k) = rows.row(seen[k] + axis);
+      const Eigen::MatrixXd expected = root * own;
+      gram += expected.transpose() * expected;
+    }
+  }
+  EXPECT_LT((white.transpose() * white - gram).norm(), 1e-12 * gram.norm());
+  for (int k = 0; k < kOf * kAt; ++k)
+    EXPECT_EQ(white.middleRows(3 * k, 3).norm() == 0, !observed[k]);
+  // A place that is known for sure takes nothing away.
+  EXPECT_EQ(Whitened(rows, observed, kOf, kNoise, 0), rows / kNoise);
+}
+
+std::string MessageOf(const PredictionStudy& study) {
+  try {
+    const CalibrationProblem problem(study, BarMesh({2, 1, 1}, 1));
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, BarMarkerPlaces()));
+  EXPECT_THAT(MessageOf(ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}})),
+              testing::HasSubstr("noise: cannot be estimated"));
+  EXPECT_THAT(
+      MessageOf(ReadBarStudy(folder.Path(), {{"[0.078 m, 0 m, 0 m]", "[0.1 m, 0 m, 0 m]"}})),
+      testing::HasSubstr("hold of bar"));
+  EXPECT_EQ(MessageOf(ReadBarStudy(folder.Path())), "nothing was refused");
+}
+
+// A steady motion adds nothing, a marker that is not seen is passed over.
+TEST(MarkerNoise, IsThatOfTheCoordinates) {
+  constexpr double kNoise = 2e-4;
+  PredictedRecording item;
+  item.recording.marker_places = Eigen::Matrix3Xd::Random(3, 20);
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, kNoise);
+  std::vector<int> frames;
+  for (int frame = 0; frame < 200; ++frame) {
+    Eigen::Matrix3Xd positions = item.recording.marker_places.array() + 0.01 * frame;
+    for (double& coordinate : positions.reshaped()) coordinate += noise(random);
+    if (frame % 3 == 0) positions.col(4).setConstant(std::nan(""));
+    item.recording.markers.positions.push_back(positions);
+    frames.push_back(frame);
+  }
+  // The median of 57 medians of 198 values each.
+  EXPECT_NEAR(EstimateMarkerNoise(item, frames), kNoise, 0.05 * kNoise);
+  EXPECT_EQ(EstimateMarkerNoise(item, {0, 1}), 0);
+}
+
+}  // namespace
+}  // namespace lacuna

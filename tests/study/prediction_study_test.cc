@@ -1,0 +1,196 @@
+// What a user gets wrong in a prediction study, and what the program says.
+#include "study/prediction_study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+
+#include "study/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::ContainsRegex;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Replacements = std::map<std::string, std::string>;
+
+// Markers that rest and then all go one way, by `speed` m per frame.
+std::vector<Eigen::Matrix3Xd> Moving(double speed, int rests = 5) {
+  std::vector<Eigen::Matrix3Xd> markers;
+  for (int frame = 0; frame < kFrames; ++frame)
+    markers.emplace_back(BarMarkerPlaces().array() + speed * std::max(0, frame - rests));
+  return markers;
+}
+
+void Replace(const std::filesystem::path& file, const Replacements& replaced) {
+  std::string text = FileContent(file);
+  for (const auto& [from, to] : replaced) {
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  }
+  std::ofstream(file) << text;
+}
+
+class ReadingAPredictionStudy : public testing::Test {
+ protected:
+  ReadingAPredictionStudy() { WriteBarRecording(folder_.Path(), Moving(0.001)); }
+
+  std::string MessageAfter(const Replacements& replaced) const {
+    try {
+      ReadBarStudy(folder_.Path(), replaced);
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+    return "nothing was refused";
+  }
+  std::string MessageAfterInRecording(const Replacements& replaced,
+                                      const Replacements& in_study = {}) const {
+    WriteBarRecording(folder_.Path(), Moving(0.001));
+    Replace(folder_ / "recording.yaml", replaced);
+    return MessageAfter(in_study);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Removes the hold, so that the recording has to start at rest.
+const Replacements kNoHold{
+    {"    hold:\n      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n",
+     ""},
+    {"      release: 0.0437 s\n", ""}};
+
+TEST_F(ReadingAPredictionStudy, TakesWhatIsThere) {
+  const PredictionStudy study = ReadBarStudy(folder_.Path());
+  EXPECT_TRUE(IsPredictionStudy(Config::Parse(BarExperiment(folder_.Path()), "e.yaml")));
+  ASSERT_EQ(study.recordings.size(), 1u);
+  const PredictedRecording& item = study.recordings[0];
+  EXPECT_EQ(item.frames.size(), static_cast<size_t>(kFrames));
+  ASSERT_TRUE(item.hold.has_value());
+  EXPECT_EQ(item.hold->release, kRelease);
+  EXPECT_EQ(item.fit_until, kFitUntil);
+  EXPECT_EQ(study.density, 1000);
+  EXPECT_EQ(study.scheme, TimeScheme::kBdf2);
+  ASSERT_EQ(study.fitted.size(), 2u);
+  EXPECT_EQ(study.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(study.fitted[1].prior.name, "mass_damping.alpha");
+  const PredictionStudy some = ReadBarStudy(
+      folder_.Path(),
+      {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    every: 5\n    fit_until"}});
+  EXPECT_THAT(some.recordings[0].frames, ElementsAre(5, 10, 15, 20));
+}
+
+TEST_F(ReadingAPredictionStudy, FitsTheMaterialWhenItIsNotTold) {
+  const PredictionStudy study = ReadBarStudy(
+      folder_.Path(),
+      {{"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}\n", ""}});
+  ASSERT_EQ(study.fitted.size(), 2u);
+  EXPECT_EQ(study.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(study.fitted[1].prior.name, "poisson_ratio");
+}
+
+// A damping that takes its moduli from the material keeps them the material's.
+TEST_F(ReadingAPredictionStudy, SharesTheMaterialsParameters) {
+  const PredictionStudy study =
+      ReadBarStudy(folder_.Path(),
+                   {{"{type: mass_damping, alpha: 1 1/s}", "{type: stiffness_damping, beta: 3 ms}"},
+                    {"mass_damping.alpha", "stiffness_damping.beta"}});
+  ASSERT_EQ(study.fitted[0].places.size(), 2u);
+  SetParameter(study.fitted[0], 123456);
+  EXPECT_EQ(study.effects[0]->Parameters()[0], 123456);
+  EXPECT_EQ(study.effects[2]->Parameters()[1], 123456);
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}}),
+              ContainsRegex("study.yaml:[0-9]+:[0-9]+: recordings.0..recording: 2 frames lie "
+                            "between 0.1 s and 0.115 s; at least 3 are needed"));
+  EXPECT_THAT(MessageAfter({{"fit_until: 0.1501 s", "fit_until: 0.015 s"}}),
+              HasSubstr("recordings[0].fit_until: leaves fewer than 3 frames to fit"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
+  EXPECT_THAT(MessageAfterInRecording({{"reference: {from: mesh, file: box.off}\n", ""}}),
+              HasSubstr("reference: markers do not tell the shape"));
+  EXPECT_THAT(MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
+              HasSubstr("recordings[0].recording: lacks marker_places"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesScans) {
+  const std::string scans = std::string(LACUNA_SOURCE_DIR) + "/experiments/recordings/bend";
+  EXPECT_THAT(MessageAfter({{(folder_ / "recording.yaml").string(), scans}}),
+              HasSubstr("recordings[0].recording: is no marker recording"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAReleaseAfterTheEnd) {
+  EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: 0.3 s"}}),
+              HasSubstr("recordings[0].hold.release: lies after the recording's last frame, at "
+                        "0.25 s"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
+  const std::string load =
+      "forces: [{name: pull, file: load.csv, time: t, x: x, y: y, z: z, region: {half_space: "
+      "{point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}}]\nreference";
+  EXPECT_THAT(MessageAfterInRecording({{"reference", load}}),
+              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
+  EXPECT_EQ(MessageAfterInRecording(
+                {{"reference", load}},
+                {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    fit_until"}}),
+            "nothing was refused");
+  EXPECT_THAT(MessageAfterInRecording({{"reference",
+                                        "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
+                                        "reference"}}),
+              HasSubstr("does not tell where pull acts"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulos}"}}),
+              ContainsRegex("fit.parameters.0..name: got \"young_modulos\".*did you mean "
+                            "\"young_modulus\""));
+  EXPECT_THAT(MessageAfter({{"{name: mass_damping.alpha}", "{name: young_modulus}"}}),
+              HasSubstr("is listed twice"));
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, min: 0.2 MPa}"}}),
+              HasSubstr("starts at 150000 Pa, outside 200000 to"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    fitted: false\n    fit_until"}}),
+              HasSubstr("recordings: none of them is fitted"));
+  std::string none = BarExperiment(folder_.Path());
+  none.replace(none.find("recordings:"), std::string::npos, "recordings: []\n");
+  try {
+    ReadPredictionStudy(Config::Parse(none, "none.yaml"));
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("recordings: is empty"));
+  }
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAMotionWithoutInertia) {
+  EXPECT_THAT(MessageAfter({{"motion: {", "motion: {scheme: quasi_static, "}}),
+              HasSubstr("motion.scheme: a prediction needs inertia"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
+  WriteBarRecording(folder_.Path(), Moving(0.001, 0));
+  EXPECT_EQ(MessageAfter({}), "nothing was refused");  // held until 0.04 s
+  auto markers = Moving(0, 0);
+  for (size_t frame = 1; frame < markers.size(); ++frame) markers[frame].array() += 0.001;
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  // The first marker is not seen at first: the others tell.
+  markers[0].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
+}
+
+}  // namespace
+}  // namespace lacuna
