@@ -63,6 +63,7 @@ int main(int argc, char** argv) {
   lacuna::AddReconstruct(&app, &command);
   lacuna::AddFit(&app, &command);
   lacuna::AddDiagnose(&app, &command);
+  lacuna::AddAdd(&app, &command);
   lacuna::AddSimulate(&app, &command);
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);

@@ -158,7 +158,8 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   return all;
 }
 
-Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress) const {
+Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress,
+                                    const CalibrationOptions& options) const {
   double longest = 0;
   for (const RecordingModel& model : models_) {
     const std::vector<int> frames = model.FittedFrames();
@@ -178,14 +179,17 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
           std::clamp(values[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
     progress->Begin(share < 1 ? "fit, first part" : "fit", 0);
     const double horizon = share < 1 ? share * longest : std::numeric_limits<double>::infinity();
-    calibration = Calibrate(parameters, [&](const Eigen::VectorXd& at, bool with_jacobian) {
-      const Prediction prediction = Predict(at, with_jacobian, horizon);
-      progress->Report(++evaluations, prediction.usable
-                                          ? prediction.residual.norm() /
-                                                std::sqrt(1.0 * prediction.residual.size())
-                                          : std::nan(""));
-      return prediction;
-    });
+    calibration = Calibrate(
+        parameters,
+        [&](const Eigen::VectorXd& at, bool with_jacobian) {
+          const Prediction prediction = Predict(at, with_jacobian, horizon);
+          progress->Report(++evaluations, prediction.usable
+                                              ? prediction.residual.norm() /
+                                                    std::sqrt(1.0 * prediction.residual.size())
+                                              : std::nan(""));
+          return prediction;
+        },
+        options);
     progress->End(calibration.usable ? "" : calibration.message);
     if (calibration.parameters.size() > 0) values = calibration.parameters;
   }

@@ -58,7 +58,8 @@ class CalibrationProblem {
                      const std::vector<MisfitDirection>& more = {}) const;
 
   // First over a short horizon, where a wrong model is least wrong, then over all fitted frames.
-  Calibration Fit(const Eigen::VectorXd& start, Progress* progress) const;
+  Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
+                  const CalibrationOptions& options = {}) const;
 
   // All frames of every recording. A recording that is not fitted gets its nuisances fitted to
   // itself, the model staying as it is.

@@ -65,7 +65,8 @@ void Refit(const CalibrationProblem& problem, const TetMesh& mesh, const Eigen::
   start.head(shared) = values.head(shared);
   start.tail(start.size() - shared - added) = values.tail(values.size() - shared);
   ranked->refitted = true;
-  ranked->calibration = with.Fit(start, progress);
+  // A rival need not be at its very best to be told from one that fits.
+  ranked->calibration = with.Fit(start, progress, {.max_iterations = 12});
   if (ranked->calibration.estimates.empty()) {
     ranked->refit_message = ranked->calibration.message;
     return;

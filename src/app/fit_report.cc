@@ -1,0 +1,42 @@
+#include "app/fit_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+void PrintParameters(const CalibrationRecord& record) {
+  fmt::print("\n  {:34} {:>12} {:>25}  {}\n", "parameter", "value", "95 % interval", "");
+  for (const FittedParameter& parameter : record.parameters) {
+    const ParameterEstimate& estimate = parameter.estimate;
+    std::string note = VerdictName(estimate.verdict);
+    if (estimate.verdict == ParameterEstimate::Verdict::kPinnedDown) note.clear();
+    if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
+      note +=
+          fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
+    fmt::print("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name, estimate.value,
+               estimate.low, estimate.high, parameter.unit, note);
+  }
+}
+
+std::string Describe(const MisfitMeasure& measure) {
+  if (measure.points == 0) return "-";
+  return fmt::format("{:.3f} mm (largest {:.3f}), {:.1f} σ, {} frames", 1e3 * measure.rms,
+                     1e3 * measure.largest, measure.in_noise, measure.frames);
+}
+
+}  // namespace
+
+void PrintCalibration(const CalibrationRecord& record) {
+  PrintParameters(record);
+  fmt::print("\n  rms distance of predicted from measured markers; σ = {:.3f} mm of a coordinate\n",
+             1e3 * record.noise);
+  for (const FittedRecording& recording : record.recordings) {
+    fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
+    fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,60 @@
+#include "study/extended_experiment.h"
+
+#include <fmt/format.h>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "effects/effect_text.h"
+#include "study/diagnosis.h"
+
+namespace lacuna {
+namespace {
+
+std::string Written(const Effect& effect, const std::filesystem::path& experiment) {
+  if (const auto text = FormatEffect(effect)) return *text;
+  throw InputError(fmt::format(
+      "{}: {} cannot be written down by the program; add the new effect to the file by hand",
+      experiment.string(), effect.Card().type));
+}
+
+std::string FittedEntry(const ModelParameter& parameter) {
+  const CalibratedParameter& prior = parameter.prior;
+  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  std::string entry = fmt::format("    - {{name: {}", prior.name);
+  if (std::isfinite(prior.min)) entry += fmt::format(", min: {}{}", prior.min, unit);
+  if (std::isfinite(prior.max)) entry += fmt::format(", max: {}{}", prior.max, unit);
+  return entry + "}\n";
+}
+
+}  // namespace
+
+std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
+                                              const std::filesystem::path& run,
+                                              const ScoredEffect& effect) {
+  const std::filesystem::path folder = std::filesystem::absolute(run).lexically_normal();
+  const std::filesystem::path parent =
+      folder.filename().empty() ? folder.parent_path().parent_path() : folder.parent_path();
+  const std::filesystem::path experiment = std::filesystem::absolute(fitted.study.file);
+  const PredictionStudy study = WithEffect(fitted.study, effect);
+  const std::string name = fitted.study.name + "+" + effect.candidate.type;
+
+  std::string text = fmt::format(
+      "# {} with {}, from the fit of {}.\n"
+      "use: {}\n"
+      "name: {}\n"
+      "output: {}\n"
+      "material: {}\n"
+      "effects:\n",
+      fitted.study.name, effect.candidate.type, fitted.study.name,
+      experiment.lexically_proximate(parent).generic_string(), name, name,
+      Written(*study.effects.front(), experiment));
+  for (size_t k = 1; k < study.effects.size(); ++k)
+    text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
+  text += "fit:\n  parameters:\n";
+  for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);
+  const std::filesystem::path file = parent / (name + ".yaml");
+  WriteFileAtomically(file, text);
+  return file;
+}
+
+}  // namespace lacuna
