@@ -14,6 +14,7 @@ namespace lacuna {
 void AddReconstruct(CLI::App* app, std::function<int()>* command);
 void AddFit(CLI::App* app, std::function<int()>* command);
 void AddAdd(CLI::App* app, std::function<int()>* command);
+void AddCompare(CLI::App* app, std::function<int()>* command);
 void AddDiagnose(CLI::App* app, std::function<int()>* command);
 void AddSimulate(CLI::App* app, std::function<int()>* command);
 void AddInfo(CLI::App* app, std::function<int()>* command);

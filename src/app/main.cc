@@ -23,6 +23,8 @@ namespace {
 constexpr char kFooter[] = R"(Start here:
   lacuna validate experiments/bend.yaml        check a file without running it
   lacuna reconstruct experiments/bend.yaml     scans -> model with forces; results/bend
+  lacuna fit experiments/silicone_beam.yaml    predict, and fit the model's parameters
+  lacuna compare results/silicone_beam         where and when that model fails
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
   lacuna effects                               what physics a model can have
@@ -62,6 +64,7 @@ int main(int argc, char** argv) {
   std::function<int()> command;
   lacuna::AddReconstruct(&app, &command);
   lacuna::AddFit(&app, &command);
+  lacuna::AddCompare(&app, &command);
   lacuna::AddDiagnose(&app, &command);
   lacuna::AddAdd(&app, &command);
   lacuna::AddSimulate(&app, &command);

@@ -83,6 +83,16 @@ const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::st
   return nullptr;
 }
 
+// The one that leaves the least held-out error; null where none is usable.
+const RankedEffect* BestRefit(const std::vector<RankedEffect>& ranking) {
+  const RankedEffect* best = nullptr;
+  for (const RankedEffect& effect : ranking) {
+    if (!effect.refitted || !effect.refit_message.empty()) continue;
+    if (best == nullptr || effect.held_out_rms < best->held_out_rms) best = &effect;
+  }
+  return best;
+}
+
 std::string Titles(const std::vector<std::string>& types) {
   std::vector<std::string> titles;
   for (const std::string& type : types) titles.push_back(FindEntry(type)->card->title);
@@ -234,13 +244,27 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
   diagnosis.in_noise = errors.in_noise;
   diagnosis.has_held_out = errors.has_held_out;
 
+  const auto refit = [&](RankedEffect* ranked) {
+    Refit(problem, mesh, values, ranked, progress);
+    problem.Predict(values, false, 0);  // the refit has changed effects that both models share
+  };
   int refits = 0;
   for (RankedEffect& ranked : diagnosis.ranking) {
     if (refits == options.refits || ranked.scored.score.evidence < kNoEvidence) break;
     ++refits;
-    Refit(problem, mesh, values, &ranked, progress);
-    // The refit has changed effects that both models share.
-    problem.Predict(values, false, 0);
+    refit(&ranked);
+  }
+  // First order cannot tell the best from its look-alikes; a refit may.
+  if (const RankedEffect* best = BestRefit(diagnosis.ranking)) {
+    const std::vector<std::string> look_alikes = best->scored.look_alikes;
+    refits = 0;
+    for (RankedEffect& ranked : diagnosis.ranking) {
+      const bool is_one =
+          std::count(look_alikes.begin(), look_alikes.end(), ranked.scored.candidate.type) > 0;
+      if (!is_one || ranked.refitted || refits == options.refits) continue;
+      ++refits;
+      refit(&ranked);
+    }
   }
   Decide(&diagnosis);
   return diagnosis;

@@ -64,7 +64,8 @@ scanner: {cameras: 2, look_at: [0 m, 0 m, 0 m], distance: 0.4 m, field_of_view: 
 TEST(CommandLine, HelpNamesEveryCommand) {
   const Ending help = Lacuna("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"reconstruct", "simulate", "info", "validate", "effects", "explain"})
+  for (const char* command : {"reconstruct", "fit", "compare", "diagnose", "add", "simulate",
+                              "info", "validate", "effects", "explain"})
     EXPECT_THAT(help.said, HasSubstr(command));
   EXPECT_EQ(Lacuna("--version").status, 0);
 }
@@ -78,7 +79,7 @@ TEST(CommandLine, TellsAnUnknownCommandAndWhatWasMeant) {
 }
 
 TEST(CommandLine, AnAbsentFileIsNamed) {
-  for (const char* command : {"reconstruct", "simulate", "info", "validate"}) {
+  for (const char* command : {"reconstruct", "fit", "compare", "simulate", "info", "validate"}) {
     const Ending ending = Lacuna(std::string(command) + " /nowhere/e.yaml");
     EXPECT_EQ(ending.status, 2) << command;
     EXPECT_THAT(ending.said, HasSubstr("/nowhere/e.yaml")) << command;
@@ -145,6 +146,15 @@ TEST(CommandLine, WhatIsSimulatedIsAnOrdinaryRecording) {
   const Ending info = Lacuna("info " + scan);
   EXPECT_EQ(info.status, 0);
   EXPECT_THAT(info.said, HasSubstr("3 point clouds"));
+}
+
+TEST(CommandLine, CompareWantsARunOfFit) {
+  const TemporaryFolder folder;
+  const Ending ending = Lacuna("compare " + folder.Path().string());
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("is not a run"));
+  EXPECT_THAT(ending.said, HasSubstr("lacuna fit"));
+  EXPECT_EQ(Lacuna("compare").status, 2);
 }
 
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {

@@ -1,0 +1,93 @@
+// How far a fitted model is from what was measured: where, when, in which direction, and whether
+// what is left is noise. Read from the run. Where its experiment and recordings are still as they
+// were, markers go by their names and the error is told against the distance from the grip too.
+#ifndef LACUNA_STUDY_COMPARISON_H_
+#define LACUNA_STUDY_COMPARISON_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/residual_statistics.h"
+
+namespace lacuna {
+
+inline constexpr double kBeyondNoise = 1.5;  // an error this many times that of noise is none
+
+// The error against one quantity: of frames, rms over their markers both, against time,
+// displacement and speed; of markers, rms over the frames, against their distance from the grip.
+struct ErrorAgainst {
+  std::string quantity;  // with its unit: "speed_m_per_s"
+  std::vector<ResidualBin> bins;
+  double rank_correlation = kUnknown;
+};
+
+// The frames of one recording that were fitted, or those that were held out. Lengths are of the
+// difference predicted − measured, m.
+struct ComparedPart {
+  bool fitted = true;
+  int first = 0, last = 0;  // columns of the recording's frames
+  int points = 0;           // markers seen, over all frames
+  double rms = kUnknown, largest = kUnknown;
+  int largest_marker = -1;  // where, and when: its column
+  int largest_column = -1;
+  double in_noise = kUnknown;  // rms over √3 σ, σ the noise that the fit weighed with
+  double in_floor = kUnknown;  // rms over √3 times the recording's own floor
+  TimeWhiteness in_time;
+  double correlation_time = kUnknown;  // s
+  SpaceWhiteness in_space;
+  Eigen::VectorXd of_markers;  // rms of each, m
+  int worst_marker = -1;
+  // The longest run of frames, three at least, worse than the whole part's rms and than
+  // kBeyondNoise; a twentieth of the frames may lie between two of them.
+  FrameSpan worst_span;
+  double worst_span_rms = kUnknown;
+  MeanVector worst_span_error;  // of all markers there
+  MeanVector mean_error;        // of the whole part
+  std::vector<ErrorAgainst> against;
+};
+
+struct ComparedRecording {
+  std::string name;
+  std::vector<int> frames;           // of the recording
+  Eigen::VectorXd times;             // s
+  std::vector<char> fitted;          // per frame
+  Eigen::MatrixXd measured;          // 3 markers × frames, m
+  Eigen::MatrixXd difference;        // predicted − measured, m
+  Eigen::Matrix3Xd mean_places;      // of each marker as measured, over all frames, m
+  std::vector<std::string> markers;  // names; their numbers where the recording is not there
+  Eigen::VectorXd grip_distance;     // of each marker's place on the object, m; empty: not known
+  double white_noise = kUnknown;     // m, of a measured coordinate, from its second differences
+  std::vector<StaticSpan> rests;
+  double rest_deviation = kUnknown;  // m, the median of the spans'
+  double floor = kUnknown;           // m: the larger of the two
+  std::vector<ComparedPart> parts;   // fitted first; one where nothing was held out
+};
+
+// Two recordings of the same rate, as they were measured.
+struct ComparedPair {
+  std::string first, second;
+  Repeatability repeatability;
+};
+
+struct Comparison {
+  double noise = 0;  // m, σ of a coordinate that the fit weighed with
+  std::vector<ComparedRecording> recordings;
+  std::vector<ComparedPair> pairs;
+  std::vector<std::string> notes;  // what could not be told, and why
+};
+
+// Throws InputError when the folder is no finished run of `lacuna fit`, or its files are damaged.
+Comparison CompareRun(const std::filesystem::path& run);
+
+// What it says, one paragraph of sentences a recording and part.
+std::vector<std::string> ComparisonInWords(const Comparison& comparison);
+
+// <run>/comparison/: comparison.json (written last), by_frame.csv, by_marker.csv, against.csv; each
+// whole or not there. Throws InputError when they cannot be written.
+void SaveComparison(const Comparison& comparison, const std::filesystem::path& run);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_COMPARISON_H_

@@ -1,0 +1,264 @@
+#include "analysis/residual_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace lacuna {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Eigen::MatrixXd WhiteSeries(int rows, int columns, unsigned seed, double deviation = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, deviation);
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+// x_f = a x_{f−1} + √(1 − a²) e_f, of variance one from the first.
+Eigen::MatrixXd AutoregressiveSeries(int rows, int columns, double a, unsigned seed) {
+  Eigen::MatrixXd series = WhiteSeries(rows, columns, seed);
+  for (int f = 1; f < columns; ++f)
+    series.col(f) = a * series.col(f - 1) + std::sqrt(1 - a * a) * series.col(f);
+  return series;
+}
+
+Eigen::Matrix3Xd PlacesInARow(int count, double spacing) {
+  Eigen::Matrix3Xd places = Eigen::Matrix3Xd::Zero(3, count);
+  for (int m = 0; m < count; ++m) places(0, m) = spacing * m;
+  return places;
+}
+
+Eigen::VectorXd Times(int frames, double step) {
+  return Eigen::VectorXd::LinSpaced(frames, 0, step * (frames - 1));
+}
+
+TEST(ResidualStatistics, RootMeanSquaresLeaveOutWhatWasNotSeen) {
+  Eigen::MatrixXd vectors(6, 2);
+  vectors.col(0) << 3, 4, 0, 0, 0, 1;
+  vectors.col(1) << 0, kNan, 0, 0, 7, 0;
+  const Eigen::MatrixXd lengths = PointLengths(vectors);
+  EXPECT_DOUBLE_EQ(lengths(0, 0), 5);
+  EXPECT_TRUE(std::isnan(lengths(0, 1)));
+  EXPECT_DOUBLE_EQ(Rms(lengths), 5);  // √((25 + 1 + 49)/3)
+  EXPECT_DOUBLE_EQ(RmsOfPoints(lengths)[0], 5);
+  EXPECT_DOUBLE_EQ(RmsOfPoints(lengths)[1], 5);
+  EXPECT_DOUBLE_EQ(RmsOfFrames(lengths)[0], std::sqrt(13.0));
+  EXPECT_DOUBLE_EQ(RmsOfFrames(lengths)[1], 7);
+  EXPECT_TRUE(std::isnan(Rms(Eigen::MatrixXd::Constant(1, 1, kNan))));
+}
+
+TEST(ResidualStatistics, ChiSquareTailsAreThoseOfTheTables) {
+  // 5 % points to three decimals (Abramowitz & Stegun, table 26.8): off by less than 1e-4 in p.
+  EXPECT_NEAR(ChiSquareTail(3.841, 1), 0.05, 1e-4);
+  EXPECT_NEAR(ChiSquareTail(5.991, 2), 0.05, 1e-4);
+  EXPECT_NEAR(ChiSquareTail(7.815, 3), 0.05, 1e-4);
+  EXPECT_NEAR(ChiSquareTail(18.307, 10), 0.05, 1e-4);
+  EXPECT_NEAR(ChiSquareTail(124.342, 100), 0.05, 1e-4);
+  // Many degrees: normal with mean k and variance 2k, skewed by less than 0.01.
+  EXPECT_NEAR(ChiSquareTail(5000, 5000), 0.5, 0.01);
+  EXPECT_EQ(ChiSquareTail(0, 3), 1);
+}
+
+TEST(ResidualStatistics, WhiteNoiseIsCalledWhiteAtTheNominalRate) {
+  constexpr int kSeeds = 400;
+  int in_time = 0, in_space = 0;
+  const Eigen::Matrix3Xd places = PlacesInARow(4, 0.01);
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    const Eigen::MatrixXd noise = WhiteSeries(12, 100, seed);
+    in_time += WhitenessInTime(noise).p_value < 0.05;
+    in_space += WhitenessInSpace(noise, places).p_value < 0.05;
+  }
+  // 5 % of 400 is 20 ± 4.4: three deviations; the χ² of the second is an approximation.
+  EXPECT_NEAR(in_time, 20, 14);
+  EXPECT_NEAR(in_space, 20, 18);
+}
+
+TEST(ResidualStatistics, PointsThatShareTheirNoiseAreStillWhiteInTime) {
+  int coloured = 0;
+  for (unsigned seed = 0; seed < 200; ++seed)
+    coloured += WhitenessInTime(WhiteSeries(3, 60, seed).replicate(4, 1)).p_value < 0.05;
+  EXPECT_LT(coloured, 20);  // 10 ± 3
+}
+
+TEST(ResidualStatistics, UnrelatedPointsThatRememberTheirPastAreNotCalledRelated) {
+  constexpr int kSeeds = 500;
+  int related = 0;
+  for (unsigned seed = 0; seed < kSeeds; ++seed)
+    related +=
+        WhitenessInSpace(AutoregressiveSeries(12, 200, 0.7, seed), PlacesInARow(4, 0.01)).p_value <
+        0.05;
+  // 25 ± 5; without Bartlett's correction most of the 500 would be.
+  EXPECT_LT(related, 60);
+}
+
+TEST(ResidualStatistics, AutoregressionIsFoundWithItsCorrelationTime) {
+  const TimeWhiteness white = WhitenessInTime(WhiteSeries(6, 400, 1));
+  const TimeWhiteness coloured = WhitenessInTime(AutoregressiveSeries(6, 400, 0.8, 1));
+  EXPECT_EQ(coloured.lags, 10);
+  EXPECT_LE(coloured.p_value, 0.001);  // the smallest of a thousand orders
+  EXPECT_GT(white.p_value, 0.01);
+  // ρ_1 has deviation √((1 − a²)/n) = 0.012 over 2400 entries.
+  EXPECT_NEAR(coloured.lag_one, 0.8, 0.05);
+  EXPECT_NEAR(white.lag_one, 0, 0.08);
+  EXPECT_NEAR(coloured.correlation_frames, -1 / std::log(0.8), 1);  // 4.5
+  EXPECT_LT(white.correlation_frames, 1);
+}
+
+TEST(ResidualStatistics, WeakAutoregressionIsFoundMostly) {
+  int found = 0;
+  for (unsigned seed = 0; seed < 100; ++seed)
+    found += WhitenessInTime(AutoregressiveSeries(6, 200, 0.4, seed)).p_value < 0.05;
+  EXPECT_GE(found, 95);
+}
+
+TEST(ResidualStatistics, GapsDoNotMakeNoiseColoured) {
+  int coloured = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    Eigen::MatrixXd noise = WhiteSeries(3, 120, seed);
+    for (int f = 0; f < 120; ++f)
+      if (f % 7 == 0 || (f > 40 && f < 60)) noise.col(f).setConstant(kNan);
+    coloured += WhitenessInTime(noise).p_value < 0.05;
+  }
+  EXPECT_LT(coloured, 24);  // 10 ± 3
+}
+
+TEST(ResidualStatistics, TooFewFramesTellNothing) {
+  const TimeWhiteness whiteness = WhitenessInTime(WhiteSeries(3, 9, 1));
+  EXPECT_EQ(whiteness.lags, 0);
+  EXPECT_TRUE(std::isnan(whiteness.p_value));
+  EXPECT_TRUE(
+      std::isnan(WhitenessInSpace(WhiteSeries(6, 5, 1), PlacesInARow(2, 1)).mean_correlation));
+  EXPECT_TRUE(std::isnan(WhiteNoise(Eigen::MatrixXd::Zero(3, 2))));
+}
+
+TEST(ResidualStatistics, CorrelationLengthInSpaceIsFound) {
+  constexpr int kPoints = 6, kFrames = 2000;
+  constexpr double kLength = 0.03;
+  const Eigen::Matrix3Xd places = PlacesInARow(kPoints, 0.01);
+  // Along a row of points, exp(−d/ℓ) is an autoregression from point to point.
+  const double a = std::exp(-0.01 / kLength);
+  const Eigen::MatrixXd along = AutoregressiveSeries(3 * kFrames, kPoints, a, 3);
+  Eigen::MatrixXd vectors(3 * kPoints, kFrames);
+  for (int f = 0; f < kFrames; ++f)
+    for (int m = 0; m < kPoints; ++m)
+      vectors.col(f).segment<3>(3 * m) = along.col(m).segment<3>(3 * f);
+  const SpaceWhiteness whiteness = WhitenessInSpace(vectors, places);
+  EXPECT_EQ(whiteness.pairs.size(), 15u);
+  EXPECT_NEAR(whiteness.correlation_length, kLength, 0.003);  // 6000 samples: 1 % of ρ each
+  EXPECT_LT(whiteness.p_value, 1e-10);
+  // All points alike.
+  Eigen::MatrixXd alike(3 * kPoints, kFrames);
+  const Eigen::MatrixXd common = WhiteSeries(3, kFrames, 5);
+  for (int m = 0; m < kPoints; ++m) alike.middleRows<3>(3 * m) = common;
+  EXPECT_TRUE(std::isinf(WhitenessInSpace(alike, places).correlation_length));
+  EXPECT_NEAR(WhitenessInSpace(alike, places).mean_correlation, 1, 1e-9);
+}
+
+TEST(ResidualStatistics, WhiteNoiseIsSeenUnderMotion) {
+  Eigen::MatrixXd positions = WhiteSeries(9, 1000, 2, 1e-5);
+  const Eigen::VectorXd times = Times(1000, 0.01);
+  for (int f = 0; f < 1000; ++f) positions.col(f).array() += 0.01 * std::sin(times[f]);
+  // The second difference of the motion is 1e-6 at most; 9 medians of a thousand: 2 %.
+  EXPECT_NEAR(WhiteNoise(positions), 1e-5, 0.05e-5);
+}
+
+TEST(ResidualStatistics, RestsAreFoundWithTheirNoiseAndDrift) {
+  constexpr double kNoise = 1e-5, kDrift = 1e-5;
+  const Eigen::VectorXd times = Times(300, 0.01);
+  Eigen::MatrixXd positions = WhiteSeries(12, 300, 4, kNoise);
+  for (int f = 0; f < 300; ++f) {
+    const double moved = f < 100 ? 0 : f < 200 ? 1e-4 * (f - 99) : 1e-2;
+    for (int m = 0; m < 4; ++m) {
+      positions(3 * m, f) += moved;
+      if (f >= 200) positions(3 * m + 2, f) += kDrift * (times[f] - times[200]);
+    }
+  }
+  const std::vector<StaticSpan> rests =
+      StaticSpans(times, positions, 2 * std::sqrt(6.0) * kNoise, 10);
+  ASSERT_EQ(rests.size(), 2u);
+  EXPECT_EQ(rests[0].first, 0);
+  EXPECT_EQ(rests[0].last, 99);
+  EXPECT_NEAR(rests[1].first, 199, 1);
+  EXPECT_EQ(rests[1].last, 299);
+  for (const StaticSpan& rest : rests) EXPECT_NEAR(rest.deviation, kNoise, 0.1 * kNoise);
+  // A slope over a second of 100 frames has deviation σ √12 / (√100 s) = 3.5e-6 a coordinate, and
+  // what is not there adds √3 times that.
+  EXPECT_NEAR(rests[1].drift, std::hypot(kDrift, 6e-6), 4e-6);
+}
+
+TEST(ResidualStatistics, SpeedAndDisplacementOfAUniformMotion) {
+  const Eigen::VectorXd times = Times(20, 0.1);
+  Eigen::MatrixXd positions(3, 20);
+  for (int f = 0; f < 20; ++f) positions.col(f) = Eigen::Vector3d(3, 0, 4) * times[f];
+  positions.col(5).setConstant(kNan);
+  const Eigen::MatrixXd speeds = Speeds(times, positions);
+  const Eigen::MatrixXd displacements = Displacements(positions);
+  EXPECT_NEAR(speeds(0, 0), 5, 1e-12);
+  EXPECT_NEAR(speeds(0, 19), 5, 1e-12);
+  EXPECT_TRUE(std::isnan(speeds(0, 4)));
+  EXPECT_NEAR(displacements(0, 19), 5 * times[19], 1e-12);
+  EXPECT_TRUE(std::isnan(displacements(0, 5)));
+}
+
+TEST(ResidualStatistics, ErrorThatGrowsWithSpeedShowsInBinsAndRanks) {
+  const Eigen::MatrixXd speed = Eigen::RowVectorXd::LinSpaced(100, 0, 1);
+  const Eigen::MatrixXd error = 2 * speed.array().square();
+  const std::vector<ResidualBin> bins = BinnedResiduals(speed, error, 5);
+  ASSERT_EQ(bins.size(), 5u);
+  for (const ResidualBin& bin : bins) EXPECT_EQ(bin.points, 20);
+  for (size_t k = 1; k < bins.size(); ++k) EXPECT_GT(bins[k].rms, bins[k - 1].rms);
+  EXPECT_NEAR(RankCorrelation(speed, error), 1, 1e-12);
+  EXPECT_NEAR(RankCorrelation(speed, -error), -1, 1e-12);
+  EXPECT_TRUE(std::isnan(RankCorrelation(speed, 0 * error)));
+  // Two values only, three quarters alike: they stay together.
+  Eigen::MatrixXd two = Eigen::MatrixXd::Ones(1, 100);
+  two.rightCols(25).setConstant(2);
+  const std::vector<ResidualBin> of_two = BinnedResiduals(two, error, 5);
+  ASSERT_EQ(of_two.size(), 2u);
+  EXPECT_EQ(of_two[0].points, 75);
+}
+
+TEST(ResidualStatistics, ThePlantedSpanAndItsDirectionAreFound) {
+  Eigen::MatrixXd error = WhiteSeries(9, 100, 6, 1e-5);
+  for (int f = 40; f < 60; ++f) error.row(5).segment(f, 1).array() -= 1e-3;  // point 1 down
+  error.col(50).setConstant(kNan);
+  error.col(80).array() += 1e-2;  // one bad frame is no span of time
+  const Eigen::VectorXd of_frames = RmsOfFrames(PointLengths(error));
+  const FrameSpan span = LongestSpanAbove(of_frames, 2e-4);
+  EXPECT_EQ(span.first, 40);
+  EXPECT_EQ(span.last, 59);
+  EXPECT_EQ(span.above, 19);  // frame 50 is not seen
+  EXPECT_EQ(LongestSpanAbove(of_frames, 1).first, -1);
+  EXPECT_EQ(LongestSpanAbove(of_frames, 2e-4, 19).last, 59);
+  EXPECT_EQ(LongestSpanAbove(of_frames, 2e-4, 20).last, 80);
+  const MeanVector of_point = MeanOver(error.middleRows<3>(3), span.first, span.last);
+  EXPECT_NEAR(of_point.mean[2], -1e-3, 2e-5);
+  EXPECT_GT(of_point.agreement, 0.99);
+  // 100 random vectors: |Σ| / Σ| | is about 0.1.
+  EXPECT_LT(MeanOver(WhiteSeries(3, 100, 8), 0, 99).agreement, 0.3);
+}
+
+TEST(ResidualStatistics, RepeatsAreAlignedAndTheirDistanceIsTheNoise) {
+  constexpr double kNoise = 1e-5, kDelay = 0.237;
+  const auto motion = [](double t) { return 0.01 * std::exp(-t) * std::sin(9 * t); };
+  const Eigen::VectorXd first_times = Times(300, 0.01);
+  const Eigen::VectorXd second_times = Times(320, 0.01);
+  Eigen::MatrixXd first = WhiteSeries(6, 300, 10, kNoise);
+  Eigen::MatrixXd second = WhiteSeries(6, 320, 11, kNoise);
+  for (int f = 0; f < 300; ++f) first.col(f).array() += motion(first_times[f]);
+  for (int f = 0; f < 320; ++f)
+    second.col(f).array() += 0.002 + motion(second_times[f] - kDelay);  // stuck on elsewhere
+  const Repeatability repeats = CompareRepeats(first_times, first, second_times, second, 0.2, 0.1);
+  EXPECT_NEAR(repeats.delay, kDelay, 1e-4);
+  // √6 σ, less what averaging between two frames takes away (at most 1/√2 of one of the two) and
+  // with the bend of the motion between frames, h²/8 of the acceleration 0.8: 1e-5 at its most.
+  EXPECT_GT(repeats.distance, 0.8 * std::sqrt(6.0) * kNoise);
+  EXPECT_LT(repeats.distance, 1.2 * std::sqrt(6.0) * kNoise);
+  EXPECT_EQ(CompareRepeats(first_times, first, second_times.array() + 100, second, 0, 0.1).frames,
+            0);
+}
+
+}  // namespace
+}  // namespace lacuna
