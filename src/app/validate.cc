@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "scan/recording.h"
+#include "study/prediction_study.h"
 #include "study/reconstruction.h"
 #include "study/scene.h"
 
@@ -26,6 +27,10 @@ int Validate(const std::filesystem::path& path, bool show) {
     if (config.Has("bar")) {
       ReadScene(config);
       fmt::print("{}: a sound scene\n", path.string());
+    } else if (IsPredictionStudy(config)) {
+      const PredictionStudy study = ReadPredictionStudy(config);
+      fmt::print("{}: a sound experiment for `lacuna fit` on {} recordings\n", path.string(),
+                 study.recordings.size());
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       for (const std::string& warning : study.recording.warnings)

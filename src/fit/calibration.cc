@@ -214,7 +214,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     solver.max_num_iterations = options.max_iterations;
     solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
                                                              1, first.residual.size()));
-    solver.parameter_tolerance = 1e-7;
+    solver.parameter_tolerance = 1e-5;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);

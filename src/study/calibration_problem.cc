@@ -14,6 +14,8 @@ namespace {
 
 // Share of the fitted time that is fitted first.
 constexpr double kShortHorizon = 0.25;
+// Share of the time of a recording that is only predicted, over which its own nuisances are found.
+constexpr double kNuisanceHorizon = 0.1;
 
 std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters) {
   std::vector<MisfitDirection> directions;
@@ -213,9 +215,14 @@ std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& 
         own.push_back(entry.prior);
         directions.push_back(entry.direction);
       }
+      const std::vector<double>& times = item.recording.times;
+      const double start = item.hold ? item.hold->release : times[item.frames.front()];
+      const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
+      std::vector<int> beginning = item.frames;
+      std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
       const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
         const Misfit misfit = model.Predict(
-            item.frames, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
+            beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
         Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
         if (!prediction.usable) return prediction;
         prediction.residual =

@@ -61,8 +61,8 @@ class CalibrationProblem {
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
                   const CalibrationOptions& options = {}) const;
 
-  // All frames of every recording. A recording that is not fitted gets its nuisances fitted to
-  // itself, the model staying as it is.
+  // All frames of every recording. The nuisances of one that is not fitted are found from its first
+  // tenth, the model staying as it is.
   std::vector<RecordingMisfit> Misfits(const Eigen::VectorXd& values) const;
 
  private:

@@ -21,7 +21,7 @@ using Verdict = Diagnosis::Verdict;
 constexpr double kAtNoise = 1.2;
 // An effect must take this share of the held-out square error away to be worth naming, and a rival
 // must leave at least this much more rms than the best to be ruled out.
-constexpr double kWorthNaming = 0.1;
+constexpr double kWorthNaming = 0.25;
 constexpr double kRuledOut = 1.1;
 // How far beyond the plausible range a refit may go, in parts of that range.
 constexpr double kMargin = 0.1;
@@ -118,23 +118,22 @@ void Decide(Diagnosis* diagnosis) {
         1e3 * base, diagnosis->in_noise, 100 * kWorthNaming);
     return;
   }
-  const double best_explained =
-      diagnosis->ranking.empty() ? 0 : diagnosis->ranking.front().scored.score.explained;
+  // Whatever a finer mesh would explain as well is not evidence of physics.
+  if (diagnosis->mesh_share > kWorthNaming && diagnosis->mesh_share > gain) {
+    diagnosis->verdict = Verdict::kNuisance;
+    diagnosis->effects = {"mesh"};
+    diagnosis->explanation = fmt::format(
+        "{:.0f} % of what is left changes with the mesh and the step: refine them before looking "
+        "for physics",
+        100 * diagnosis->mesh_share);
+    return;
+  }
   if (gain < kWorthNaming) {
-    if (diagnosis->mesh_share > std::max(0.2, best_explained)) {
-      diagnosis->verdict = Verdict::kNuisance;
-      diagnosis->effects = {"mesh"};
-      diagnosis->explanation = fmt::format(
-          "{:.0f} % of what is left changes with the mesh and the step: refine them "
-          "before looking for physics",
-          100 * diagnosis->mesh_share);
-    } else {
-      diagnosis->verdict = Verdict::kNotInLibrary;
-      diagnosis->explanation = fmt::format(
-          "{:.3f} mm or {:.1f} σ are left, and no effect of the catalogue lowers the "
-          "held-out error by more than {:.0f} %",
-          1e3 * base, diagnosis->in_noise, 100 * std::max(gain, 0.0));
-    }
+    diagnosis->verdict = Verdict::kNotInLibrary;
+    diagnosis->explanation = fmt::format(
+        "{:.3f} mm or {:.1f} σ are left, and no effect of the catalogue lowers the held-out error "
+        "by more than {:.0f} %",
+        1e3 * base, diagnosis->in_noise, 100 * std::max(gain, 0.0));
     return;
   }
   const RankedEffect& best = *refitted.front();

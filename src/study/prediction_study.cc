@@ -197,6 +197,10 @@ bool IsPredictionStudy(const Config& config) { return config.Has("recordings"); 
 
 PredictionStudy ReadPredictionStudy(const Config& config) {
   PredictionStudy study;
+  if (!IsPredictionStudy(config) && config.Has("recording"))
+    config.Fail("recording",
+                "makes this an experiment for `lacuna reconstruct`; a prediction has "
+                "a list of `recordings`");
   config.Integer("schema_version", 1, 1);
   study.file = config.File();
   study.name = config.Text("name");

@@ -192,6 +192,10 @@ std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) 
 
 ReconstructionStudy ReadReconstruction(const Config& config) {
   ReconstructionStudy study;
+  if (config.Has("recordings") && !config.Has("recording"))
+    config.Fail("recordings",
+                "makes this an experiment for `lacuna fit`, which predicts; a "
+                "reconstruction has one `recording`");
   config.Integer("schema_version", 1, 1);
   study.name = config.Text("name");
   if (config.Has("output") && config.Text("output").empty())

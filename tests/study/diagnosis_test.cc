@@ -1,0 +1,87 @@
+#include "study/diagnosis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "study/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::Contains;
+using Verdict = Diagnosis::Verdict;
+
+// The finer mesh and the smaller steps of the truth leave the model some 1.5 σ off.
+constexpr double kModelError = 1.8;  // σ
+
+ProgressOptions Silent() {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  return silent;
+}
+
+Diagnosis DiagnoseBar(const HeldBarTruth& truth,
+                      const std::map<std::string, std::string>& replaced) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
+  const TetMesh mesh = BarMesh({6, 1, 1}, 2);
+  const CalibrationProblem problem(study, mesh);
+  Progress progress(Silent());
+  const Calibration calibration = problem.Fit(problem.Start(), &progress);
+  EXPECT_TRUE(calibration.usable) << calibration.message;
+  return Diagnose(problem, mesh, calibration.parameters, {}, &progress);
+}
+
+const std::map<std::string, std::string> kWithoutDamping{
+    {"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}};
+
+TEST(Diagnosis, NamesADampingThatTheModelLacks) {
+  HeldBarTruth truth;
+  truth.alpha = 12;
+  const Diagnosis diagnosis = DiagnoseBar(truth, kWithoutDamping);
+  EXPECT_GT(diagnosis.in_noise, 3 * kModelError);
+  ASSERT_TRUE(diagnosis.verdict == Verdict::kMissing || diagnosis.verdict == Verdict::kAmbiguous)
+      << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, Contains("mass_damping"));
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    if (effect.scored.candidate.type != "mass_damping") continue;
+    EXPECT_TRUE(effect.refitted);
+    EXPECT_LT(effect.in_noise, kModelError);
+    // 1/s; the interval's width is a tenth of it.
+    const double alpha = effect.calibration.parameters[1];
+    EXPECT_NEAR(alpha, truth.alpha, 0.15 * truth.alpha);
+  }
+}
+
+TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
+  const Diagnosis diagnosis = DiagnoseBar({}, {});
+  EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+}
+
+TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kNotInLibrary;
+  diagnosis.ranking.emplace_back();
+  ScoredEffect& scored = diagnosis.ranking.back().scored;
+  scored.candidate.type = "drag";
+  scored.parameters = {"coefficient"};
+  scored.units = {"kg/m^3"};
+  scored.score.size = scored.score.deviation = Eigen::VectorXd::Ones(1);
+  scored.score.detectable = Eigen::VectorXd::Constant(1, INFINITY);
+  const TemporaryFolder folder;
+  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
+  std::ifstream stream(folder / "diagnosis.json");
+  const auto written = nlohmann::json::parse(stream);
+  EXPECT_EQ(written["verdict"], "not in library");
+  EXPECT_EQ(written["ranking"][0]["effect"], "drag");
+  EXPECT_TRUE(written["ranking"][0]["sizes"][0]["detectable"].is_null());
+}
+
+}  // namespace
+}  // namespace lacuna
