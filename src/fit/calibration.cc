@@ -156,12 +156,12 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::M
   }
 }
 
+}  // namespace
+
 double RootMeanSquare(const Eigen::VectorXd& residual) {
   return residual.size() > 0 ? residual.norm() / std::sqrt(static_cast<double>(residual.size()))
                              : 0;
 }
-
-}  // namespace
 
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
                       const PredictionFunction& predict, const CalibrationOptions& options) {

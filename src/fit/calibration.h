@@ -78,6 +78,9 @@ struct Calibration {
   double inflation = 1;
 };
 
+// √(‖r‖²/n); 0 for an empty residual.
+double RootMeanSquare(const Eigen::VectorXd& residual);
+
 // A start outside its bounds is our own mistake (CHECK). When the very first prediction fails the
 // result is not usable and says why; later ones make the step shorter.
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,

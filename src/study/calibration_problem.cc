@@ -185,16 +185,20 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
           const Prediction prediction = Predict(at, with_jacobian, horizon);
-          progress->Report(++evaluations, prediction.usable
-                                              ? prediction.residual.norm() /
-                                                    std::sqrt(1.0 * prediction.residual.size())
-                                              : std::nan(""));
+          progress->Report(++evaluations,
+                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
           return prediction;
         },
         options);
     progress->End(calibration.usable ? "" : calibration.message);
     if (calibration.parameters.size() > 0) values = calibration.parameters;
   }
+  calibration.predictions = evaluations;
+  // "Before" is where the caller started, not where the first part ended.
+  const Prediction before = Predict(start, /*with_jacobian=*/false);
+  calibration.start_rms =
+      before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
+  SetModel(values);
   return calibration;
 }
 
