@@ -14,7 +14,6 @@ namespace lacuna {
 namespace {
 
 constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
 class AttachedMassEffect final : public AddedMass {
  public:
@@ -63,24 +62,7 @@ class AttachedMassEffect final : public AddedMass {
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
-    AppendVector({.name = "centre",
-                  .meaning = "place of the mass on the body at rest",
-                  .dimension = kLength,
-                  .null_value = kNoNull,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
-    card.parameters.push_back({.name = "radius",
-                               .meaning = "spread about that place (standard deviation), r",
-                               .dimension = kLength,
-                               .bounds = kPositive,
-                               .null_value = kNoNull,
-                               .plausible_min = 1e-3,
-                               .plausible_max = 0.05,
-                               .default_value = 0.005,
-                               .log_scale = true,
-                               .setting = true});
+    AppendPlaceSettings("place of the mass on the body at rest", &card);
     AppendGravitySetting(&card);
     return card;
   }

@@ -88,24 +88,7 @@ class PointForceEffect final : public Effect {
                   .plausible_min = -5,
                   .plausible_max = 5},
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
-    AppendVector({.name = "centre",
-                  .meaning = "the place on the body at rest where it acts,",
-                  .dimension = kLength,
-                  .null_value = kNoNull,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
-    card.parameters.push_back({.name = "radius",
-                               .meaning = "spread about that place (standard deviation), r",
-                               .dimension = kLength,
-                               .bounds = kPositive,
-                               .null_value = kNoNull,
-                               .plausible_min = 1e-3,
-                               .plausible_max = 0.05,
-                               .default_value = 0.005,
-                               .log_scale = true,
-                               .setting = true});
+    AppendPlaceSettings("the place on the body at rest where it acts,", &card);
     card.parameters.push_back({.name = "start",
                                .meaning = "time from which it acts",
                                .dimension = kTime,

@@ -1,5 +1,7 @@
 #include "effects/vector_parameters.h"
 
+#include <limits>
+
 namespace lacuna {
 namespace {
 
@@ -26,6 +28,28 @@ std::string VectorNameAt(const EffectCard& card, size_t k) {
   const bool complete =
       card.parameters[k + 1].name == name + "_y" && card.parameters[k + 2].name == name + "_z";
   return complete ? name : "";
+}
+
+void AppendPlaceSettings(const std::string& meaning, EffectCard* card) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  AppendVector({.name = "centre",
+                .meaning = meaning,
+                .dimension = kLength,
+                .null_value = kNone,
+                .plausible_min = -1,
+                .plausible_max = 1,
+                .setting = true},
+               Eigen::Vector3d::Constant(kNone), card);
+  card->parameters.push_back({.name = "radius",
+                              .meaning = "spread about that place (standard deviation), r",
+                              .dimension = kLength,
+                              .bounds = kPositive,
+                              .null_value = kNone,
+                              .plausible_min = 1e-3,
+                              .plausible_max = 0.05,
+                              .default_value = 0.005,
+                              .log_scale = true,
+                              .setting = true});
 }
 
 void AppendGravitySetting(EffectCard* card) {

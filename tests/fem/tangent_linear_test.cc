@@ -133,6 +133,32 @@ TEST(TangentLinear, NeglectsOnlyTheUnsymmetricPartOfDamping) {
   ExpectParameterDerivative(motion, motion.effects[kDamped], 0, 1e-5, 2e-2);
 }
 
+TEST(TangentLinear, FollowsTheMemoryOfEffects) {
+  Case motion;
+  motion.effects[kDamped] = MakeEffect(
+      "viscoelastic_branch", {{"modulus", 2e4}, {"relaxation_time", 0.03}, {"poisson_ratio", 0.4}});
+  ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
+  ExpectParameterDerivative(motion, motion.effects[kDamped], 0, 50, 1e-5);
+  ExpectParameterDerivative(motion, motion.effects[kDamped], 1, 1e-4, 1e-4);
+}
+
+TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAMemoryThatIsNotInTheModel) {
+  Case motion;
+  motion.effects.resize(2);
+  const auto branch = MakeEffect(
+      "viscoelastic_branch", {{"modulus", 0}, {"relaxation_time", 0.03}, {"poisson_ratio", 0.4}});
+  Case with = motion;
+  with.effects.push_back(branch);
+  Eigen::VectorXd position, velocity, plus, without;
+  Eigen::MatrixXd by_position;
+  motion.Run({{branch, 0}}, &without, &velocity, &by_position);
+  const double little = 5;  // Pa, of a body of 50 kPa: what is quadratic in it is 1e-4 of it
+  branch->SetParameters(Eigen::Vector3d(little, 0.03, 0.4));
+  with.Run({}, &plus, &velocity);
+  const Eigen::VectorXd difference = (plus - without) / little;
+  EXPECT_LT((by_position.col(0) - difference).norm(), 1e-3 * difference.norm());
+}
+
 TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAnEffectThatIsNotInTheModel) {
   Case motion;
   motion.effects.resize(2);
