@@ -26,6 +26,15 @@ double FromFree(const CalibratedParameter& parameter, double free) {
   return parameter.log_scale ? std::exp(free) : free;
 }
 
+// Ceres works with φ in typical changes, so that its step lengths mean the same in every unit.
+double ToScaled(const CalibratedParameter& parameter, double value) {
+  return ToFree(parameter, value) / parameter.typical;
+}
+
+double FromScaled(const CalibratedParameter& parameter, double scaled) {
+  return FromFree(parameter, scaled * parameter.typical);
+}
+
 class PredictionCost : public ceres::CostFunction {
  public:
   PredictionCost(const std::vector<CalibratedParameter>& parameters,
@@ -38,7 +47,7 @@ class PredictionCost : public ceres::CostFunction {
   bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
     const int count = static_cast<int>(parameters_.size());
     Eigen::VectorXd values(count);
-    for (int k = 0; k < count; ++k) values[k] = FromFree(parameters_[k], free[k][0]);
+    for (int k = 0; k < count; ++k) values[k] = FromScaled(parameters_[k], free[k][0]);
     // Nearly every trial is accepted and then asked for its Jacobian: both come from one run.
     if (last_values_.size() == 0 || values != last_values_) {
       ++predictions_;
@@ -52,7 +61,7 @@ class PredictionCost : public ceres::CostFunction {
     if (jacobians == nullptr) return true;
     for (int k = 0; k < count; ++k) {
       if (jacobians[k] == nullptr) continue;
-      const double slope = parameters_[k].log_scale ? values[k] : 1;
+      const double slope = parameters_[k].typical * (parameters_[k].log_scale ? values[k] : 1);
       Eigen::Map<Eigen::VectorXd>(jacobians[k], num_residuals()) =
           slope * prediction.jacobian.col(k);
     }
@@ -176,7 +185,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK(!parameter.log_scale || parameter.start > 0)
         << parameter.name << " cannot start at " << parameter.start << " on a logarithmic scale";
     calibration.parameters[k] = parameter.start;
-    free[k] = ToFree(parameter, parameter.start);
+    CHECK_GT(parameter.typical, 0) << parameter.name;
+    free[k] = ToScaled(parameter, parameter.start);
   }
   const Prediction first = predict(calibration.parameters, /*with_jacobian=*/false);
   ++calibration.predictions;
@@ -199,14 +209,14 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
       if (std::isfinite(parameter.prior_deviation))
         problem.AddResidualBlock(new PriorCost(std::isnan(parameter.prior_mean)
                                                    ? free[k]
-                                                   : ToFree(parameter, parameter.prior_mean),
-                                               parameter.prior_deviation),
+                                                   : ToScaled(parameter, parameter.prior_mean),
+                                               parameter.prior_deviation / parameter.typical),
                                  nullptr, blocks[k]);
       const double low = parameter.log_scale && parameter.min <= 0
                              ? -std::numeric_limits<double>::infinity()
-                             : ToFree(parameter, parameter.min);
+                             : ToScaled(parameter, parameter.min);
       if (std::isfinite(low)) problem.SetParameterLowerBound(blocks[k], 0, low);
-      const double high = ToFree(parameter, parameter.max);
+      const double high = ToScaled(parameter, parameter.max);
       if (std::isfinite(high)) problem.SetParameterUpperBound(blocks[k], 0, high);
     }
     ceres::Solver::Options solver;
@@ -214,7 +224,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     solver.max_num_iterations = options.max_iterations;
     solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
                                                              1, first.residual.size()));
-    solver.parameter_tolerance = 1e-5;
+    solver.parameter_tolerance = 1e-6;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
@@ -223,7 +233,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     if (!calibration.usable) calibration.message = summary.message;
     for (int k = 0; k < count; ++k)
       calibration.parameters[k] =
-          std::clamp(FromFree(parameters[k], free[k]), parameters[k].min, parameters[k].max);
+          std::clamp(FromScaled(parameters[k], free[k]), parameters[k].min, parameters[k].max);
   } else {
     calibration.usable = true;
   }

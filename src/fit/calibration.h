@@ -25,7 +25,8 @@ struct CalibratedParameter {
   // Prior: around `prior_mean` (NaN: `start`), s in units of φ. Infinite: none.
   double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
   double prior_deviation = std::numeric_limits<double>::infinity();
-  double typical = 1;  // a change that matters, in units of φ: what "flat" is judged by
+  // A change that matters, in units of φ, > 0: what "flat" is judged by, and the fit's own unit.
+  double typical = 1;
 };
 
 struct Prediction {

@@ -86,6 +86,19 @@ TEST(Calibration, SaysWhatTheDataDoesNotPinDown) {
   EXPECT_EQ(found.estimates[3].verdict, Verdict::kFlat);
 }
 
+TEST(Calibration, StepsMeanTheSameInEveryUnit) {
+  // A modulus of 80 000 Pa that does nothing must not make 0.3 N look like no step at all.
+  const auto predict = [](const Eigen::VectorXd& at, bool) {
+    Prediction prediction{true, "", Eigen::VectorXd(8), Eigen::MatrixXd::Zero(8, 2)};
+    prediction.residual.setConstant(50 * (at[1] - 0.3));
+    prediction.jacobian.col(1).setConstant(50);
+    return prediction;
+  };
+  const Calibration found = Calibrate(
+      {{.name = "modulus", .start = 8e4, .typical = 1e5}, {.name = "force", .start = 0}}, predict);
+  EXPECT_NEAR(found.parameters[1], 0.3, 1e-6);
+}
+
 TEST(Calibration, StaysWithinBoundsAndSaysSo) {
   auto parameters = AmplitudeAndTime();
   parameters[0].max = 1.5;
