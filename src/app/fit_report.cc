@@ -37,6 +37,7 @@ void PrintCalibration(const CalibrationRecord& record) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));
   }
+  for (const std::string& strain : record.strains) fmt::print("  strained: {}\n", strain);
 }
 
 }  // namespace lacuna

@@ -20,7 +20,7 @@ using Verdict = ParameterEstimate::Verdict;
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 1;
+constexpr int kCalibrationVersion = 2;
 
 const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
   static const std::vector<std::pair<Verdict, std::string>> names{
@@ -84,7 +84,8 @@ json ToJson(const CalibrationRecord& record) {
           {"rms_after", Number(record.rms)},
           {"predictions", record.predictions},
           {"parameters", parameters},
-          {"recordings", recordings}};
+          {"recordings", recordings},
+          {"strains", record.strains}};
 }
 
 CalibrationRecord FromJson(const json& value) {
@@ -118,6 +119,7 @@ CalibrationRecord FromJson(const json& value) {
     record.recordings.push_back({entry.at("name"), entry.at("fitted"), entry.at("noise_m"),
                                  MeasureFromJson(entry.at("in_fit")),
                                  MeasureFromJson(entry.at("held_out"))});
+  record.strains = value.at("strains").get<std::vector<std::string>>();
   return record;
 }
 
@@ -174,6 +176,36 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
   return table;
 }
 
+// A prior is strained where the fit is so many of its deviations away.
+constexpr double kStrained = 3;
+
+std::vector<std::string> Strains(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                 const std::vector<RecordingMisfit>& misfits) {
+  std::vector<std::string> strains;
+  const PredictionStudy& study = problem.study();
+  for (size_t k = study.fitted.size(); k < problem.parameters().size(); ++k) {
+    const CalibratedParameter& prior = problem.parameters()[k];
+    const double away = std::abs(values[static_cast<Eigen::Index>(k)]) / prior.prior_deviation;
+    if (away > kStrained)
+      strains.push_back(
+          fmt::format("{} is {:.1f} deviations of its prior away from 0", prior.name, away));
+  }
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const std::vector<std::string>& names = study.recordings[r].recording.markers.names;
+    for (Eigen::Index m = 0; m < misfits[r].place_offset.cols(); ++m) {
+      const Eigen::Vector3d offset = misfits[r].place_offset.col(m);
+      if (offset.norm() > kStrained * study.place_deviation)
+        strains.push_back(
+            fmt::format("{}: the model would have marker {} ({:.1f}, {:.1f}, {:.1f}) mm from where "
+                        "it is, in all "
+                        "frames alike; place_deviation allows {:.1f} mm",
+                        misfits[r].name, names[m], 1e3 * offset.x(), 1e3 * offset.y(),
+                        1e3 * offset.z(), 1e3 * study.place_deviation));
+    }
+  }
+  return strains;
+}
+
 struct CalibrationStage {
   CalibrationRecord record;
   CsvTable misfit;
@@ -212,6 +244,7 @@ CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& r
          EstimateMarkerNoise(study.recordings[r], study.recordings[r].frames), misfits[r].in_fit,
          misfits[r].held_out});
   }
+  record.strains = Strains(problem, calibration.parameters, misfits);
   stage.misfit = MisfitTable(problem, misfits);
   progress->End();
   return stage;

@@ -34,6 +34,9 @@ struct CalibrationRecord {
   int predictions = 0;
   std::vector<FittedParameter> parameters;  // the model's, then the recordings'
   std::vector<FittedRecording> recordings;
+  // What the fit took for granted against its prior: markers far from where the recording has them,
+  // a clock or a hold far from what was allowed. Physics may hide there.
+  std::vector<std::string> strains;
   MeshRecord mesh;
 };
 

@@ -56,7 +56,8 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                             {"rms_after", 1.0},
                             {"predictions", 3},
                             {"parameters", json::array()},
-                            {"recordings", recordings}};
+                            {"recordings", recordings},
+                            {"strains", json::array()}};
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0, kNoise);
   std::vector<std::vector<double>> columns(11);
