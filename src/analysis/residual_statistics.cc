@@ -5,135 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 
 namespace lacuna {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rows minus the mean of what was seen of each; NaN stays.
-Eigen::MatrixXd Centred(Eigen::MatrixXd series) {
-  for (Eigen::Index row = 0; row < series.rows(); ++row) {
-    double sum = 0;
-    int count = 0;
-    for (const double value : series.row(row)) {
-      if (std::isnan(value)) continue;
-      sum += value;
-      ++count;
-    }
-    if (count > 0) series.row(row).array() -= sum / count;
-  }
-  return series;
-}
-
 double Median(std::vector<double> values) {
   if (values.empty()) return kUnknown;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-struct Products {
-  double sum = 0, first_squares = 0, second_squares = 0;
-  int count = 0;
-  double Correlation() const {
-    return first_squares > 0 && second_squares > 0 ? sum / std::sqrt(first_squares * second_squares)
-                                                   : kUnknown;
-  }
-  void Add(double first, double second) {
-    if (std::isnan(first) || std::isnan(second)) return;
-    sum += first * second;
-    first_squares += first * first;
-    second_squares += second * second;
-    ++count;
-  }
-};
-
-Products LaggedProducts(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen::Index lag) {
-  Products products;
-  for (Eigen::Index f = 0; f + lag < centred.cols(); ++f)
-    products.Add(centred(row, f), centred(row, f + lag));
-  return products;
-}
-
-// ρ_lag of one row; the denominator is over all frames seen.
-double Autocorrelation(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen::Index lag) {
-  const double squares = LaggedProducts(centred, row, 0).sum;
-  return squares > 0 ? LaggedProducts(centred, row, lag).sum / squares : kUnknown;
-}
-
-double PooledAutocorrelation(const Eigen::MatrixXd& centred, Eigen::Index lag) {
-  double products = 0, squares = 0;
-  for (Eigen::Index row = 0; row < centred.rows(); ++row) {
-    products += LaggedProducts(centred, row, lag).sum;
-    squares += LaggedProducts(centred, row, 0).sum;
-  }
-  return squares > 0 ? products / squares : kUnknown;
-}
-
-double CorrelationFrames(const Eigen::MatrixXd& centred) {
-  const double fallen = std::exp(-1.0);
-  double before = 1;
-  for (Eigen::Index lag = 1; 2 * lag <= centred.cols(); ++lag) {
-    const double here = PooledAutocorrelation(centred, lag);
-    if (std::isnan(here)) return kUnknown;
-    if (here <= fallen) return static_cast<double>(lag) - 1 + (before - fallen) / (before - here);
-    before = here;
-  }
-  return kInfinity;
-}
-
-// Σ over the rows of Q; `known` has 0 where `seen` has.
-double LjungBoxStatistic(const Eigen::MatrixXd& known, const Eigen::MatrixXd& seen, int lags) {
-  const Eigen::ArrayXd squares = known.rowwise().squaredNorm();
-  const Eigen::ArrayXd counts = seen.rowwise().sum();
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(known.rows());
-  for (int lag = 1; lag <= lags; ++lag) {
-    const Eigen::Index columns = known.cols() - lag;
-    const Eigen::ArrayXd products =
-        known.leftCols(columns).cwiseProduct(known.rightCols(columns)).rowwise().sum();
-    const Eigen::ArrayXd pairs =
-        seen.leftCols(columns).cwiseProduct(seen.rightCols(columns)).rowwise().sum();
-    sum += (pairs > 0).select((products / squares).square() / pairs.max(1), 0);
-  }
-  return (sum * counts * (counts + 2)).sum();
-}
-
-// Fisher–Yates. Not std::shuffle, which may differ between standard libraries.
-void Shuffle(std::vector<int>* order, std::mt19937* random) {
-  for (size_t k = order->size(); k > 1; --k) std::swap((*order)[k - 1], (*order)[(*random)() % k]);
-}
-
-// Least squares over a logarithmic grid: the sum is smooth in ln ℓ, 2 % apart is near enough.
-double FitCorrelationLength(const std::vector<PointPair>& pairs) {
-  double smallest = kInfinity, largest = 0;
-  for (const PointPair& pair : pairs) {
-    if (std::isnan(pair.correlation) || pair.distance <= 0) continue;
-    smallest = std::min(smallest, pair.distance);
-    largest = std::max(largest, pair.distance);
-  }
-  if (largest == 0) return kUnknown;
-  const double from = std::log(0.1 * smallest), to = std::log(10 * largest);
-  const int steps = std::max(1, static_cast<int>((to - from) / 0.02));
-  int best = 0;
-  double best_sum = kInfinity;
-  for (int k = 0; k <= steps; ++k) {
-    const double length = std::exp(from + (to - from) * k / steps);
-    double sum = 0;
-    for (const PointPair& pair : pairs) {
-      if (std::isnan(pair.correlation)) continue;
-      const double miss = pair.correlation - std::exp(-pair.distance / length);
-      sum += miss * miss;
-    }
-    if (sum < best_sum) {
-      best_sum = sum;
-      best = k;
-    }
-  }
-  if (best == 0) return 0;
-  if (best == steps) return kInfinity;
-  return std::exp(from + (to - from) * best / steps);
 }
 
 double RmsBetween(const Eigen::MatrixXd& positions, Eigen::Index a, Eigen::Index b) {
@@ -220,6 +102,20 @@ bool At(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows, double time,
 
 }  // namespace
 
+Eigen::MatrixXd Centred(Eigen::MatrixXd series) {
+  for (Eigen::Index row = 0; row < series.rows(); ++row) {
+    double sum = 0;
+    int count = 0;
+    for (const double value : series.row(row)) {
+      if (std::isnan(value)) continue;
+      sum += value;
+      ++count;
+    }
+    if (count > 0) series.row(row).array() -= sum / count;
+  }
+  return series;
+}
+
 Eigen::MatrixXd PointLengths(const Eigen::MatrixXd& vectors) {
   CHECK_EQ(vectors.rows() % 3, 0);
   Eigen::MatrixXd lengths(vectors.rows() / 3, vectors.cols());
@@ -251,100 +147,6 @@ Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths) {
   Eigen::VectorXd rms(lengths.cols());
   for (Eigen::Index f = 0; f < rms.size(); ++f) rms[f] = Rms(lengths.col(f));
   return rms;
-}
-
-double ChiSquareTail(double statistic, int degrees_of_freedom) {
-  CHECK_GE(degrees_of_freedom, 1);
-  if (std::isnan(statistic)) return kUnknown;
-  if (statistic <= 0) return 1;
-  const double half = 0.5 * statistic;
-  const bool odd = degrees_of_freedom % 2 == 1;
-  double tail = odd ? std::erfc(std::sqrt(half)) : 0;
-  for (double power = odd ? 0.5 : 0; power < 0.5 * degrees_of_freedom - 0.25; power += 1)
-    tail += std::exp(power * std::log(half) - half - std::lgamma(power + 1));
-  return std::min(1.0, tail);
-}
-
-TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series) {
-  constexpr int kFewest = 10, kLags = 10;
-  constexpr double kWork = 5e8;  // multiplications, about half a second
-  const Eigen::MatrixXd centred = Centred(series);
-  std::vector<Eigen::Index> rows;
-  int most = 0;
-  for (Eigen::Index row = 0; row < centred.rows(); ++row) {
-    const Products all = LaggedProducts(centred, row, 0);
-    if (all.count < kFewest || all.sum == 0) continue;
-    rows.push_back(row);
-    most = std::max(most, all.count);
-  }
-  TimeWhiteness whiteness;
-  if (rows.empty()) return whiteness;
-  whiteness.lags = std::min(kLags, most / 5);
-  whiteness.lag_one = PooledAutocorrelation(centred, 1);
-  whiteness.correlation_frames = CorrelationFrames(centred);
-
-  const Eigen::MatrixXd chosen = centred(rows, Eigen::all);
-  const Eigen::MatrixXd seen =
-      chosen.array().isNaN().select(0.0, Eigen::MatrixXd::Ones(chosen.rows(), chosen.cols()));
-  const Eigen::MatrixXd known = chosen.array().isNaN().select(0.0, chosen);
-  whiteness.statistic = LjungBoxStatistic(known, seen, whiteness.lags);
-  const double cost = 1.0 * static_cast<double>(known.size()) * whiteness.lags;
-  const int trials = static_cast<int>(std::clamp(kWork / cost, 199.0, 999.0));
-  std::vector<int> order(static_cast<size_t>(known.cols()));
-  std::iota(order.begin(), order.end(), 0);
-  std::mt19937 random(1);
-  int as_large = 0;
-  for (int trial = 0; trial < trials; ++trial) {
-    Shuffle(&order, &random);
-    as_large += LjungBoxStatistic(known(Eigen::all, order), seen(Eigen::all, order),
-                                  whiteness.lags) >= whiteness.statistic;
-  }
-  whiteness.p_value = (1.0 + as_large) / (1.0 + trials);
-  return whiteness;
-}
-
-SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Matrix3Xd& places) {
-  CHECK_EQ(vectors.rows(), 3 * places.cols());
-  constexpr int kFewest = 10;
-  const Eigen::MatrixXd centred = Centred(vectors);
-  std::vector<double> lag_one;
-  for (Eigen::Index row = 0; row < centred.rows(); ++row)
-    lag_one.push_back(Autocorrelation(centred, row, 1));
-  SpaceWhiteness whiteness;
-  double statistic = 0, sum = 0;
-  int freedom = 0, known = 0;
-  for (int i = 0; i < places.cols(); ++i) {
-    for (int j = i + 1; j < places.cols(); ++j) {
-      Products of_pair;
-      for (int axis = 0; axis < 3; ++axis) {
-        Products products;
-        for (Eigen::Index f = 0; f < centred.cols(); ++f) {
-          products.Add(centred(3 * i + axis, f), centred(3 * j + axis, f));
-          of_pair.Add(centred(3 * i + axis, f), centred(3 * j + axis, f));
-        }
-        const double correlation = products.Correlation();
-        if (products.count < kFewest || std::isnan(correlation)) continue;
-        const double memory = std::clamp(lag_one[3 * i + axis] * lag_one[3 * j + axis], 0.0, 1.0);
-        // The means taken away cost one frame.
-        const double independent = (products.count - 1) * (1 - memory) / (1 + memory);
-        statistic += independent * correlation * correlation;
-        ++freedom;
-      }
-      PointPair pair{i, j, (places.col(i) - places.col(j)).norm()};
-      if (of_pair.count >= 3 * kFewest) pair.correlation = of_pair.Correlation();
-      if (!std::isnan(pair.correlation)) {
-        sum += pair.correlation;
-        ++known;
-      }
-      whiteness.pairs.push_back(pair);
-    }
-  }
-  if (known > 0) {
-    whiteness.mean_correlation = sum / known;
-    whiteness.correlation_length = FitCorrelationLength(whiteness.pairs);
-  }
-  if (freedom > 0) whiteness.p_value = ChiSquareTail(statistic, freedom);
-  return whiteness;
 }
 
 double WhiteNoise(const Eigen::MatrixXd& positions) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/residual_statistics.h"
+#include "analysis/whiteness.h"
 
 namespace lacuna {
 

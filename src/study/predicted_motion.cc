@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/residual_statistics.h"
 #include "fem/prescribed_force.h"
 #include "study/grip_tracks.h"
 #include "study/outer_forces.h"
@@ -184,28 +185,12 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& o
 }
 
 double EstimateMarkerNoise(const PredictedRecording& item, const std::vector<int>& frames) {
-  const auto& positions = item.recording.markers.positions;
-  const Eigen::Index markers = item.recording.marker_places.cols();
-  std::vector<double> deviations;
-  for (Eigen::Index m = 0; m < markers; ++m) {
-    for (int axis = 0; axis < 3; ++axis) {
-      // The median of |second differences|, of normal noise, is 0.6745 √6 σ; motion is smooth or
-      // rare enough not to move a median.
-      std::vector<double> second;
-      for (size_t k = 1; k + 1 < frames.size(); ++k) {
-        const double value = positions[frames[k - 1]](axis, m) - 2 * positions[frames[k]](axis, m) +
-                             positions[frames[k + 1]](axis, m);
-        if (std::isfinite(value)) second.push_back(std::abs(value));
-      }
-      if (second.empty()) continue;
-      std::nth_element(second.begin(), second.begin() + second.size() / 2, second.end());
-      deviations.push_back(second[second.size() / 2] / (0.6745 * std::sqrt(6.0)));
-    }
-  }
-  if (deviations.empty()) return 0;
-  std::nth_element(deviations.begin(), deviations.begin() + deviations.size() / 2,
-                   deviations.end());
-  return deviations[deviations.size() / 2];
+  Eigen::MatrixXd rows(item.recording.marker_places.size(),
+                       static_cast<Eigen::Index>(frames.size()));
+  for (size_t k = 0; k < frames.size(); ++k)
+    rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
+  const double noise = WhiteNoise(rows);
+  return std::isnan(noise) ? 0 : noise;
 }
 
 }  // namespace lacuna

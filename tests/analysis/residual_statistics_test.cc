@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/whiteness.h"
+
 namespace lacuna {
 namespace {
 
