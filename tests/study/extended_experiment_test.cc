@@ -1,0 +1,74 @@
+#include "study/extended_experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "study/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+// A run of the bar's study without its damping.
+std::filesystem::path FitBar(const std::filesystem::path& folder) {
+  WriteBarRecording(folder, FilmHeldBar({}));
+  std::ofstream(folder / "bar.yaml") << BarExperiment(
+      folder, {{"name: bar", "name: bar\noutput: runs/bar"},
+               {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
+               {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
+               {", {name: mass_damping.alpha}", ""}});
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "bar.yaml"));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  EXPECT_TRUE(RunCalibration(study, &progress).usable);
+  return study.output;
+}
+
+TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  const FittedRun fitted = OpenRun(run);
+  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
+    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
+
+  ScoredEffect scored;
+  const Body body = MakeBody(fitted.mesh, 1000);
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, fitted.study.effects, fitted.study.time_step, 0.25}))
+    if (candidate.type == "mass_damping") scored.candidate = candidate;
+  ASSERT_NE(scored.candidate.effect, nullptr);
+  scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
+
+  const std::filesystem::path file = WriteExtendedExperiment(fitted, run, scored);
+  EXPECT_EQ(file.filename(), "bar+mass_damping.yaml");
+  const PredictionStudy extended = ReadPredictionStudy(Config::Load(file));
+  EXPECT_EQ(extended.output.filename(), "bar+mass_damping");
+  ASSERT_EQ(extended.effects.size(), fitted.study.effects.size() + 1);
+  EXPECT_EQ(extended.effects.front()->Parameters(), fitted.study.effects.front()->Parameters());
+  EXPECT_EQ(extended.effects.back()->Parameters()[0], 2.5);
+  ASSERT_EQ(extended.fitted.size(), 2u);
+  EXPECT_EQ(extended.fitted[1].prior.name, "mass_damping.alpha");
+  EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
+}
+
+TEST(ExtendedExperiment, ARunWhoseExperimentHasChangedIsNotOpened) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  std::ofstream(folder / "bar.yaml", std::ios::app) << "seed_of_doubt: 1\n";
+  EXPECT_THROW(OpenRun(run), InputError);
+  std::ofstream(folder / "bar.yaml") << BarExperiment(folder.Path(), {{"0.15 MPa", "0.16 MPa"}});
+  try {
+    OpenRun(run);
+    ADD_FAILURE() << "was opened";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("has changed since"));
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
