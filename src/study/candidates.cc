@@ -174,6 +174,10 @@ Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
 
 }  // namespace
 
+double PlausibleScale(const ParameterCard& card) {
+  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
+}
+
 std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
   const Extent extent = Measure(setting.body);
   std::vector<CandidateEffect> candidates;

@@ -21,6 +21,9 @@ struct CandidateEffect {
   std::vector<int> amplitude;
 };
 
+// The largest plausible size of a parameter: the scale of its prior.
+double PlausibleScale(const ParameterCard& card);
+
 // What the variants are chosen for.
 struct CandidateSetting {
   const Body& body;

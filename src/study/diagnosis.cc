@@ -51,10 +51,6 @@ Errors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values
   return errors;
 }
 
-double PlausibleScale(const ParameterCard& card) {
-  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
-}
-
 void Refit(const CalibrationProblem& problem, const TetMesh& mesh, const Eigen::VectorXd& values,
            RankedEffect* ranked, Progress* progress) {
   const PredictionStudy study = WithEffect(problem.study(), ranked->scored);
@@ -99,7 +95,27 @@ std::string Titles(const std::vector<std::string>& types) {
   return fmt::format("{}", fmt::join(titles, "; "));
 }
 
+// No effect, at the largest size that is plausible, would stand out from the noise.
+bool NothingCouldBeSeen(const std::vector<RankedEffect>& ranking) {
+  for (const RankedEffect& effect : ranking) {
+    const EffectCard& card = effect.scored.candidate.effect->Card();
+    for (size_t k = 0; k < effect.scored.candidate.amplitude.size(); ++k) {
+      const ParameterCard& parameter = card.parameters[effect.scored.candidate.amplitude[k]];
+      if (effect.scored.score.detectable[static_cast<Eigen::Index>(k)] < PlausibleScale(parameter))
+        return false;
+    }
+  }
+  return true;
+}
+
 void Decide(Diagnosis* diagnosis) {
+  if (NothingCouldBeSeen(diagnosis->ranking)) {
+    diagnosis->verdict = Verdict::kNoPower;
+    diagnosis->explanation =
+        "no effect of plausible size would show in these recordings beyond what the fitted "
+        "parameters can do: more motion, other loads or less noise are needed";
+    return;
+  }
   std::vector<const RankedEffect*> refitted;
   for (const RankedEffect& effect : diagnosis->ranking)
     if (effect.refitted && effect.refit_message.empty()) refitted.push_back(&effect);

@@ -17,10 +17,6 @@ constexpr double kLookAlike = 0.95;
 // The price of each rival, so that a larger catalogue does not find more.
 double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
 
-double PlausibleScale(const ParameterCard& card) {
-  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
-}
-
 // Columns of all candidates' amplitudes.
 std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
   std::vector<MisfitDirection> directions;

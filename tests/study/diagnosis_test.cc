@@ -64,6 +64,12 @@ TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
   EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
 }
 
+TEST(Diagnosis, SaysThatItHasNoPowerWhereNothingCouldShow) {
+  // 100 m of noise on a bar of 0.08 m.
+  const Diagnosis diagnosis = DiagnoseBar({}, {{"noise: 0.05 mm", "noise: 100 m"}});
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << diagnosis.explanation;
+}
+
 TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::kNotInLibrary;
