@@ -250,6 +250,7 @@ struct TangentLinear::Implementation {
 
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
                                const Eigen::VectorXd& at) {
+    if (Count() == 0) return {TangentLinearSummary::Status::kSolved, {}};
     const StepEquation equation(model, before, scheme, time_step);
     const StepEquation::EndOfStep end = equation.End(at);
     const double rate = equation.rate();

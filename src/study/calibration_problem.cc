@@ -120,8 +120,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     if (first_nuisance_[r] < 0) continue;
     std::vector<int> frames = model.FittedFrames();
     const std::vector<double>& times = model.item().recording.times;
-    const double start =
-        model.item().hold ? model.item().hold->release : times[model.item().frames.front()];
+    const double start = model.item().StartTime();
     std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
     std::vector<MisfitDirection> directions;
     if (with_jacobian) {
@@ -167,9 +166,7 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
     const std::vector<int> frames = model.FittedFrames();
     const std::vector<double>& times = model.item().recording.times;
     if (frames.empty()) continue;
-    longest =
-        std::max(longest, times[frames.back()] - (model.item().hold ? model.item().hold->release
-                                                                    : times[frames.front()]));
+    longest = std::max(longest, times[frames.back()] - model.item().StartTime());
   }
   Calibration calibration;
   std::vector<CalibratedParameter> parameters = parameters_;
@@ -220,7 +217,7 @@ std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& 
         directions.push_back(entry.direction);
       }
       const std::vector<double>& times = item.recording.times;
-      const double start = item.hold ? item.hold->release : times[item.frames.front()];
+      const double start = item.StartTime();
       const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
       std::vector<int> beginning = item.frames;
       std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
@@ -241,8 +238,7 @@ std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& 
     RecordingMisfit recording;
     recording.name = item.name;
     recording.misfit = model.Predict(item.frames, nuisance, {});
-    const double release =
-        item.hold ? item.hold->release : item.recording.times[item.frames.front()];
+    const double release = item.StartTime();
     recording.place_offset.setZero(3, markers);
     Eigen::VectorXd seen = Eigen::VectorXd::Zero(markers);
     for (size_t f = 0; f < recording.misfit.frames.size(); ++f) {

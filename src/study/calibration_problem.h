@@ -50,6 +50,9 @@ class CalibrationProblem {
   // Places of recording r's nuisances among the parameters.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
 
+  // Gives the study's effects, which other problems may share and have changed, these values.
+  void SetModel(const Eigen::VectorXd& values) const;
+
   // The whitened misfit over the fitted frames not later than `horizon` seconds after the start of
   // each recording, with derivatives by the parameters and by `more` (columns after them; the same
   // for each recording).
@@ -66,8 +69,6 @@ class CalibrationProblem {
   std::vector<RecordingMisfit> Misfits(const Eigen::VectorXd& values) const;
 
  private:
-  void SetModel(const Eigen::VectorXd& values) const;
-
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;
   std::vector<RecordingModel> models_;

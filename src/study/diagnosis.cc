@@ -79,14 +79,14 @@ const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::st
   return nullptr;
 }
 
-// The one that leaves the least held-out error; null where none is usable.
-const RankedEffect* BestRefit(const std::vector<RankedEffect>& ranking) {
-  const RankedEffect* best = nullptr;
-  for (const RankedEffect& effect : ranking) {
-    if (!effect.refitted || !effect.refit_message.empty()) continue;
-    if (best == nullptr || effect.held_out_rms < best->held_out_rms) best = &effect;
-  }
-  return best;
+// The refits that came to something, the least held-out error first.
+std::vector<const RankedEffect*> UsableRefits(const std::vector<RankedEffect>& ranking) {
+  std::vector<const RankedEffect*> refits;
+  for (const RankedEffect& effect : ranking)
+    if (effect.refitted && effect.refit_message.empty()) refits.push_back(&effect);
+  std::stable_sort(refits.begin(), refits.end(),
+                   [](const auto* a, const auto* b) { return a->held_out_rms < b->held_out_rms; });
+  return refits;
 }
 
 std::string Titles(const std::vector<std::string>& types) {
@@ -116,11 +116,7 @@ void Decide(Diagnosis* diagnosis) {
         "parameters can do: more motion, other loads or less noise are needed";
     return;
   }
-  std::vector<const RankedEffect*> refitted;
-  for (const RankedEffect& effect : diagnosis->ranking)
-    if (effect.refitted && effect.refit_message.empty()) refitted.push_back(&effect);
-  std::stable_sort(refitted.begin(), refitted.end(),
-                   [](const auto* a, const auto* b) { return a->held_out_rms < b->held_out_rms; });
+  const std::vector<const RankedEffect*> refitted = UsableRefits(diagnosis->ranking);
   const double base = diagnosis->held_out_rms;
   const double best_left = refitted.empty() ? base : refitted.front()->held_out_rms;
   const double gain = base > 0 ? 1 - best_left * best_left / (base * base) : 0;
@@ -261,7 +257,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
 
   const auto refit = [&](RankedEffect* ranked) {
     Refit(problem, mesh, values, ranked, progress);
-    problem.Predict(values, false, 0);  // the refit has changed effects that both models share
+    problem.SetModel(values);  // the refit has changed effects that both models share
   };
   int refits = 0;
   for (RankedEffect& ranked : diagnosis.ranking) {
@@ -270,8 +266,9 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
     refit(&ranked);
   }
   // First order cannot tell the best from its look-alikes; a refit may.
-  if (const RankedEffect* best = BestRefit(diagnosis.ranking)) {
-    const std::vector<std::string> look_alikes = best->scored.look_alikes;
+  const std::vector<const RankedEffect*> usable = UsableRefits(diagnosis.ranking);
+  if (!usable.empty()) {
+    const std::vector<std::string> look_alikes = usable.front()->scored.look_alikes;
     refits = 0;
     for (RankedEffect& ranked : diagnosis.ranking) {
       const bool is_one =

@@ -76,7 +76,7 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
                                       item.recording.times[item.frames.front()]);
 
   progress->Begin("score", 0);
-  problem.Predict(values, false, 0);  // the effects as fitted: candidates take moduli from them
+  problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
   const std::vector<CandidateEffect> candidates =
       MakeCandidates({*problem.body(), study.effects, study.time_step, duration});
   const Prediction linear = problem.Predict(values, true, std::numeric_limits<double>::infinity(),
@@ -90,7 +90,7 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   }
   const std::optional<Eigen::VectorXd> refined =
       RefinedDifference(problem, values, linear.residual);
-  problem.Predict(values, false, 0);  // the refined run has used the same effects
+  problem.SetModel(values);  // the refined run has used the same effects
   Eigen::MatrixXd jacobian = linear.jacobian.leftCols(known);
   if (refined) {
     const FittedModel before(linear.residual, jacobian, prior);

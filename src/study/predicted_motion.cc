@@ -85,13 +85,6 @@ std::vector<int> RecordingModel::FittedFrames() const {
   return frames;
 }
 
-std::vector<int> RecordingModel::HeldOutFrames() const {
-  std::vector<int> frames;
-  for (const int frame : item_.frames)
-    if (!item_.fitted || item_.recording.times[frame] > item_.fit_until) frames.push_back(frame);
-  return frames;
-}
-
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions) const {
   CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
@@ -109,7 +102,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
       options.held_force +=
           nuisance[static_cast<Eigen::Index>(k)] * direction.perturbation.held_force;
   }
-  options.start_time = item_.hold ? item_.hold->release : item_.recording.times[item_.frames[0]];
+  options.start_time = item_.StartTime();
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
 

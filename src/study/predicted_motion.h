@@ -54,9 +54,7 @@ class RecordingModel {
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                  const std::vector<MisfitDirection>& directions) const;
 
-  // Frames that are fitted, and those held out.
   std::vector<int> FittedFrames() const;
-  std::vector<int> HeldOutFrames() const;
 
  private:
   const PredictionStudy& study_;

@@ -38,6 +38,9 @@ struct PredictedRecording {
   // By how much the recording's clock may differ from the model's, s (prior); 0: not at all.
   double clock_deviation = 0;
   std::vector<std::shared_ptr<Effect>> effects;  // of this recording only, e.g. a hung mass
+
+  // Until then the object is at rest, s.
+  double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
 };
 
 // A number of the model that may be fitted, and what is known of it before.
