@@ -35,11 +35,34 @@ double FromScaled(const CalibratedParameter& parameter, double scaled) {
   return FromFree(parameter, scaled * parameter.typical);
 }
 
+// Predictions with their Jacobians, the last one kept: a point is asked for as a start, as a trial
+// and as the solution, often the same one twice running.
+class LastPrediction {
+ public:
+  explicit LastPrediction(const PredictionFunction& predict) : predict_(predict) {}
+
+  const Prediction& At(const Eigen::VectorXd& values) {
+    if (count_ == 0 || values != values_) {
+      ++count_;
+      prediction_ = predict_(values, /*with_jacobian=*/values.size() > 0);
+      values_ = values;
+    }
+    return prediction_;
+  }
+  int count() const { return count_; }
+
+ private:
+  const PredictionFunction& predict_;
+  Eigen::VectorXd values_;
+  Prediction prediction_;
+  int count_ = 0;
+};
+
 class PredictionCost : public ceres::CostFunction {
  public:
-  PredictionCost(const std::vector<CalibratedParameter>& parameters,
-                 const PredictionFunction& predict, int residuals, int* predictions)
-      : parameters_(parameters), predict_(predict), predictions_(*predictions) {
+  PredictionCost(const std::vector<CalibratedParameter>& parameters, int residuals,
+                 LastPrediction* predictions)
+      : parameters_(parameters), predictions_(*predictions) {
     set_num_residuals(residuals);
     for (size_t k = 0; k < parameters.size(); ++k) mutable_parameter_block_sizes()->push_back(1);
   }
@@ -48,13 +71,7 @@ class PredictionCost : public ceres::CostFunction {
     const int count = static_cast<int>(parameters_.size());
     Eigen::VectorXd values(count);
     for (int k = 0; k < count; ++k) values[k] = FromScaled(parameters_[k], free[k][0]);
-    // Nearly every trial is accepted and then asked for its Jacobian: both come from one run.
-    if (last_values_.size() == 0 || values != last_values_) {
-      ++predictions_;
-      last_ = predict_(values, /*with_jacobian=*/true);
-      last_values_ = values;
-    }
-    const Prediction& prediction = last_;
+    const Prediction& prediction = predictions_.At(values);
     if (!prediction.usable) return false;
     CHECK_EQ(prediction.residual.size(), num_residuals()) << "the residual changed its length";
     Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = prediction.residual;
@@ -70,10 +87,7 @@ class PredictionCost : public ceres::CostFunction {
 
  private:
   const std::vector<CalibratedParameter>& parameters_;
-  const PredictionFunction& predict_;
-  int& predictions_;
-  mutable Eigen::VectorXd last_values_;
-  mutable Prediction last_;
+  LastPrediction& predictions_;
 };
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
@@ -188,22 +202,22 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK_GT(parameter.typical, 0) << parameter.name;
     free[k] = ToScaled(parameter, parameter.start);
   }
-  const Prediction first = predict(calibration.parameters, /*with_jacobian=*/false);
-  ++calibration.predictions;
+  LastPrediction predictions(predict);
+  const Prediction& first = predictions.At(calibration.parameters);
+  calibration.predictions = predictions.count();
   if (!first.usable) {
     calibration.message = "no prediction at the start: " + first.message;
     return calibration;
   }
   calibration.start_rms = RootMeanSquare(first.residual);
+  const Eigen::Index residuals = first.residual.size();
 
   if (count > 0) {
     ceres::Problem problem;
     std::vector<double*> blocks;
     for (double& value : free) blocks.push_back(&value);
     problem.AddResidualBlock(
-        new PredictionCost(parameters, predict, static_cast<int>(first.residual.size()),
-                           &calibration.predictions),
-        nullptr, blocks);
+        new PredictionCost(parameters, static_cast<int>(residuals), &predictions), nullptr, blocks);
     for (int k = 0; k < count; ++k) {
       const CalibratedParameter& parameter = parameters[k];
       if (std::isfinite(parameter.prior_deviation))
@@ -238,8 +252,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     calibration.usable = true;
   }
 
-  const Prediction last = predict(calibration.parameters, /*with_jacobian=*/count > 0);
-  ++calibration.predictions;
+  const Prediction& last = predictions.At(calibration.parameters);
+  calibration.predictions = predictions.count();
   CHECK(last.usable) << "the solution could be predicted before: " << last.message;
   calibration.rms = RootMeanSquare(last.residual);
   calibration.inflation = std::max(1.0, calibration.rms);
