@@ -26,14 +26,15 @@ std::string Sizes(const ScoredEffect& effect) {
 
 void PrintRanking(const Diagnosis& diagnosis) {
   fmt::print("\n  {:22} {:>9} {:>10} {:>9}  {:34} {}\n", "effect", "evidence", "explains",
-             "absorbed", "expected size", "held-out error after a refit");
+             "absorbed", "expected size", "refit: evidence; held-out error");
   constexpr size_t kShown = 12;
   for (size_t k = 0; k < std::min(kShown, diagnosis.ranking.size()); ++k) {
     const RankedEffect& effect = diagnosis.ranking[k];
     std::string refit = "-";
     if (effect.refitted)
       refit = effect.refit_message.empty()
-                  ? fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * effect.held_out_rms, effect.in_noise)
+                  ? fmt::format("{:.1f}; {:.3f} mm, {:.1f} σ", effect.evidence,
+                                1e3 * effect.errors.held_out_rms, effect.errors.in_noise)
                   : effect.refit_message;
     fmt::print("  {:22} {:>9.1f} {:>9.0f}% {:>8.0f}%  {:34} {}\n", effect.scored.candidate.type,
                effect.scored.score.evidence, 100 * effect.scored.score.explained,
@@ -44,9 +45,10 @@ void PrintRanking(const Diagnosis& diagnosis) {
 }
 
 void PrintVerdict(const Diagnosis& diagnosis) {
-  fmt::print("\n  {} of the {} error changes with a finer mesh and step\n",
-             fmt::format("{:.0f} %", 100 * diagnosis.mesh_share),
-             diagnosis.has_held_out ? "fitted" : "whole");
+  fmt::print("\n  {:22} {:>9} {:>10}\n", "nuisance", "evidence", "explains");
+  for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+    fmt::print("  {:22} {:>9.1f} {:>9.0f}%{}\n", nuisance.candidate.name, nuisance.evidence,
+               100 * nuisance.explained, nuisance.adopted ? "  taken into the model" : "");
   fmt::print(
       "\n{}{}\n  {}\n", VerdictName(diagnosis.verdict),
       diagnosis.effects.empty() ? "" : fmt::format(" {{{}}}", fmt::join(diagnosis.effects, ", ")),
@@ -59,7 +61,7 @@ int RunDiagnose(const std::filesystem::path& run, int refits) {
   const CalibrationProblem problem(opened.study, opened.mesh);
   Progress progress;
   const Diagnosis diagnosis =
-      Diagnose(problem, opened.mesh, opened.values, {.refits = refits}, &progress);
+      Diagnose(problem, opened.values, {.refits = refits}, &progress);
   const std::filesystem::path folder = run / "diagnosis";
   MakeFolder(folder);
   SaveDiagnosis(diagnosis, folder / "diagnosis.json");

@@ -14,8 +14,8 @@
 namespace lacuna {
 namespace {
 
-// Memory is followed by central differences of this size, in strains: rounding is then 1e-10 of
-// what is differentiated, truncation 1e-12 of its curvature.
+// Memory is followed by differences of this size, in strains: rounding is then 1e-10 of what is
+// differentiated, truncation 1e-6 of its curvature; and forces are linear in most memories.
 constexpr double kDifference = 1e-6;
 
 Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
@@ -120,22 +120,22 @@ struct TangentLinear::Implementation {
   // Σ ∂f/∂z ζ over the effects with memory.
   void AddMemoryForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
                        Eigen::MatrixXd* right) const {
-    Eigen::VectorXd plus(end.position.size()), minus(end.position.size());
+    Eigen::VectorXd plus(end.position.size()), now(end.position.size());
     for (size_t j = 0; j < inside.size(); ++j) {
       const Eigen::MatrixXd& change = inside[j].sensitivity;
       if (change.rows() == 0) continue;
+      if (change.isZero(0)) continue;
       const Kinematics at = equation.At(end, j);
+      now.setZero();
+      inside[j].effect->AddForce(at, &now);
       for (Eigen::Index k = 0; k < Count(); ++k) {
         const double largest = change.col(k).lpNorm<Eigen::Infinity>();
         if (largest == 0) continue;
         const double h = kDifference / largest;
         const Eigen::VectorXd more = at.state + h * change.col(k);
-        const Eigen::VectorXd less = at.state - h * change.col(k);
         plus.setZero();
-        minus.setZero();
         inside[j].effect->AddForce(WithState(at, more), &plus);
-        inside[j].effect->AddForce(WithState(at, less), &minus);
-        right->col(k) += (plus - minus) / (2 * h);
+        right->col(k) += (plus - now) / h;
       }
     }
   }
@@ -151,6 +151,8 @@ struct TangentLinear::Implementation {
       Memory& memory = inside[j];
       if (memory.sensitivity.rows() == 0) continue;
       const Kinematics at = equation.At(end, j);
+      Eigen::VectorXd now = at.state;
+      memory.effect->AdvanceState(at, &now);
       for (Eigen::Index k = 0; k < Count(); ++k) {
         const bool own = perturbations[k].effect == memory.effect;
         const double own_value = own ? memory.effect->Parameters()[perturbations[k].parameter] : 1;
@@ -175,7 +177,7 @@ struct TangentLinear::Implementation {
           }
           return result;
         };
-        memory.sensitivity.col(k) = (state_at(h) - state_at(-h)) / (2 * h);
+        memory.sensitivity.col(k) = (state_at(h) - now) / h;
       }
     }
     for (Eigen::Index k = 0; k < Count(); ++k) {
@@ -199,11 +201,13 @@ struct TangentLinear::Implementation {
   }
 
   // The sensitivities of the gripped nodes; 0 elsewhere.
-  Eigen::MatrixXd GripColumns(double time) const {
+  Eigen::MatrixXd GripColumns(const StepEquation& equation, const Eigen::VectorXd& at) const {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(position.rows(), Count());
+    Eigen::VectorXd reaction;
     for (Eigen::Index k = 0; k < Count(); ++k) {
       if (!perturbations[k].grip) continue;
-      const Eigen::VectorXd moved = perturbations[k].grip(time);
+      if (reaction.size() == 0) equation.Residual(at, &reaction);
+      const Eigen::VectorXd moved = perturbations[k].grip(equation.end_time(), reaction);
       for (size_t i = 0; i < fixed.size(); ++i)
         if (fixed[i]) columns.col(k).segment<3>(3 * i) = moved.segment<3>(3 * i);
     }
@@ -281,7 +285,7 @@ struct TangentLinear::Implementation {
         model.effects[j]->AddTangents(equation.At(end, j), {.acceleration = 1}, false, &effects);
       right -= Product(effects, carried);
     }
-    const Eigen::MatrixXd gripped = GripColumns(equation.end_time());
+    const Eigen::MatrixXd gripped = GripColumns(equation, at);
     if (!gripped.isZero(0)) right -= Product(tangent, gripped);
 
     TangentLinearSummary summary;

@@ -33,8 +33,9 @@ struct Perturbation {
   // value; its memory then follows the trajectory.
   std::shared_ptr<const Effect> effect = nullptr;
   int parameter = 0;
-  // d(position)/dp of the gripped nodes at a time (3n; other nodes are not read). Empty: 0.
-  std::function<Eigen::VectorXd(double time)> grip = {};
+  // d(position)/dp of the gripped nodes at the end of a step (3n; other nodes are not read), where
+  // the grips exert `reaction` on the body (3n, N; other nodes' entries mean nothing). Empty: 0.
+  std::function<Eigen::VectorXd(double time, const Eigen::VectorXd& reaction)> grip = {};
   // d(external force)/dp in an equilibrium (3n, N per unit): of what holds the body before it is
   // let go. Empty: 0.
   Eigen::VectorXd held_force = {};

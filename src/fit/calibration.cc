@@ -17,6 +17,8 @@ constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
 // deviations could not be told from no change.
 constexpr double kNoticeable = 2;
 constexpr double kDead = 1e-6;
+// A start at a bound is moved inside by this much, and a value this near to one is tried at it.
+constexpr double kInside = 0.98;
 
 double ToFree(const CalibratedParameter& parameter, double value) {
   return parameter.log_scale ? std::log(value) : value;
@@ -26,14 +28,51 @@ double FromFree(const CalibratedParameter& parameter, double free) {
   return parameter.log_scale ? std::exp(free) : free;
 }
 
-// Ceres works with φ in typical changes, so that its step lengths mean the same in every unit.
-double ToScaled(const CalibratedParameter& parameter, double value) {
-  return ToFree(parameter, value) / parameter.typical;
-}
+// What Ceres works with: u, unbounded, in typical changes of φ. Near a bound φ(u) bends, so that no
+// step leaves the bounds and none has to be cut short:
+//   both bounds  φ = middle + half tanh((u − middle)/half)      one bound  φ = bound ± soft(± (u −
+//   bound))
+// with soft(t) = ln(1 + eᵗ). Far from the bounds u is φ.
+struct Free {
+  double low, high, typical;  // of φ/typical
 
-double FromScaled(const CalibratedParameter& parameter, double scaled) {
-  return FromFree(parameter, scaled * parameter.typical);
-}
+  explicit Free(const CalibratedParameter& parameter)
+      : low(parameter.log_scale && parameter.min <= 0
+                ? -std::numeric_limits<double>::infinity()
+                : ToFree(parameter, parameter.min) / parameter.typical),
+        high(ToFree(parameter, parameter.max) / parameter.typical),
+        typical(parameter.typical) {}
+
+  static double Soft(double t) { return t > 30 ? t : std::log1p(std::exp(t)); }
+  static double InverseSoft(double s) { return s > 30 ? s : std::log(std::expm1(s)); }
+
+  // φ/typical, and its derivative by u.
+  std::pair<double, double> At(double u) const {
+    const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+    if (has_low && has_high) {
+      const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+      if (half == 0) return {middle, 0};
+      const double t = std::tanh((u - middle) / half);
+      return {middle + half * t, 1 - t * t};
+    }
+    if (has_low) return {low + Soft(u - low), 1 / (1 + std::exp(low - u))};
+    if (has_high) return {high - Soft(high - u), 1 / (1 + std::exp(u - high))};
+    return {u, 1};
+  }
+
+  // u of φ/typical; a value at a bound is taken a little inside, where it can still move.
+  double From(double scaled) const {
+    const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
+    if (has_low && has_high) {
+      const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
+      if (half == 0) return middle;
+      return middle + half * std::atanh(std::clamp((scaled - middle) / half, -kInside, kInside));
+    }
+    if (has_low) return low + InverseSoft(std::max(scaled - low, 1 - kInside));
+    if (has_high) return high - InverseSoft(std::max(high - scaled, 1 - kInside));
+    return scaled;
+  }
+};
 
 // Predictions with their Jacobians, the last one kept: a point is asked for as a start, as a trial
 // and as the solution, often the same one twice running.
@@ -69,8 +108,12 @@ class PredictionCost : public ceres::CostFunction {
 
   bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
     const int count = static_cast<int>(parameters_.size());
-    Eigen::VectorXd values(count);
-    for (int k = 0; k < count; ++k) values[k] = FromScaled(parameters_[k], free[k][0]);
+    Eigen::VectorXd values(count), slopes(count);
+    for (int k = 0; k < count; ++k) {
+      const auto [scaled, slope] = Free(parameters_[k]).At(free[k][0]);
+      values[k] = FromFree(parameters_[k], scaled * parameters_[k].typical);
+      slopes[k] = slope * parameters_[k].typical * (parameters_[k].log_scale ? values[k] : 1);
+    }
     const Prediction& prediction = predictions_.At(values);
     if (!prediction.usable) return false;
     CHECK_EQ(prediction.residual.size(), num_residuals()) << "the residual changed its length";
@@ -78,9 +121,8 @@ class PredictionCost : public ceres::CostFunction {
     if (jacobians == nullptr) return true;
     for (int k = 0; k < count; ++k) {
       if (jacobians[k] == nullptr) continue;
-      const double slope = parameters_[k].typical * (parameters_[k].log_scale ? values[k] : 1);
       Eigen::Map<Eigen::VectorXd>(jacobians[k], num_residuals()) =
-          slope * prediction.jacobian.col(k);
+          slopes[k] * prediction.jacobian.col(k);
     }
     return true;
   }
@@ -92,14 +134,18 @@ class PredictionCost : public ceres::CostFunction {
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
  public:
-  PriorCost(double centre, double deviation) : centre_(centre), deviation_(deviation) {}
+  // Centre and deviation in φ/typical.
+  PriorCost(const Free& free, double centre, double deviation)
+      : free_(free), centre_(centre), deviation_(deviation) {}
   bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
-    residuals[0] = (free[0][0] - centre_) / deviation_;
-    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = 1 / deviation_;
+    const auto [scaled, slope] = free_.At(free[0][0]);
+    residuals[0] = (scaled - centre_) / deviation_;
+    if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = slope / deviation_;
     return true;
   }
 
  private:
+  Free free_;
   double centre_, deviation_;
 };
 
@@ -179,6 +225,41 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::M
   }
 }
 
+// ½ ‖r‖² plus the priors; infinite where there is no prediction.
+double CostAt(const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
+              LastPrediction* predictions) {
+  const Prediction& prediction = predictions->At(values);
+  if (!prediction.usable) return std::numeric_limits<double>::infinity();
+  double cost = prediction.residual.squaredNorm();
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    if (!std::isfinite(parameter.prior_deviation)) continue;
+    const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+    const double away =
+        ToFree(parameter, values[static_cast<Eigen::Index>(k)]) - ToFree(parameter, mean);
+    cost += std::pow(away / parameter.prior_deviation, 2);
+  }
+  return 0.5 * cost;
+}
+
+// Values that have all but come to a bound, and do no worse at it, are put there.
+void SnapToBounds(const std::vector<CalibratedParameter>& parameters, LastPrediction* predictions,
+                  Eigen::VectorXd* values) {
+  Eigen::VectorXd snapped = *values;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    double& value = snapped[static_cast<Eigen::Index>(k)];
+    const double now = ToFree(parameter, value), near = 2 * (1 - kInside) * parameter.typical;
+    const bool has_low = !(parameter.log_scale && parameter.min <= 0);
+    if (has_low && now - ToFree(parameter, parameter.min) < near) value = parameter.min;
+    if (ToFree(parameter, parameter.max) - now < near) value = parameter.max;
+  }
+  if (snapped == *values) return;
+  const double before = CostAt(parameters, *values, predictions);
+  constexpr double kNoWorse = 0.5;  // of a cost whose unit is one standard deviation
+  if (CostAt(parameters, snapped, predictions) <= before + kNoWorse) *values = snapped;
+}
+
 }  // namespace
 
 double RootMeanSquare(const Eigen::VectorXd& residual) {
@@ -200,7 +281,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
         << parameter.name << " cannot start at " << parameter.start << " on a logarithmic scale";
     calibration.parameters[k] = parameter.start;
     CHECK_GT(parameter.typical, 0) << parameter.name;
-    free[k] = ToScaled(parameter, parameter.start);
+    free[k] = Free(parameter).From(ToFree(parameter, parameter.start) / parameter.typical);
   }
   LastPrediction predictions(predict);
   const Prediction& first = predictions.At(calibration.parameters);
@@ -220,18 +301,12 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
         new PredictionCost(parameters, static_cast<int>(residuals), &predictions), nullptr, blocks);
     for (int k = 0; k < count; ++k) {
       const CalibratedParameter& parameter = parameters[k];
-      if (std::isfinite(parameter.prior_deviation))
-        problem.AddResidualBlock(new PriorCost(std::isnan(parameter.prior_mean)
-                                                   ? free[k]
-                                                   : ToScaled(parameter, parameter.prior_mean),
-                                               parameter.prior_deviation / parameter.typical),
-                                 nullptr, blocks[k]);
-      const double low = parameter.log_scale && parameter.min <= 0
-                             ? -std::numeric_limits<double>::infinity()
-                             : ToScaled(parameter, parameter.min);
-      if (std::isfinite(low)) problem.SetParameterLowerBound(blocks[k], 0, low);
-      const double high = ToScaled(parameter, parameter.max);
-      if (std::isfinite(high)) problem.SetParameterUpperBound(blocks[k], 0, high);
+      if (!std::isfinite(parameter.prior_deviation)) continue;
+      const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+      problem.AddResidualBlock(
+          new PriorCost(Free(parameter), ToFree(parameter, mean) / parameter.typical,
+                        parameter.prior_deviation / parameter.typical),
+          nullptr, blocks[k]);
     }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -246,8 +321,10 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     calibration.usable = summary.termination_type == ceres::CONVERGENCE;
     if (!calibration.usable) calibration.message = summary.message;
     for (int k = 0; k < count; ++k)
-      calibration.parameters[k] =
-          std::clamp(FromScaled(parameters[k], free[k]), parameters[k].min, parameters[k].max);
+      calibration.parameters[k] = std::clamp(
+          FromFree(parameters[k], Free(parameters[k]).At(free[k]).first * parameters[k].typical),
+          parameters[k].min, parameters[k].max);
+    SnapToBounds(parameters, &predictions, &calibration.parameters);
   } else {
     calibration.usable = true;
   }

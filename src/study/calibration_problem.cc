@@ -74,7 +74,8 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
       for (const auto& nuisance : models_.back().nuisances()) parameters_.push_back(nuisance.prior);
     noises.push_back(EstimateMarkerNoise(item, models_.back().FittedFrames()));
   }
-  for (CalibratedParameter& parameter : parameters_) parameter.prior_mean = parameter.start;
+  for (CalibratedParameter& parameter : parameters_)
+    if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
   if (noise_ == 0) noise_ = *std::max_element(noises.begin(), noises.end());
   if (!(noise_ > 0)) {
     throw InputError(
@@ -156,6 +157,61 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     if (with_jacobian) all.jacobian.middleRows(row, jacobians[k].rows()) = jacobians[k];
     row += residuals[k].size();
   }
+  return all;
+}
+
+LinearisedMisfit CalibrationProblem::Linearise(
+    const Eigen::VectorXd& values, bool with_jacobian,
+    const std::vector<MisfitDirection>& directions) const {
+  ThrowIfInterrupted();
+  SetModel(values);
+  LinearisedMisfit all;
+  const Eigen::Index shared = static_cast<Eigen::Index>(study_.fitted.size());
+  const Eigen::Index extra = static_cast<Eigen::Index>(directions.size());
+  const Eigen::Index columns = static_cast<Eigen::Index>(parameters_.size()) + extra;
+  for (size_t r = 0; r < models_.size(); ++r) {
+    const RecordingModel& model = models_[r];
+    const PredictedRecording& item = model.item();
+    if (first_nuisance_[r] < 0) continue;
+    // The clock comes last: its derivative is the speed, with the sign turned.
+    std::vector<MisfitDirection> wanted;
+    if (with_jacobian) {
+      wanted = DirectionsOf(study_.fitted);
+      wanted.insert(wanted.end(), directions.begin(), directions.end());
+      for (const auto& nuisance : model.nuisances()) wanted.push_back(nuisance.direction);
+    }
+    wanted.push_back({.perturbation = {}, .is_clock = true});
+    const Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted);
+    if (!misfit.summary.IsUsable()) {
+      all.message = item.name + ": " + misfit.summary.message;
+      return all;
+    }
+    LinearisedMisfit::Part part;
+    part.recording = r;
+    part.first_row = all.residual.size();
+    part.layout.series = 3 * model.MarkerCount();
+    for (const int frame : misfit.frames) {
+      part.layout.times.push_back(item.recording.times[frame]);
+      part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
+    }
+    for (const char observed : misfit.observed)
+      part.layout.observed.insert(part.layout.observed.end(), 3, observed);
+    part.speed = -misfit.by.rightCols<1>();
+    const Eigen::Index rows = misfit.residual.size();
+    all.residual.conservativeResize(part.first_row + rows);
+    all.residual.tail(rows) = misfit.residual;
+    if (with_jacobian) {
+      all.by.conservativeResizeLike(Eigen::MatrixXd::Zero(part.first_row + rows, columns));
+      const Eigen::Index own = static_cast<Eigen::Index>(model.nuisances().size());
+      const Eigen::Index places = misfit.by.cols() - 1 - extra - own;
+      auto by = all.by.bottomRows(rows);
+      by.leftCols(shared) = SumOverPlaces(study_.fitted, misfit.by.leftCols(places));
+      by.rightCols(extra) = misfit.by.middleCols(places, extra);
+      by.middleCols(first_nuisance_[r], own) = misfit.by.middleCols(places + extra, own);
+    }
+    all.parts.push_back(std::move(part));
+  }
+  all.usable = true;
   return all;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/series_noise.h"
 #include "core/progress.h"
 #include "fit/calibration.h"
 #include "study/predicted_motion.h"
@@ -32,6 +33,23 @@ struct RecordingMisfit {
   std::vector<char> fitted;        // per frame of the misfit
   Eigen::Matrix3Xd place_offset;   // 3 × markers, m, what was taken for the markers' places
   MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
+};
+
+// The misfit of the fitted recordings over all of their frames, held-out ones too, to first order
+// about some values: rows of one recording after another, in m and not whitened.
+struct LinearisedMisfit {
+  struct Part {
+    size_t recording = 0;  // of the study
+    Eigen::Index first_row = 0;
+    SeriesLayout layout;
+    std::vector<char> fitted;  // per frame
+    Eigen::VectorXd speed;     // rows of d(predicted)/dt, m/s
+  };
+  bool usable = false;
+  std::string message;
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd by;  // columns: the problem's parameters, then the directions asked for
+  std::vector<Part> parts;
 };
 
 class CalibrationProblem {
@@ -59,6 +77,10 @@ class CalibrationProblem {
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
                      double horizon = std::numeric_limits<double>::infinity(),
                      const std::vector<MisfitDirection>& more = {}) const;
+
+  // `directions` are those of each recording alike; without a Jacobian only the residual is there.
+  LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
+                             const std::vector<MisfitDirection>& directions = {}) const;
 
   // First over a short horizon, where a wrong model is least wrong, then over all fitted frames.
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,

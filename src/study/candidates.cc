@@ -185,7 +185,9 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
     const EffectCard& card = *entry.card;
     if (entry.kind != CatalogueEntry::Kind::kEffect || entry.make == nullptr) continue;
     if (card.parameters.empty() || std::isnan(card.parameters[0].null_value)) continue;
-    if (card.type == "plane_contact") continue;
+    if (card.type == "plane_contact" ||
+        std::count(setting.without.begin(), setting.without.end(), card.type) > 0)
+      continue;
     const bool present =
         std::any_of(setting.effects.begin(), setting.effects.end(),
                     [&](const auto& effect) { return effect->Card().type == card.type; });

@@ -32,6 +32,7 @@ struct CandidateSetting {
   const std::vector<std::shared_ptr<Effect>>& effects;
   double time_step = 0;  // s: of the simulation,
   double duration = 0;   // s: and of the recording; relaxation times lie between them
+  std::vector<std::string> without = {};  // types that are not wanted
 };
 
 // All effects of the catalogue whose size has a null value and that the model does not have yet.

@@ -1,11 +1,14 @@
 // Which physical effect a fitted model lacks.
 //
-// 1. Every effect of the catalogue is tried on the fitted trajectory to first order, all in one
-//    tangent-linear run, and scored by the evidence for it (analysis/effect_score.h), beside the
-//    nuisances that look like physics: a mesh that is too coarse.
-// 2. The best are added to the model one at a time and fitted with it; what counts is how much the
-//    error falls on frames and recordings that were held out.
-// 3. The verdict says what the held-out error allows to say, no more.
+// 1. Every effect of the catalogue, and every nuisance that may pass for one, is tried on the
+//    fitted trajectory to first order, all in one tangent-linear run, and scored by the evidence
+//    for it (study/effect_ranking.h).
+// 2. The best effects are added to the model one at a time and fitted with it. What counts is the
+//    evidence of all frames, those that were not fitted among them, with noise that is no smaller
+//    and no less correlated than what the best of them leaves.
+// 3. A control runs the scoring on that remainder, shuffled so that no effect is in it: an effect
+//    must do better than what the control finds.
+// 4. The verdict says what this allows to say, no more.
 // docs/diagnosis.md explains the method and its limits.
 #ifndef LACUNA_STUDY_DIAGNOSIS_H_
 #define LACUNA_STUDY_DIAGNOSIS_H_
@@ -19,11 +22,13 @@
 #include "core/progress.h"
 #include "study/calibration_problem.h"
 #include "study/effect_ranking.h"
+#include "study/effect_refit.h"
 
 namespace lacuna {
 
 struct DiagnosisOptions {
   int refits = 3;  // of the best scored effects; more: slower, a wrong ranking is forgiven
+  std::vector<std::string> without;  // effects that are not to be considered
 };
 
 // A scored effect, and what came of fitting it.
@@ -31,35 +36,35 @@ struct RankedEffect {
   ScoredEffect scored;
   // After the refit, where there was one.
   bool refitted = false;
-  std::string refit_message;                // why it is not usable; empty: it is
-  double in_fit_rms = 0, held_out_rms = 0;  // m
-  double in_noise = 0;                      // held out, in σ
+  std::string refit_message;  // why it is not usable; empty: it is
+  ModelErrors errors;
+  double evidence = 0;   // ln of the odds against the model as it is
+  double explained = 0;  // share of the squared misfit that went
   Calibration calibration;
 };
 
 struct Diagnosis {
   enum class Verdict { kAdequate, kMissing, kAmbiguous, kNuisance, kNotInLibrary, kNoPower };
   Verdict verdict = Verdict::kNoPower;
-  std::vector<std::string> effects;  // named by the verdict
+  std::vector<std::string> effects;  // named by the verdict, nuisances too
   std::string explanation;           // in words
   std::string experiment;            // that would settle it; empty: none is needed
   double noise = 0;                  // m
-  double in_fit_rms = 0, held_out_rms = 0, in_noise = 0;  // of the present model
-  bool has_held_out = false;  // false: the errors are those of fitted frames, and weigh less
-  std::vector<RankedEffect> ranking;  // by evidence
-  double mesh_share = 0;              // of the residual that a finer mesh and step would explain
-  int scored = 0;                     // effects and variants
+  NoiseLevel noise_level;
+  ModelErrors errors;                     // of the present model
+  std::vector<RankedEffect> ranking;      // refitted ones first, by evidence
+  std::vector<ScoredNuisance> nuisances;  // by evidence
+  int scored = 0;                         // effects and variants
+  double control = 0;        // the evidence that one in twenty controls finds without an effect
+  double left_in_noise = 0;  // of the best hypothesis, over all frames, in σ
+  double unexplained = 0;    // evidence for smooth errors in what the best hypothesis leaves
 };
 
 std::string VerdictName(Diagnosis::Verdict verdict);
 
 // Of the study fitted to `values` (CalibrationProblem::parameters). Throws Interrupted.
-Diagnosis Diagnose(const CalibrationProblem& problem, const TetMesh& mesh,
-                   const Eigen::VectorXd& values, const DiagnosisOptions& options,
-                   Progress* progress);
-
-// The study with the effect in its model, all of whose parameters are fitted.
-PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& effect);
+Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                   const DiagnosisOptions& options, Progress* progress);
 
 // diagnosis.json
 void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file);

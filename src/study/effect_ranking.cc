@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numeric>
 #include <utility>
 
 namespace lacuna {
@@ -14,10 +14,101 @@ namespace {
 
 // First order cannot tell effects apart whose derivatives are this parallel.
 constexpr double kLookAlike = 0.95;
-// The price of each rival, so that a larger catalogue does not find more.
+// A nuisance is taken for granted with odds of e⁵, and where no effect explains as much.
+constexpr double kAdopted = 5;
+constexpr int kMostAdopted = 3;
+constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
+
 double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
 
-// Columns of all candidates' amplitudes.
+std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
+  std::vector<int> range(static_cast<size_t>(count));
+  std::iota(range.begin(), range.end(), static_cast<int>(first));
+  return range;
+}
+
+std::vector<int> Joined(std::vector<int> a, const std::vector<int>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// Columns of all hypotheses, one after another.
+struct Hypotheses {
+  Eigen::MatrixXd by;
+  std::vector<LinearPrior> priors;
+
+  std::vector<int> Add(const Eigen::MatrixXd& columns, const std::vector<LinearPrior>& more) {
+    const Eigen::Index first = by.cols();
+    if (by.rows() == 0) by.resize(columns.rows(), 0);
+    by.conservativeResize(Eigen::NoChange, first + columns.cols());
+    by.rightCols(columns.cols()) = columns;
+    priors.insert(priors.end(), more.begin(), more.end());
+    return Range(first, columns.cols());
+  }
+};
+
+// The same columns seen by all frames and by the fitted ones.
+struct Weighed {
+  LinearModel all, fitted;
+  Eigen::VectorXd residual;  // whitened, of all frames
+  Eigen::MatrixXd columns;
+};
+
+Weighed Weigh(const LinearisedMisfit& misfit, const Hypotheses& hypotheses,
+              const SeriesNoise& noise) {
+  Eigen::MatrixXd rows(misfit.residual.size(), hypotheses.by.cols() + 1);
+  rows << misfit.residual, hypotheses.by;
+  const Eigen::MatrixXd all = WhitenedRows(rows, misfit, noise, false);
+  const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, noise, true);
+  const Eigen::Index count = hypotheses.by.cols();
+  return {LinearModel(all.col(0), all.rightCols(count), hypotheses.priors),
+          LinearModel(fitted.col(0), fitted.rightCols(count), hypotheses.priors), all.col(0),
+          all.rightCols(count)};
+}
+
+// Expected error of the held-out frames after a fit of the fitted ones.
+double ExpectedHeldOut(const Weighed& weighed, const std::vector<int>& chosen, double variance,
+                       const LinearisedMisfit& misfit) {
+  const LinearFit fit = weighed.fitted.Fit(chosen, variance);
+  return HeldOutInNoise(weighed.residual + weighed.columns(Eigen::all, chosen) * fit.change,
+                        misfit);
+}
+
+std::vector<LinearPrior> PriorsOf(const CandidateEffect& candidate) {
+  std::vector<LinearPrior> priors;
+  for (const int index : candidate.amplitude) {
+    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    priors.push_back({0, PlausibleScale(parameter), parameter.bounds.min >= parameter.null_value});
+  }
+  return priors;
+}
+
+Score ScoreOf(const Weighed& weighed, const std::vector<int>& base, const LinearFit& before,
+              const std::vector<int>& own, double variance, const LinearisedMisfit& misfit) {
+  Score score;
+  const std::vector<int> with = Joined(base, own);
+  const LinearFit after = weighed.all.Fit(with, variance);
+  const Eigen::Index count = static_cast<Eigen::Index>(own.size());
+  score.evidence = after.log_evidence - before.log_evidence;
+  score.size = after.change.tail(count);
+  score.deviation = after.deviation.tail(count);
+  score.explained = before.misfit > 0 ? std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0) : 0;
+  score.held_out_in_noise = ExpectedHeldOut(weighed, with, variance, misfit);
+  const Eigen::MatrixXd remaining = weighed.all.Remaining(base, own, own, variance);
+  double raw = 0, visible = 0;
+  score.detectable.setConstant(count, std::numeric_limits<double>::infinity());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double unit = std::pow(weighed.all.Prior(own[k]).deviation, 2);
+    const double square = weighed.all.Square(own[k]);
+    raw += unit * square;
+    visible += unit * remaining(k, k);
+    if (remaining(k, k) > kSeen * square && remaining(k, k) > 0)
+      score.detectable[k] = kStandsOut * std::sqrt(variance / remaining(k, k));
+  }
+  if (raw > 0) score.absorbed = std::clamp(1 - visible / raw, 0.0, 1.0);
+  return score;
+}
+
 std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
   std::vector<MisfitDirection> directions;
   for (const CandidateEffect& candidate : candidates)
@@ -26,124 +117,212 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
   return directions;
 }
 
-struct Scored {
-  EffectScore score;
-  Eigen::MatrixXd by;
-};
-
-Scored Score(const FittedModel& fitted, const CandidateEffect& candidate,
-             const Eigen::MatrixXd& by) {
-  const EffectCard& card = candidate.effect->Card();
-  Eigen::VectorXd scale(by.cols());
-  std::vector<bool> one_sided;
-  for (Eigen::Index k = 0; k < by.cols(); ++k) {
-    const ParameterCard& parameter = card.parameters[candidate.amplitude[k]];
-    scale[k] = PlausibleScale(parameter);
-    one_sided.push_back(parameter.bounds.min >= parameter.null_value);
-  }
-  return {ScoreEffect(fitted, by, scale, one_sided), by};
-}
-
-// The residual's change when mesh and step are refined.
-std::optional<Eigen::VectorXd> RefinedDifference(const CalibrationProblem& problem,
-                                                 const Eigen::VectorXd& values,
-                                                 const Eigen::VectorXd& residual) {
-  PredictionStudy fine = problem.study();
-  fine.noise = problem.noise();
-  fine.mesh.tets.max_volume /= 3;
-  fine.time_step /= 2;
-  try {
-    const PredictedRecording& first = fine.recordings.front();
-    const ReferenceBody reference = MakeReferenceBody(
-        {fine.name, first.recording, fine.mesh, fine.sheet_layers, first.frames.front()});
-    const Prediction refined = CalibrationProblem(fine, reference.mesh).Predict(values, false);
-    if (!refined.usable) return std::nullopt;
-    return refined.residual - residual;
-  } catch (const InputError&) {
-    return std::nullopt;  // a shape that cannot be meshed more finely
-  }
-}
-
-}  // namespace
-
-EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress) {
-  EffectRanking ranking;
-  const PredictionStudy& study = problem.study();
+double Duration(const PredictionStudy& study) {
   double duration = 0;
   for (const PredictedRecording& item : study.recordings)
     duration = std::max(duration, item.recording.times[item.frames.back()] -
                                       item.recording.times[item.frames.front()]);
+  return duration;
+}
 
+}  // namespace
+
+std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
+                                     const Eigen::VectorXd& values) {
+  std::vector<LinearPrior> priors;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    const double value = values[static_cast<Eigen::Index>(k)];
+    const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+    const double unit = parameter.log_scale ? value : 1;
+    const double change = parameter.log_scale ? std::log(mean / value) : mean - value;
+    priors.push_back({unit * change, unit * parameter.prior_deviation, false});
+  }
+  return priors;
+}
+
+Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
+                             const SeriesNoise& noise, bool fitted_only) {
+  Eigen::MatrixXd white(rows.rows(), rows.cols());
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const Eigen::Index count = part.layout.Rows();
+    white.middleRows(part.first_row, count) =
+        Whitened(rows.middleRows(part.first_row, count), part.layout, noise,
+                 fitted_only ? part.fitted : std::vector<char>{});
+  }
+  return white;
+}
+
+NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
+                   const CalibrationProblem& problem, Eigen::Index parameters) {
+  NoiseLevel level;
+  level.series = {problem.noise(), 0, problem.study().place_deviation};
+  const auto pooled = [&](const Eigen::VectorXd& rows) {
+    SeriesStatistics mean{0, 0, 0};
+    for (const LinearisedMisfit::Part& part : misfit.parts) {
+      const SeriesStatistics own =
+          Statistics(rows.segment(part.first_row, part.layout.Rows()), part.layout);
+      const double share = 1.0 / static_cast<double>(misfit.parts.size());
+      mean.lag_one += share * own.lag_one;
+      mean.spacing += share * own.spacing;
+      mean.long_run += share * own.long_run;
+    }
+    return mean;
+  };
+  level.series.correlation_time =
+      CorrelationTime(pooled(WhitenedRows(left, misfit, level.series, false)));
+  const Eigen::VectorXd white = WhitenedRows(left, misfit, level.series, false);
+  Eigen::Index observed = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    observed += std::count(part.layout.observed.begin(), part.layout.observed.end(), 1);
+  const double freedom = static_cast<double>(std::max<Eigen::Index>(1, observed - parameters));
+  level.variance = std::max(1.0, white.squaredNorm() / freedom) * pooled(white).long_run;
+  return level;
+}
+
+double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  double squares[2] = {0, 0}, rows[2] = {0, 0};
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row) {
+      if (!part.layout.observed[row]) continue;
+      const bool fitted = part.fitted[row / part.layout.series];
+      squares[fitted] += std::pow(whitened[part.first_row + row], 2);
+      ++rows[fitted];
+    }
+  }
+  const bool which = rows[0] == 0;
+  return rows[which] > 0 ? std::sqrt(squares[which] / rows[which]) : 0;
+}
+
+EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                          Progress* progress, const std::vector<std::string>& without) {
+  EffectRanking ranking;
+  const PredictionStudy& study = problem.study();
   progress->Begin("score", 0);
   problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
   const std::vector<CandidateEffect> candidates =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, duration});
-  const Prediction linear = problem.Predict(values, true, std::numeric_limits<double>::infinity(),
-                                            DirectionsOf(candidates));
-  CHECK(linear.usable) << "the fitted model could be predicted before: " << linear.message;
+      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without});
+  const GripNuisances grips(problem);
+  std::vector<MisfitDirection> directions = DirectionsOf(candidates);
+  const Eigen::Index effect_columns = static_cast<Eigen::Index>(directions.size());
+  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  const LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  CHECK(misfit.usable) << "the fitted model could be predicted before: " << misfit.message;
   const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
-  Eigen::VectorXd prior(known);
-  for (Eigen::Index k = 0; k < known; ++k) {
-    const CalibratedParameter& parameter = problem.parameters()[k];
-    prior[k] = parameter.prior_deviation * (parameter.log_scale ? values[k] : 1);
-  }
-  const std::optional<Eigen::VectorXd> refined =
-      RefinedDifference(problem, values, linear.residual);
-  problem.SetModel(values);  // the refined run has used the same effects
-  Eigen::MatrixXd jacobian = linear.jacobian.leftCols(known);
-  if (refined) {
-    const FittedModel before(linear.residual, jacobian, prior);
-    ranking.mesh_share =
-        ScoreEffect(before, *refined, Eigen::VectorXd::Constant(1, 1), {false}).explained;
-    // What finer discretisation would do is nobody's merit.
-    jacobian.conservativeResize(Eigen::NoChange, known + 1);
-    jacobian.col(known) = *refined;
-    prior.conservativeResize(known + 1);
-    prior[known] = 1;
-  }
-  const FittedModel fitted(linear.residual, jacobian, prior);
 
-  // The best variant of each effect.
-  struct Entry {
-    ScoredEffect scored;
-    Eigen::MatrixXd by;
-    int variants = 0;
-  };
-  std::vector<Entry> entries;
+  Hypotheses hypotheses;
+  const std::vector<int> parameters =
+      hypotheses.Add(misfit.by.leftCols(known), PriorsAbout(problem.parameters(), values));
+  std::vector<std::vector<int>> own;  // columns of each candidate
   Eigen::Index column = known;
   for (const CandidateEffect& candidate : candidates) {
     const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
-    Scored scored = Score(fitted, candidate, linear.jacobian.middleCols(column, width));
+    own.push_back(hypotheses.Add(misfit.by.middleCols(column, width), PriorsOf(candidate)));
     column += width;
-    auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
-      return entry.scored.candidate.type == candidate.type;
-    });
-    if (same == entries.end()) same = entries.insert(entries.end(), Entry{});
-    ++same->variants;
-    if (same->variants > 1 && scored.score.evidence <= same->scored.score.evidence) continue;
-    same->scored.candidate = candidate;
-    same->scored.score = scored.score;
-    same->by = std::move(scored.by);
   }
-  for (Entry& entry : entries) {
-    entry.scored.score.evidence -= Price(entry.variants) + Price(entries.size());
-    const EffectCard& card = entry.scored.candidate.effect->Card();
-    for (const int parameter : entry.scored.candidate.amplitude) {
-      entry.scored.parameters.push_back(card.parameters[parameter].name);
-      entry.scored.units.emplace_back(card.parameters[parameter].dimension.unit);
+  std::vector<int> base = parameters;
+  const auto add_nuisance = [&](NuisanceCandidate candidate, bool adopted) {
+    const std::vector<int> columns = hypotheses.Add(candidate.by, candidate.priors);
+    ranking.nuisances.push_back({std::move(candidate), 0, 0, adopted});
+    if (adopted) base = Joined(base, columns);
+    return columns;
+  };
+  // What a finer discretisation would do is nobody's merit.
+  std::vector<std::vector<int>> of_nuisance;
+  for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
+    of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
+
+  // What no effect explains is taken for noise.
+  const SeriesNoise white{problem.noise(), 0, study.place_deviation};
+  const auto left_by = [&](const std::vector<int>& chosen) -> Eigen::VectorXd {
+    const LinearFit fit = Weigh(misfit, hypotheses, white).all.Fit(chosen, 1);
+    return misfit.residual + hypotheses.by(Eigen::all, chosen) * fit.change;
+  };
+  const Eigen::VectorXd left = left_by(Range(0, hypotheses.by.cols()));
+  ranking.noise = LevelOf(left, misfit, problem, hypotheses.by.cols());
+  for (NuisanceCandidate& nuisance : grips.Candidates(
+           misfit.by.middleCols(known + effect_columns, misfit.by.cols() - known - effect_columns)))
+    of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
+  for (NuisanceCandidate& nuisance : MeasurementNuisances(
+           problem, misfit, WhitenedRows(left_by(base), misfit, ranking.noise.series, false)))
+    of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
+
+  const Weighed weighed = Weigh(misfit, hypotheses, ranking.noise.series);
+  const double variance = ranking.noise.variance;
+  for (size_t k = 0; k < ranking.nuisances.size(); ++k) {
+    ScoredNuisance& nuisance = ranking.nuisances[k];
+    if (!nuisance.adopted) continue;
+    const LinearFit without = weighed.all.Fit(parameters, variance);
+    const LinearFit with = weighed.all.Fit(Joined(parameters, of_nuisance[k]), variance);
+    nuisance.evidence = with.log_evidence - without.log_evidence;
+    nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
+  }
+  struct Entry {
+    ScoredEffect scored;
+    std::vector<int> own;
+    int variants = 0;
+  };
+  std::vector<Entry> entries;
+  for (int adopted = 0;; ++adopted) {
+    entries.clear();
+    const LinearFit before = weighed.all.Fit(base, variance);
+    for (size_t c = 0; c < candidates.size(); ++c) {
+      const CandidateEffect& candidate = candidates[c];
+      Score score = ScoreOf(weighed, base, before, own[c], variance, misfit);
+      auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
+        return entry.scored.candidate.type == candidate.type;
+      });
+      if (same == entries.end()) same = entries.insert(entries.end(), Entry{});
+      ++same->variants;
+      if (same->variants > 1 && score.evidence <= same->scored.score.evidence) continue;
+      same->scored.candidate = candidate;
+      same->scored.score = std::move(score);
+      same->own = own[c];
     }
+    for (Entry& entry : entries)
+      entry.scored.score.evidence -= Price(entry.variants) + Price(entries.size());
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return a.scored.score.evidence > b.scored.score.evidence;
+    });
+    ScoredNuisance* best = nullptr;
+    std::vector<int> columns;
+    for (size_t k = 0; k < ranking.nuisances.size(); ++k) {
+      ScoredNuisance& nuisance = ranking.nuisances[k];
+      if (nuisance.adopted) continue;
+      const LinearFit with = weighed.all.Fit(Joined(base, of_nuisance[k]), variance);
+      nuisance.evidence = with.log_evidence - before.log_evidence - nuisance.candidate.price -
+                          Price(ranking.nuisances.size());
+      nuisance.explained = std::clamp(1 - with.misfit / before.misfit, 0.0, 1.0);
+      if (best != nullptr && nuisance.evidence <= best->evidence) continue;
+      best = &nuisance;
+      columns = of_nuisance[k];
+    }
+    const double rival = entries.empty() ? 0 : std::max(0.0, entries[0].scored.score.evidence);
+    if (best == nullptr || adopted == kMostAdopted || best->evidence < rival + kAdopted) break;
+    best->adopted = true;
+    base = Joined(base, columns);
   }
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.scored.score.evidence > b.scored.score.evidence;
-  });
+
   ranking.variants = static_cast<int>(candidates.size());
-  for (size_t i = 0; i < entries.size(); ++i) {
-    for (size_t j = 0; j < entries.size(); ++j)
-      if (i != j && Collinearity(fitted, entries[i].by, entries[j].by) > kLookAlike)
-        entries[i].scored.look_alikes.push_back(entries[j].scored.candidate.type);
-    ranking.effects.push_back(entries[i].scored);
+  ranking.held_out_in_noise = ExpectedHeldOut(weighed, base, variance, misfit);
+  const std::vector<int> adopted(base.begin() + known, base.end());
+  ranking.adopted.by = hypotheses.by(Eigen::all, adopted);
+  for (const int k : adopted) ranking.adopted.priors.push_back(hypotheses.priors[k]);
+  for (Entry& entry : entries) {
+    ScoredEffect& scored = entry.scored;
+    const EffectCard& card = scored.candidate.effect->Card();
+    for (const int parameter : scored.candidate.amplitude) {
+      scored.parameters.push_back(card.parameters[parameter].name);
+      scored.units.emplace_back(card.parameters[parameter].dimension.unit);
+    }
+    const LinearFit fit = weighed.fitted.Fit(Joined(base, entry.own), variance);
+    scored.fitted = values + fit.change.head(known);
+    for (const Entry& other : entries)
+      if (&other != &entry &&
+          weighed.all.Collinearity(base, entry.own, other.own, variance) > kLookAlike)
+        scored.look_alikes.push_back(other.scored.candidate.type);
   }
+  for (Entry& entry : entries) ranking.effects.push_back(std::move(entry.scored));
   progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));
   return ranking;
 }

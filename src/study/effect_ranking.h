@@ -1,4 +1,5 @@
-// Every effect that a fitted model may lack, tried along its trajectory to first order.
+// Every effect that a fitted model may lack, and every nuisance that may look like one, tried along
+// its trajectory to first order.
 #ifndef LACUNA_STUDY_EFFECT_RANKING_H_
 #define LACUNA_STUDY_EFFECT_RANKING_H_
 
@@ -6,31 +7,91 @@
 #include <string>
 #include <vector>
 
-#include "analysis/effect_score.h"
+#include "analysis/linear_evidence.h"
+#include "analysis/series_noise.h"
 #include "core/progress.h"
 #include "study/calibration_problem.h"
 #include "study/candidates.h"
+#include "study/nuisance_candidates.h"
 
 namespace lacuna {
+
+// Standard deviations by which an effect must stand out to be noticed among some dozens in four
+// cases of five: what "detectable" means.
+inline constexpr double kStandsOut = 5;
+
+// What first order says about one hypothesis.
+struct Score {
+  double evidence = 0;        // ln of the odds against the model as it is, less the price of trying
+  Eigen::VectorXd size;       // of the amplitude's parameters, in their units
+  Eigen::VectorXd deviation;  // of it
+  Eigen::VectorXd detectable;  // the smallest sizes that would have been noticed; may be infinite
+  double explained = 0;        // share of the squared misfit, of all frames, that goes
+  // Share of what the effect does to the misfit that the fitted parameters can do as well: 1, it
+  // cannot be seen at all.
+  double absorbed = 1;
+  double held_out_in_noise = 0;  // expected error of the held-out frames, in σ; of all without any
+};
 
 // One effect, in the best of its variants.
 struct ScoredEffect {
   CandidateEffect candidate;
-  EffectScore score;  // evidence already less the price of having tried several
+  Score score;
   std::vector<std::string> parameters, units;  // of score.size
   std::vector<std::string> look_alikes;        // effects that first order cannot tell from this one
+  Eigen::VectorXd fitted;                      // what the problem's parameters would become with it
+};
+
+struct ScoredNuisance {
+  NuisanceCandidate candidate;
+  double evidence = 0;
+  double explained = 0;
+  bool adopted = false;  // it is so certain that the model is taken with it from here on
+};
+
+// The noise that hypotheses are weighed with.
+struct NoiseLevel {
+  SeriesNoise series;
+  double variance = 1;  // of the whitened rows: more than 1 where the best hypothesis leaves more
+};
+
+// Columns of nuisances that are part of the model, in rows of a LinearisedMisfit.
+struct AdoptedNuisances {
+  Eigen::MatrixXd by;
+  std::vector<LinearPrior> priors;
 };
 
 struct EffectRanking {
   std::vector<ScoredEffect> effects;  // by evidence, the best first
-  double mesh_share = 0;              // of the residual that a finer mesh and step would explain
-  int variants = 0;                   // scored in all
+  std::vector<ScoredNuisance> nuisances;
+  AdoptedNuisances adopted;
+  NoiseLevel noise;
+  double held_out_in_noise = 0;  // of the model with what was adopted
+  int variants = 0;              // scored in all
 };
 
-// Of the study fitted to `values` (CalibrationProblem::parameters). The direction in which a finer
-// mesh and step change the residual is projected out before. Throws Interrupted.
+// Of the study fitted to `values` (CalibrationProblem::parameters), of the whole catalogue but the
+// types in `without`. Throws Interrupted.
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress);
+                          Progress* progress, const std::vector<std::string>& without = {});
+
+// Priors of the problem's parameters as changes from `values`, per unit of the parameter (also
+// where they are searched on a logarithmic scale).
+std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
+                                     const Eigen::VectorXd& values);
+
+// Rows of a linearised misfit, whitened recording by recording; of the frames that were fitted, or
+// of all.
+Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
+                             const SeriesNoise& noise, bool fitted_only);
+
+// The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and larger
+// than the study's own where it is larger.
+NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
+                   const CalibrationProblem& problem, Eigen::Index parameters);
+
+// √ of the mean square of the observed rows that were held out (all where none were), in σ.
+double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);
 
 }  // namespace lacuna
 

@@ -181,7 +181,7 @@ TEST(TangentLinear, FollowsTheGrip) {
   Case motion;
   motion.effects.resize(2);
   const double lift = motion.lift;
-  const Perturbation higher{nullptr, 0, [&](double time) { return motion.Lifted(time); }};
+  const Perturbation higher{nullptr, 0, [&](double time, const Eigen::VectorXd&) { return motion.Lifted(time); }};
   ExpectDerivative(
       motion, higher, 1e-3, [&](double by) { motion.lift = lift + by; }, 1e-5, "lift");
 }

@@ -1,0 +1,151 @@
+#include "analysis/linear_evidence.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lacuna {
+namespace {
+
+constexpr double kRounding = 1e-8;  // of a column's square: what projecting it out leaves
+
+// ln(2 Φ(z)), Φ the normal distribution; its asymptotic series where erfc underflows.
+double LogTwiceNormal(double z) {
+  if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
+  constexpr double kPi = 3.14159265358979323846;
+  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * kPi));
+}
+
+// Information and prior of the chosen parameters, in units that make its diagonal 1.
+struct ScaledInformation {
+  Eigen::VectorXd unit;
+  Eigen::LDLT<Eigen::MatrixXd> factor;
+};
+
+}  // namespace
+
+LinearModel::LinearModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
+                         std::vector<LinearPrior> priors)
+    : rows_(residual.size()),
+      squares_(residual.squaredNorm()),
+      toward_(columns.transpose() * residual),
+      products_(columns.transpose() * columns),
+      priors_(std::move(priors)) {
+  CHECK_EQ(columns.rows(), residual.size());
+  CHECK_EQ(columns.cols(), static_cast<Eigen::Index>(priors_.size()));
+  for (const LinearPrior& prior : priors_) CHECK_GT(prior.deviation, 0);
+}
+
+namespace {
+
+ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<LinearPrior>& priors,
+                           const std::vector<int>& chosen, double variance) {
+  Eigen::MatrixXd information = products(chosen, chosen) / variance;
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const double deviation = priors[chosen[i]].deviation;
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    if (std::isfinite(deviation)) information(k, k) += 1 / (deviation * deviation);
+    // A parameter that nothing depends on and that has no prior must not make the matrix singular.
+    information(k, k) = std::max(information(k, k), std::numeric_limits<double>::min());
+  }
+  ScaledInformation scaled;
+  scaled.unit = information.diagonal().cwiseSqrt().cwiseInverse();
+  scaled.factor.compute(scaled.unit.asDiagonal() * information * scaled.unit.asDiagonal());
+  return scaled;
+}
+
+}  // namespace
+
+LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) const {
+  CHECK_GT(variance, 0);
+  LinearFit fit;
+  std::vector<int> free = chosen;
+  double cut = 0;  // what the priors' positive halves add to the evidence of the whole ones
+  bool first = true;
+  while (true) {
+    const Eigen::Index count = static_cast<Eigen::Index>(free.size());
+    const ScaledInformation information = Informed(products_, priors_, free, variance);
+    Eigen::VectorXd right = -toward_(free) / variance;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const LinearPrior& prior = priors_[free[k]];
+      if (std::isfinite(prior.deviation))
+        right[k] += prior.mean / (prior.deviation * prior.deviation);
+    }
+    const auto solve = [&](const Eigen::MatrixXd& what) -> Eigen::MatrixXd {
+      return information.unit.asDiagonal() *
+             information.factor.solve(information.unit.asDiagonal() * what);
+    };
+    const Eigen::VectorXd change = solve(right);
+    const Eigen::MatrixXd covariance = solve(Eigen::MatrixXd::Identity(count, count));
+    const double misfit = std::max(
+        0.0, squares_ + 2 * change.dot(toward_(free)) + change.dot(products_(free, free) * change));
+    if (first) {
+      first = false;
+      double prior_cost = 0, log_prior = 0;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const LinearPrior& prior = priors_[free[k]];
+        const double deviation = std::sqrt(std::max(0.0, covariance(k, k)));
+        if (prior.positive && deviation > 0) cut += LogTwiceNormal(change[k] / deviation);
+        if (!std::isfinite(prior.deviation)) continue;
+        prior_cost += std::pow((change[k] - prior.mean) / prior.deviation, 2);
+        log_prior += std::log(prior.deviation);
+      }
+      const double log_determinant = information.factor.vectorD().array().max(1e-300).log().sum() -
+                                     2 * information.unit.array().log().sum();
+      fit.log_evidence =
+          -0.5 * (misfit / variance + prior_cost) - 0.5 * log_determinant - log_prior + cut;
+      fit.change = Eigen::VectorXd::Zero(count);
+      fit.deviation = covariance.diagonal().cwiseMax(0).cwiseSqrt();
+    }
+    std::vector<int> kept;
+    for (Eigen::Index k = 0; k < count; ++k)
+      if (!priors_[free[k]].positive || change[k] >= 0) kept.push_back(free[k]);
+    if (kept.size() == free.size()) {
+      fit.misfit = misfit;
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const auto place = std::find(chosen.begin(), chosen.end(), free[k]) - chosen.begin();
+        fit.change[place] = change[k];
+      }
+      return fit;
+    }
+    free = std::move(kept);
+  }
+}
+
+Eigen::MatrixXd LinearModel::Remaining(const std::vector<int>& taken, const std::vector<int>& a,
+                                       const std::vector<int>& b, double variance) const {
+  Eigen::MatrixXd remaining = products_(a, b);
+  if (taken.empty()) return remaining;
+  const ScaledInformation information = Informed(products_, priors_, taken, variance);
+  const Eigen::MatrixXd from = information.unit.asDiagonal() * products_(taken, a);
+  const Eigen::MatrixXd to = information.unit.asDiagonal() * products_(taken, b);
+  remaining -= from.transpose() * information.factor.solve(to) / variance;
+  return remaining;
+}
+
+double LinearModel::Collinearity(const std::vector<int>& taken, const std::vector<int>& a,
+                                 const std::vector<int>& b, double variance) const {
+  const auto whitener = [&](const std::vector<int>& columns) {
+    const Eigen::VectorXd unit =
+        products_(columns, columns).diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const Eigen::MatrixXd gram =
+        unit.asDiagonal() * Remaining(taken, columns, columns, variance) * unit.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        Eigen::MatrixXd(0.5 * (gram + gram.transpose())));
+    Eigen::MatrixXd inverse_root = Eigen::MatrixXd::Zero(gram.rows(), gram.cols());
+    for (Eigen::Index k = 0; k < gram.rows(); ++k) {
+      const double value = eigen.eigenvalues()[k];
+      if (value > kRounding)
+        inverse_root.col(k) = unit.asDiagonal() * eigen.eigenvectors().col(k) / std::sqrt(value);
+    }
+    return inverse_root;
+  };
+  const Eigen::MatrixXd cross =
+      whitener(a).transpose() * Remaining(taken, a, b, variance) * whitener(b);
+  return std::min(1.0, cross.jacobiSvd().singularValues()[0]);
+}
+
+}  // namespace lacuna

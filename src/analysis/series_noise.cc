@@ -1,0 +1,113 @@
+#include "analysis/series_noise.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+constexpr int kLags = 8;  // of the long-run variance
+// Fewer frames than this in a row say nothing about correlation.
+constexpr size_t kFewestFrames = 8;
+// Noise that remembers more than this of a frame in the next could not be told from motion.
+constexpr double kLargestCorrelation = 0.9;
+
+}  // namespace
+
+Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout,
+                         const SeriesNoise& noise, const std::vector<char>& frames) {
+  CHECK_EQ(rows.rows(), layout.Rows());
+  CHECK_GT(noise.deviation, 0);
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
+  const Eigen::Index frame_count = static_cast<Eigen::Index>(layout.times.size());
+  const double ratio = noise.offset_deviation / noise.deviation;
+  Eigen::VectorXd one(frame_count);  // of this series, the whitened constant
+  for (int s = 0; s < layout.series; ++s) {
+    one.setZero();
+    Eigen::Index last = -1;
+    for (Eigen::Index f = 0; f < frame_count; ++f) {
+      const Eigen::Index row = f * layout.series + s;
+      if (!layout.observed[row] || (!frames.empty() && !frames[f])) continue;
+      double memory = 0;
+      if (last >= 0 && noise.correlation_time > 0)
+        memory = std::exp(-(layout.times[f] - layout.times[last]) / noise.correlation_time);
+      const double scale = 1 / std::sqrt(1 - memory * memory);
+      white.row(row) = scale / noise.deviation * rows.row(row);
+      one[f] = scale;
+      if (memory > 0) {
+        white.row(row) -= scale * memory / noise.deviation * rows.row(last * layout.series + s);
+        one[f] -= scale * memory;
+      }
+      last = f;
+    }
+    const double length = one.squaredNorm();
+    if (length == 0 || ratio == 0) continue;
+    // (I + ratio² 1 1ᵀ)^(−1/2) takes this share of what lies along the constant away.
+    const double share = 1 - 1 / std::sqrt(1 + length * ratio * ratio);
+    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
+      double along = 0;
+      for (Eigen::Index f = 0; f < frame_count; ++f)
+        along += one[f] * white(f * layout.series + s, k);
+      along *= share / length;
+      for (Eigen::Index f = 0; f < frame_count; ++f)
+        white(f * layout.series + s, k) -= along * one[f];
+    }
+  }
+  return white;
+}
+
+SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout& layout) {
+  SeriesStatistics statistics;
+  const Eigen::Index frames = static_cast<Eigen::Index>(layout.times.size());
+  if (layout.times.size() < kFewestFrames) return statistics;
+  std::vector<double> spacings;
+  for (size_t f = 1; f < layout.times.size(); ++f)
+    spacings.push_back(layout.times[f] - layout.times[f - 1]);
+  std::nth_element(spacings.begin(), spacings.begin() + spacings.size() / 2, spacings.end());
+  statistics.spacing = spacings[spacings.size() / 2];
+
+  std::vector<double> product(kLags + 1, 0.0);
+  double pairs_at_zero = 0;
+  std::vector<double> pairs(kLags + 1, 0.0);
+  for (int s = 0; s < layout.series; ++s) {
+    double mean = 0;
+    int seen = 0;
+    const auto observed = [&](Eigen::Index f) { return layout.observed[f * layout.series + s]; };
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      if (!observed(f)) continue;
+      mean += residual[f * layout.series + s];
+      ++seen;
+    }
+    if (seen < static_cast<int>(kFewestFrames)) continue;
+    mean /= seen;
+    for (int lag = 0; lag <= kLags; ++lag) {
+      for (Eigen::Index f = 0; f + lag < frames; ++f) {
+        if (!observed(f) || !observed(f + lag)) continue;
+        product[lag] += (residual[f * layout.series + s] - mean) *
+                        (residual[(f + lag) * layout.series + s] - mean);
+        pairs[lag] += 1;
+      }
+    }
+  }
+  pairs_at_zero = pairs[0];
+  if (!(product[0] > 0)) return statistics;
+  double sum = 1;
+  for (int lag = 1; lag <= kLags; ++lag) {
+    if (pairs[lag] == 0) continue;
+    const double correlation = product[lag] / pairs[lag] / (product[0] / pairs_at_zero);
+    if (lag == 1) statistics.lag_one = correlation;
+    sum += 2 * (1 - lag / (kLags + 1.0)) * correlation;
+  }
+  statistics.long_run = std::max(1.0, sum);
+  return statistics;
+}
+
+double CorrelationTime(const SeriesStatistics& statistics) {
+  const double correlation = std::min(statistics.lag_one, kLargestCorrelation);
+  if (!(correlation > 0)) return 0;
+  return -statistics.spacing / std::log(correlation);
+}
+
+}  // namespace lacuna

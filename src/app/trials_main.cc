@@ -1,0 +1,59 @@
+// lacuna-trials: makes sealed cases, diagnoses them, and tells how often the diagnosis was right.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "core/blas_kernels.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/logging.h"
+#include "trials/trial_report.h"
+#include "trials/trial_run.h"
+#include "trials/trial_suite.h"
+
+namespace lacuna {
+namespace {
+
+int Report(const std::filesystem::path& folder) {
+  const TrialReport report = ReportTrials(folder);
+  SaveTrialReport(report, folder);
+  fmt::print("{}", ReportInWords(report));
+  return 0;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Sealed cases for the diagnosis: a truth with a hidden effect, a model without it");
+  app.require_subcommand(1);
+  std::string suite, folder;
+  int workers = 2;
+  CLI::App* make = app.add_subcommand("make", "Make the cases of a suite");
+  make->add_option("suite", suite, "experiments/trials/*.yaml")->required();
+  make->add_option("folder", folder, "Where to")->required();
+  make->add_option("--workers", workers, "Processes at a time")->check(CLI::Range(1, 64));
+  CLI::App* run = app.add_subcommand("run", "Diagnose the cases that have no outcome yet");
+  run->add_option("folder", folder, "Of the cases")->required();
+  run->add_option("--workers", workers, "Processes at a time")->check(CLI::Range(1, 64));
+  CLI::App* report = app.add_subcommand("report", "How often the diagnosis was right");
+  report->add_option("folder", folder, "Of the cases")->required();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
+    if (run->parsed()) return RunTrials(folder, workers);
+    return Report(folder);
+  } catch (const InputError& problem) {
+    fmt::print(stderr, "{}\n", problem.what());
+  } catch (const Interrupted&) {
+    fmt::print(stderr, "stopped; run it again to go on\n");
+  }
+  return 1;
+}
+
+}  // namespace
+}  // namespace lacuna
+
+int main(int argc, char** argv) {
+  lacuna::UseFastBlasKernels(argv);
+  lacuna::InitialiseLogging(argv[0]);
+  lacuna::InstallInterruptHandler();
+  return lacuna::Main(argc, argv);
+}

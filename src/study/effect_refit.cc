@@ -1,0 +1,216 @@
+#include "study/effect_refit.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// How far beyond the plausible range a refit may go, in parts of that range.
+constexpr double kMargin = 0.1;
+// A rival need not be at its very best to be told from one that fits.
+constexpr int kIterations = 8;
+constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
+
+// The rows of fitted frames, in the order of CalibrationProblem::Predict.
+Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit) {
+  Eigen::MatrixXd kept(rows.rows(), rows.cols());
+  Eigen::Index count = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    for (size_t f = 0; f < part.fitted.size(); ++f) {
+      if (!part.fitted[f]) continue;
+      const Eigen::Index first = part.first_row + static_cast<Eigen::Index>(f) * part.layout.series;
+      kept.middleRows(count, part.layout.series) = rows.middleRows(first, part.layout.series);
+      count += part.layout.series;
+    }
+  }
+  kept.conservativeResize(count, Eigen::NoChange);
+  return kept;
+}
+
+}  // namespace
+
+ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  double fitted = 0, held_out = 0;
+  int fitted_points = 0, held_out_points = 0;
+  for (const RecordingMisfit& recording : problem.Misfits(values)) {
+    fitted += recording.in_fit.rms * recording.in_fit.rms * recording.in_fit.points;
+    fitted_points += recording.in_fit.points;
+    held_out += recording.held_out.rms * recording.held_out.rms * recording.held_out.points;
+    held_out_points += recording.held_out.points;
+  }
+  ModelErrors errors;
+  errors.has_held_out = held_out_points > 0;
+  if (fitted_points > 0) errors.in_fit_rms = std::sqrt(fitted / fitted_points);
+  errors.held_out_rms =
+      errors.has_held_out ? std::sqrt(held_out / held_out_points) : errors.in_fit_rms;
+  errors.in_noise = errors.held_out_rms / (std::sqrt(3.0) * problem.noise());
+  return errors;
+}
+
+FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                              const AdoptedNuisances& adopted) {
+  FittedHypothesis hypothesis;
+  hypothesis.misfit = problem.Linearise(values, true);
+  if (!hypothesis.misfit.usable) return hypothesis;
+  hypothesis.priors = PriorsAbout(problem.parameters(), values);
+  Eigen::MatrixXd& by = hypothesis.misfit.by;
+  const Eigen::Index own = by.cols();
+  by.conservativeResize(Eigen::NoChange, own + adopted.by.cols());
+  by.rightCols(adopted.by.cols()) = adopted.by;
+  hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
+  return hypothesis;
+}
+
+namespace {
+
+LinearFit FitAll(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  std::vector<int> all;
+  for (Eigen::Index k = 0; k < misfit.by.cols(); ++k) all.push_back(static_cast<int>(k));
+  return LinearModel(WhitenedRows(misfit.residual, misfit, noise.series, false),
+                     WhitenedRows(misfit.by, misfit, noise.series, false), hypothesis.priors)
+      .Fit(all, noise.variance);
+}
+
+}  // namespace
+
+LinearFit EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+  return FitAll(hypothesis, noise);
+}
+
+Eigen::VectorXd LeftBy(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+  return hypothesis.misfit.residual + hypothesis.misfit.by * FitAll(hypothesis, noise).change;
+}
+
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
+  PredictionStudy with = study;
+  const CatalogueEntry* entry = FindEntry(scored.candidate.type);
+  Eigen::VectorXd values = scored.candidate.effect->Parameters();
+  const EffectCard& card = *entry->card;
+  for (size_t k = 0; k < scored.candidate.amplitude.size(); ++k) {
+    const int index = scored.candidate.amplitude[k];
+    const ParameterCard& parameter = card.parameters[index];
+    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
+    // Within what is plausible, and not at the null value, where other parameters have no meaning.
+    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
+    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
+    values[index] = start;
+  }
+  const std::shared_ptr<Effect> effect = entry->make(values);
+  with.effects.push_back(effect);
+  for (ModelParameter& parameter : ModelParameters(with.effects)) {
+    if (parameter.places.front().first == effect) {
+      // Where another effect is what is missing, a fit would make this one do its work at any size.
+      const auto& [place, index] = parameter.places.front();
+      const ParameterCard& plausible = place->Card().parameters[index];
+      const double margin = kMargin * (plausible.plausible_max - plausible.plausible_min);
+      CalibratedParameter& prior = parameter.prior;
+      const bool is_amplitude = std::count(scored.candidate.amplitude.begin(),
+                                           scored.candidate.amplitude.end(), index) > 0;
+      if (is_amplitude && !prior.log_scale) {
+        prior.prior_mean = plausible.null_value;
+        prior.prior_deviation = PlausibleScale(plausible);
+      }
+      prior.max = std::min(prior.max, plausible.plausible_max + margin);
+      prior.min = std::max(prior.min, plausible.log_scale && plausible.plausible_min > 0
+                                          ? 0.5 * plausible.plausible_min
+                                          : plausible.plausible_min - margin);
+      with.fitted.push_back(parameter);
+      continue;
+    }
+    // A modulus that the effect shares with the material moves with it.
+    for (ModelParameter& known : with.fitted)
+      if (known.places.front() == parameter.places.front()) known.places = parameter.places;
+  }
+  return with;
+}
+
+EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                  const ScoredEffect& effect, const AdoptedNuisances& adopted, Progress* progress) {
+  const PredictionStudy study = WithEffect(problem.study(), effect);
+  const CalibrationProblem with(study, problem.body()->mesh);
+  const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
+  const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;
+  const Eigen::Index own = static_cast<Eigen::Index>(with.parameters().size());
+
+  std::vector<CalibratedParameter> parameters = with.parameters();
+  for (const LinearPrior& prior : adopted.priors) {
+    CalibratedParameter amount;
+    amount.name = "nuisance";
+    amount.start = amount.prior_mean = prior.mean;
+    amount.prior_deviation = amount.typical = prior.deviation;
+    parameters.push_back(amount);
+  }
+  // Adopted nuisances change the misfit as they did at the model without the effect.
+  const LinearisedMisfit rows = problem.Linearise(values, false);
+  const Eigen::MatrixXd nuisance = FittedRows(
+      WhitenedRows(adopted.by, rows, {problem.noise(), 0, problem.study().place_deviation}, true),
+      rows);
+  const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
+    Prediction prediction = with.Predict(at.head(own), with_jacobian);
+    if (!prediction.usable) return prediction;
+    prediction.residual += nuisance * at.tail(at.size() - own);
+    if (with_jacobian) {
+      prediction.jacobian.conservativeResize(Eigen::NoChange, at.size());
+      prediction.jacobian.rightCols(at.size() - own) = nuisance;
+    }
+    return prediction;
+  };
+  const auto start_from = [&](const Eigen::VectorXd& of_problem) {
+    Eigen::VectorXd start(static_cast<Eigen::Index>(parameters.size()));
+    for (size_t k = 0; k < parameters.size(); ++k)
+      start[static_cast<Eigen::Index>(k)] = parameters[k].start;
+    start.head(shared) = of_problem.head(shared);
+    start.segment(shared + added, own - shared - added) = of_problem.tail(own - shared - added);
+    for (size_t k = 0; k < parameters.size(); ++k) {
+      double& value = start[static_cast<Eigen::Index>(k)];
+      value = std::clamp(value, parameters[k].min, parameters[k].max);
+    }
+    return start;
+  };
+  progress->Begin("refit " + effect.candidate.type, 0);
+  Eigen::VectorXd start = start_from(values);
+  const Eigen::VectorXd expected = start_from(effect.fitted);
+  bool sound = true;
+  for (Eigen::Index k = 0; k < shared; ++k)
+    if (parameters[k].log_scale && !(expected[k] > 0.2 * start[k])) sound = false;
+  if (sound) {
+    const Prediction near = predict(expected, false), far = predict(start, false);
+    if (near.usable && (!far.usable || near.residual.norm() < far.residual.norm()))
+      start = expected;
+  }
+  for (size_t k = 0; k < parameters.size(); ++k)
+    parameters[k].start = start[static_cast<Eigen::Index>(k)];
+
+  EffectRefit refit;
+  int evaluations = 0;
+  refit.calibration = Calibrate(
+      parameters,
+      [&](const Eigen::VectorXd& at, bool with_jacobian) {
+        const Prediction prediction = predict(at, with_jacobian);
+        progress->Report(++evaluations,
+                         prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+        return prediction;
+      },
+      {.max_iterations = kIterations, .cost_tolerance = kTolerance});
+  progress->End(refit.calibration.usable ? "" : refit.calibration.message);
+  if (refit.calibration.estimates.empty()) {
+    refit.message = refit.calibration.message;
+  } else {
+    refit.calibration.parameters.conservativeResize(own);
+    refit.calibration.estimates.resize(static_cast<size_t>(own));
+    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted);
+    refit.errors = ErrorsOf(with, refit.calibration.parameters);
+    if (!refit.hypothesis.misfit.usable) refit.message = refit.hypothesis.misfit.message;
+  }
+  problem.SetModel(values);  // the refit has changed effects that both models share
+  return refit;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,258 @@
+#include "study/nuisance_candidates.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "core/error.h"
+#include "study/reference.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kShift = 1e-3;  // m, by how much a grip, a frame, a registration may be off
+constexpr double kTurn = 0.02;   // rad
+// By how much frames may be mistimed, in parts of their distance.
+constexpr double kJitter = 0.1;
+// The error of P2 elements and of second-order steps that is left after refining once, in parts of
+// the change that the refinement made, and how well that is known.
+constexpr double kToTheLimit = 1.3, kLimitDeviation = 0.4;
+constexpr double kVolumeRatio = 3;
+// More frames than this, and single frames are too small a part to be looked at one by one.
+constexpr size_t kMostFrames = 400;
+
+struct GripShape {
+  Eigen::VectorXi nodes;
+  Eigen::Vector3d centre;
+};
+
+// A rigid motion of one grip's nodes.
+Eigen::VectorXd RigidMotion(const GripShape& grip, const Eigen::Matrix3Xd& rest,
+                            const Eigen::Vector3d& shift, const Eigen::Vector3d& turn) {
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
+  for (const int node : grip.nodes)
+    motion.segment<3>(3 * node) = shift + turn.cross(rest.col(node) - grip.centre);
+  return motion;
+}
+
+MisfitDirection Placed(Eigen::VectorXd motion) {
+  MisfitDirection direction;
+  direction.perturbation.grip = [motion = std::move(motion)](double, const Eigen::VectorXd&) {
+    return motion;
+  };
+  return direction;
+}
+
+// Yields to the resultant of the grip's reaction (or turns with its moment); `largest` follows the
+// motion per unit of compliance.
+MisfitDirection Yielding(const GripShape& grip, const Eigen::Matrix3Xd& rest, bool turns,
+                         std::shared_ptr<double> largest) {
+  MisfitDirection direction;
+  direction.perturbation.grip = [grip, rest, turns, largest = std::move(largest)](
+                                    double, const Eigen::VectorXd& reaction) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
+    for (const int node : grip.nodes) {
+      const Eigen::Vector3d here = reaction.segment<3>(3 * node);
+      force += here;
+      moment += (rest.col(node) - grip.centre).cross(here);
+    }
+    const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+    const Eigen::VectorXd motion =
+        turns ? RigidMotion(grip, rest, zero, -moment) : RigidMotion(grip, rest, -force, zero);
+    *largest = std::max(*largest, turns ? moment.norm() : force.norm());
+    return motion;
+  };
+  return direction;
+}
+
+// One column of rows that are marker coordinates.
+Eigen::VectorXd FrameColumn(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part,
+                            const std::function<double(Eigen::Index frame, int series)>& value) {
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(misfit.residual.size());
+  for (Eigen::Index f = 0; f < static_cast<Eigen::Index>(part.layout.times.size()); ++f)
+    for (int s = 0; s < part.layout.series; ++s)
+      column[part.first_row + f * part.layout.series + s] = value(f, s);
+  return column;
+}
+
+}  // namespace
+
+GripNuisances::GripNuisances(const CalibrationProblem& problem) {
+  const Model& model = problem.models().front().model();
+  const Eigen::Matrix3Xd& rest = model.body->mesh.nodes;
+  for (size_t g = 0; g < model.grips.size(); ++g) {
+    GripShape grip{model.grips[g].nodes, Eigen::Vector3d::Zero()};
+    if (grip.nodes.size() == 0) continue;
+    grip.centre = rest(Eigen::all, grip.nodes).rowwise().mean();
+    const std::string of = model.grips.size() > 1 ? fmt::format(" of grip {}", g + 1) : "";
+
+    Kind placement{"grip_placement",
+                   "the placement" + of,
+                   "measure where the grip holds the object, or fit it",
+                   static_cast<int>(directions_.size()),
+                   6,
+                   {},
+                   {}};
+    for (int axis = 0; axis < 6; ++axis) {
+      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis % 3);
+      const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+      directions_.push_back(Placed(axis < 3 ? RigidMotion(grip, rest, unit, zero)
+                                            : RigidMotion(grip, rest, zero, unit)));
+      placement.largest.push_back(nullptr);
+      placement.deviation.push_back(axis < 3 ? kShift : kTurn);
+    }
+    kinds_.push_back(std::move(placement));
+
+    Kind compliance{"grip_compliance",
+                    "the compliance or the extent" + of,
+                    "check how far the clamp reaches and whether it yields or slips",
+                    static_cast<int>(directions_.size()),
+                    2,
+                    {},
+                    {}};
+    for (const bool turns : {false, true}) {
+      auto largest = std::make_shared<double>(0);
+      directions_.push_back(Yielding(grip, rest, turns, largest));
+      compliance.largest.push_back(largest);
+      compliance.deviation.push_back(turns ? kTurn : kShift);
+    }
+    kinds_.push_back(std::move(compliance));
+  }
+}
+
+std::vector<NuisanceCandidate> GripNuisances::Candidates(const Eigen::MatrixXd& by) const {
+  std::vector<NuisanceCandidate> candidates;
+  for (const Kind& kind : kinds_) {
+    NuisanceCandidate candidate{kind.name, kind.what, kind.advice, 0, {}, {}};
+    candidate.by = by.middleCols(kind.first, kind.count);
+    for (int k = 0; k < kind.count; ++k) {
+      double deviation = kind.deviation[k];
+      if (kind.largest[k] != nullptr && *kind.largest[k] > 0) deviation /= *kind.largest[k];
+      candidate.priors.push_back({0, deviation, false});
+    }
+    candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
+std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem& problem,
+                                                       const Eigen::VectorXd& values,
+                                                       const LinearisedMisfit& misfit) {
+  std::vector<NuisanceCandidate> candidates;
+  const auto add = [&](const std::string& name, const std::string& what, const std::string& advice,
+                       const LinearisedMisfit& refined) {
+    if (!refined.usable || refined.residual.size() != misfit.residual.size()) return;
+    NuisanceCandidate candidate{name, what, advice, 0, refined.residual - misfit.residual, {}};
+    candidate.priors = {{kToTheLimit, kLimitDeviation, false}};
+    candidates.push_back(std::move(candidate));
+  };
+  PredictionStudy fine = problem.study();
+  fine.noise = problem.noise();
+  const PredictedRecording& first = fine.recordings.front();
+  fine.mesh.tets.max_volume /= kVolumeRatio;
+  try {
+    const ReferenceBody reference = MakeReferenceBody(
+        {fine.name, first.recording, fine.mesh, fine.sheet_layers, first.frames.front()});
+    add("mesh", "the size of the elements", "choose a smaller mesh.max_volume",
+        CalibrationProblem(fine, reference.mesh).Linearise(values, false));
+  } catch (const InputError&) {
+    // A shape that cannot be meshed more finely says nothing about its mesh.
+  }
+  PredictionStudy slow = problem.study();
+  slow.noise = problem.noise();
+  slow.time_step /= 2;
+  add("time_step", "the length of the step", "choose a smaller motion.time_step",
+      CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false));
+  problem.SetModel(values);  // the refined models share its effects
+  return candidates;
+}
+
+std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& problem,
+                                                    const LinearisedMisfit& misfit,
+                                                    const Eigen::VectorXd& left) {
+  std::vector<NuisanceCandidate> candidates;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const PredictedRecording& item = problem.models()[part.recording].item();
+    const std::vector<double>& times = part.layout.times;
+    const Eigen::Index frames = static_cast<Eigen::Index>(times.size());
+    if (frames < 3) continue;
+    const double spacing = (times.back() - times.front()) / static_cast<double>(frames - 1);
+    const auto speed = [&](Eigen::Index f, int s) {
+      return part.speed[f * part.layout.series + s];
+    };
+    if (item.clock_deviation == 0) {
+      NuisanceCandidate clock{"clock", "the clock of " + item.name,      "give clock_deviation",
+                              0,       FrameColumn(misfit, part, speed), {{0, spacing, false}}};
+      candidates.push_back(std::move(clock));
+    }
+    if (times.size() <= kMostFrames) {
+      NuisanceCandidate jitter{"time_jitter",
+                               "the times of single frames of " + item.name,
+                               "check the camera's clock and its exposure",
+                               0,
+                               {},
+                               {}};
+      jitter.by.resize(misfit.residual.size(), frames);
+      for (Eigen::Index frame = 0; frame < frames; ++frame) {
+        jitter.by.col(frame) = FrameColumn(
+            misfit, part, [&](Eigen::Index f, int s) { return f == frame ? speed(f, s) : 0.0; });
+        jitter.priors.push_back({0, kJitter * spacing, false});
+      }
+      candidates.push_back(std::move(jitter));
+    }
+
+    Eigen::Index worst = 0;
+    double most = -1;
+    for (Eigen::Index f = 0; f < frames; ++f) {
+      const double square =
+          left.segment(part.first_row + f * part.layout.series, part.layout.series).squaredNorm();
+      if (square > most) {
+        most = square;
+        worst = f;
+      }
+    }
+    // Of the frame's markers, about their middle.
+    const auto rigid = [&](Eigen::Index f, int s, int axis) {
+      const Eigen::Matrix3Xd& places = item.recording.markers.positions[item.frames[f]];
+      if (axis < 3) return s % 3 == axis ? 1.0 : 0.0;
+      const Eigen::Vector3d place = places.col(s / 3);
+      if (!place.allFinite()) return 0.0;
+      const Eigen::Vector3d from = place - item.recording.marker_places.rowwise().mean();
+      return Eigen::Vector3d::Unit(axis - 3).cross(from)[s % 3];
+    };
+    NuisanceCandidate bad{"bad_frame",
+                          fmt::format("the frame at {:.3f} s of {}", times[worst], item.name),
+                          "leave that frame out, or measure it again",
+                          std::log(static_cast<double>(frames)),
+                          {},
+                          {}};
+    NuisanceCandidate drift{"registration_drift",
+                            "a slow drift of the measuring frame of " + item.name,
+                            "register the recording to the fixture",
+                            0,
+                            {},
+                            {}};
+    bad.by.resize(misfit.residual.size(), 6);
+    drift.by.resize(misfit.residual.size(), 6);
+    for (int axis = 0; axis < 6; ++axis) {
+      bad.by.col(axis) = FrameColumn(misfit, part, [&](Eigen::Index f, int s) {
+        return f == worst ? rigid(f, s, axis) : 0.0;
+      });
+      const double duration = times.back() - times.front();
+      drift.by.col(axis) = FrameColumn(misfit, part, [&](Eigen::Index f, int s) {
+        return rigid(f, s, axis) * (times[f] - times.front()) / duration;
+      });
+      bad.priors.push_back({0, axis < 3 ? kShift : kTurn, false});
+      drift.priors.push_back({0, axis < 3 ? kShift : kTurn, false});
+    }
+    candidates.push_back(std::move(bad));
+    candidates.push_back(std::move(drift));
+  }
+  return candidates;
+}
+
+}  // namespace lacuna

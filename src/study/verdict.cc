@@ -1,0 +1,152 @@
+#include "study/verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+using Verdict = Diagnosis::Verdict;
+
+// Logarithms of odds: to be named at all, and to be preferred to a rival.
+constexpr double kNamed = 5;
+constexpr double kDecisive = 3;
+// What is left is noise below so many standard deviations.
+constexpr double kAtNoise = 1.2;
+// Evidence for smooth errors above which what is left is no noise.
+constexpr double kStructured = 5;
+// Where the best effect leaves more than noise, it must have explained this share to be named.
+constexpr double kMostOfIt = 0.85;
+// A finer discretisation would change this share of the error.
+constexpr double kMeshMatters = 0.25;
+
+std::string Titles(const std::vector<std::string>& types) {
+  std::vector<std::string> titles;
+  for (const std::string& type : types) {
+    const CatalogueEntry* entry = FindEntry(type);
+    titles.push_back(entry != nullptr ? entry->card->title : type);
+  }
+  return fmt::format("{}", fmt::join(titles, "; "));
+}
+
+// No effect, at the largest size that is plausible, would stand out from the noise.
+bool NothingCouldBeSeen(const std::vector<RankedEffect>& ranking) {
+  for (const RankedEffect& effect : ranking) {
+    const EffectCard& card = effect.scored.candidate.effect->Card();
+    for (size_t k = 0; k < effect.scored.candidate.amplitude.size(); ++k) {
+      const ParameterCard& parameter = card.parameters[effect.scored.candidate.amplitude[k]];
+      if (effect.scored.score.detectable[static_cast<Eigen::Index>(k)] < PlausibleScale(parameter))
+        return false;
+    }
+  }
+  return true;
+}
+
+const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::string& type) {
+  for (const RankedEffect& effect : ranking)
+    if (effect.scored.candidate.type == type) return &effect;
+  return nullptr;
+}
+
+bool IsDiscretisation(const NuisanceCandidate& nuisance) {
+  return nuisance.name == "mesh" || nuisance.name == "time_step";
+}
+
+// Nothing of the catalogue is needed, or nothing of it helps.
+void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noise) {
+  const std::string error = fmt::format(
+      "{:.3f} mm or {:.1f} σ", 1e3 * diagnosis->errors.held_out_rms, diagnosis->errors.in_noise);
+  std::vector<std::string> advice;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
+    const bool counts = IsDiscretisation(nuisance.candidate)
+                            ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed &&
+                                  diagnosis->errors.in_noise > kAtNoise
+                            : nuisance.adopted || nuisance.evidence > kNamed;
+    if (!counts) continue;
+    diagnosis->effects.push_back(nuisance.candidate.name);
+    advice.push_back(fmt::format("{} explains {:.0f} % of the misfit: {}", nuisance.candidate.what,
+                                 100 * nuisance.explained, nuisance.candidate.advice));
+  }
+  if (!diagnosis->effects.empty()) {
+    diagnosis->verdict = Verdict::kNuisance;
+    diagnosis->explanation = fmt::format("{}", fmt::join(advice, "; "));
+  } else if (is_noise) {
+    diagnosis->verdict = Verdict::kAdequate;
+    diagnosis->explanation = fmt::format(
+        "the error, {}, is that of the noise, and no effect has evidence beyond what chance gives",
+        error);
+  } else {
+    diagnosis->verdict = Verdict::kNotInLibrary;
+    diagnosis->explanation = fmt::format(
+        "{} are left, which is not noise, and no effect of the catalogue explains them "
+        "(best evidence {:.1f})",
+        error, best_evidence);
+  }
+}
+
+}  // namespace
+
+void Decide(Diagnosis* diagnosis) {
+  if (NothingCouldBeSeen(diagnosis->ranking)) {
+    diagnosis->verdict = Verdict::kNoPower;
+    diagnosis->explanation =
+        "no effect of plausible size would show in these recordings beyond what the fitted "
+        "parameters can do: more motion, other loads or less noise are needed";
+    return;
+  }
+  const bool is_noise =
+      diagnosis->left_in_noise <= kAtNoise && diagnosis->unexplained <= kStructured;
+  std::vector<const RankedEffect*> refitted;
+  for (const RankedEffect& effect : diagnosis->ranking)
+    if (effect.refitted && effect.refit_message.empty()) refitted.push_back(&effect);
+  std::stable_sort(refitted.begin(), refitted.end(),
+                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
+  if (evidence < std::max(kNamed, diagnosis->control)) {
+    DecideWithoutEffect(diagnosis, evidence, is_noise);
+    return;
+  }
+  const RankedEffect& best = *refitted.front();
+  if (!is_noise && best.explained < kMostOfIt) {
+    diagnosis->verdict = Verdict::kNotInLibrary;
+    diagnosis->explanation = fmt::format(
+        "{} explains most, {:.0f} % of the misfit, but what it leaves, {:.1f} σ, is not noise: it "
+        "may be doing another effect's work",
+        Titles({best.scored.candidate.type}), 100 * best.explained, diagnosis->left_in_noise);
+    return;
+  }
+  diagnosis->effects = {best.scored.candidate.type};
+  for (size_t k = 1; k < refitted.size(); ++k)
+    if (refitted[k]->evidence > evidence - kDecisive)
+      diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
+  // Look-alikes that were not refitted cannot be ruled out either.
+  for (const std::string& other : best.scored.look_alikes) {
+    const RankedEffect* rival = Find(diagnosis->ranking, other);
+    if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
+  }
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
+    if (!nuisance.adopted && nuisance.evidence > evidence - kDecisive)
+      diagnosis->effects.push_back(nuisance.candidate.name);
+  const std::string drop = fmt::format(
+      "the {} error falls from {:.3f} mm ({:.1f} σ) to {:.3f} mm ({:.1f} σ), the odds for it are "
+      "e^{:.0f}",
+      diagnosis->errors.has_held_out ? "held-out" : "fitted", 1e3 * diagnosis->errors.held_out_rms,
+      diagnosis->errors.in_noise, 1e3 * best.errors.held_out_rms, best.errors.in_noise, evidence);
+  if (diagnosis->effects.size() == 1) {
+    diagnosis->verdict = Verdict::kMissing;
+    diagnosis->explanation = fmt::format("{}: with it {}", Titles(diagnosis->effects), drop);
+  } else {
+    diagnosis->verdict = Verdict::kAmbiguous;
+    diagnosis->explanation =
+        fmt::format("{}: these recordings cannot tell them apart; with the best {}",
+                    Titles(diagnosis->effects), drop);
+    diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
+  }
+}
+
+}  // namespace lacuna

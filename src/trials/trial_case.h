@@ -1,0 +1,62 @@
+// A sealed case: a recording of a soft bar whose physics is known to its maker alone.
+#ifndef LACUNA_TRIALS_TRIAL_CASE_H_
+#define LACUNA_TRIALS_TRIAL_CASE_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem/effect.h"
+
+namespace lacuna {
+
+// An effect that the truth has and the model lacks.
+struct HiddenEffect {
+  std::string type;
+  std::map<std::string, double> parameters;  // all of the card's, SI, at the size that is hidden
+  std::vector<std::string> amplitude;        // those that make its size
+  double factor = 0;                         // of its detectable size
+};
+std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden);
+
+struct TrialCase {
+  std::string name;
+  // "control", "hard_control", "one_effect", "pair" or "removed": the last hides an effect that the
+  // library is then not allowed to name.
+  std::string group;
+  uint64_t seed = 0;
+  int recordings = 1;
+  // Of a hard control: "grip" (the clamp ends 1 to 2 mm from where the model has it), "bad_frame",
+  // "coarse_mesh" or "time_jitter"; empty: none.
+  std::string nuisance;
+  std::vector<HiddenEffect> hidden;
+
+  // Drawn from the seed.
+  double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
+  Eigen::Vector3d size{0.08, 0.02, 0.02};            // m, as the model has it
+  Eigen::Vector3d true_size = size;                  // m
+  double clamp_error = 0;                            // m
+  std::vector<Eigen::Vector3d> hold_forces;          // N, per recording
+  double noise = 1e-4;                               // m, of a coordinate
+  double noise_correlation_time = 0;                 // s
+};
+
+// Without a hidden effect yet.
+TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
+                   const std::string& nuisance);
+
+// An effect with places, directions and times drawn from the seed, of size 1 in its plausible
+// direction; the factor is still to be applied.
+HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed);
+
+// truth.json
+void SaveCase(const TrialCase& trial, const std::filesystem::path& file);
+TrialCase LoadCase(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_TRIALS_TRIAL_CASE_H_

@@ -1,0 +1,159 @@
+#include "trials/trial_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "trials/trial_case.h"
+#include "trials/trial_run.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kAtNoise = 1.2;
+constexpr double kWithin = 0.15;
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+std::string GroupOf(const TrialCase& trial) {
+  if (trial.group == "one_effect")
+    return fmt::format("one_effect, {} rec, {:g} x", trial.recordings, trial.hidden[0].factor);
+  if (trial.group == "hard_control") return "hard_control " + trial.nuisance;
+  return fmt::format("{}, {} rec", trial.group, trial.recordings);
+}
+
+bool Contains(const std::vector<std::string>& list, const std::string& what) {
+  return std::find(list.begin(), list.end(), what) != list.end();
+}
+
+bool IsHidden(const TrialCase& trial, const std::string& type) {
+  return trial.group != "removed" &&
+         std::any_of(trial.hidden.begin(), trial.hidden.end(),
+                     [&](const HiddenEffect& hidden) { return hidden.type == type; });
+}
+
+void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tally) {
+  ++tally->cases;
+  ++tally->verdicts[outcome.verdict];
+  const bool named = outcome.verdict == "missing";
+  const bool right = named && IsHidden(trial, outcome.named[0]);
+  tally->top1 += right;
+  tally->wrong += named && !right;
+  if (trial.hidden.empty() || trial.group == "removed") return;
+  const std::string& truth = trial.hidden[0].type;
+  const bool second = outcome.ranked.size() > 1 && (named || outcome.verdict == "ambiguous") &&
+                      (outcome.ranked[0] == truth || outcome.ranked[1] == truth);
+  tally->top2 +=
+      right || second || (outcome.verdict == "ambiguous" && Contains(outcome.named, truth));
+  tally->ranked_first += !outcome.ranked.empty() && outcome.ranked[0] == truth;
+  if (!outcome.has_truth) return;
+  ++tally->fitted;
+  tally->at_noise += outcome.error_after <= kAtNoise;
+  tally->within_15 += outcome.relative_error <= kWithin;
+  for (const char covered : outcome.covered) {
+    ++tally->intervals;
+    tally->covered += covered;
+  }
+}
+
+std::string Share(int part, int whole) {
+  return whole > 0 ? fmt::format("{:.0f} %", 100.0 * part / whole) : "-";
+}
+
+}  // namespace
+
+TrialReport ReportTrials(const std::filesystem::path& folder) {
+  TrialReport report;
+  std::vector<std::filesystem::path> cases;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
+  std::sort(cases.begin(), cases.end());
+  std::map<std::string, TrialTally> tallies;
+  std::map<std::string, std::vector<double>> before, after;
+  for (const std::filesystem::path& own : cases) {
+    const TrialCase trial = LoadCase(own / "truth.json");
+    if (!std::filesystem::exists(own / "outcome.json")) {
+      report.unfinished.push_back(trial.name);
+      continue;
+    }
+    const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+    const std::string group = GroupOf(trial);
+    tallies[group].group = group;
+    Count(trial, outcome, &tallies[group]);
+    before[group].push_back(outcome.error_before);
+    if (outcome.has_truth) after[group].push_back(outcome.error_after);
+    const std::string truth = trial.hidden.empty()       ? "nothing"
+                              : trial.group == "removed" ? trial.hidden[0].type + " (removed)"
+                                                         : trial.hidden[0].type;
+    const std::string said = outcome.verdict == "missing" ? outcome.named[0] : outcome.verdict;
+    ++report.confusion[truth][said];
+  }
+  for (auto& [group, tally] : tallies) {
+    tally.median_before = Median(before[group]);
+    tally.median_after = Median(after[group]);
+    report.tallies.push_back(tally);
+  }
+  return report;
+}
+
+std::string ReportInWords(const TrialReport& report) {
+  std::string text =
+      fmt::format("{:28} {:>5} {:>6} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>7} {:>7}  {}\n",
+                  "group", "cases", "top-1", "top-2", "wrong", "first", "at noise", "within",
+                  "covered", "before", "after", "verdicts");
+  for (const TrialTally& tally : report.tallies) {
+    std::vector<std::string> verdicts;
+    for (const auto& [name, count] : tally.verdicts)
+      verdicts.push_back(fmt::format("{} {}", count, name));
+    text +=
+        fmt::format("{:28} {:>5} {:>6} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>7.2f} {:>7.2f}  {}\n",
+                    tally.group, tally.cases, Share(tally.top1, tally.cases),
+                    Share(tally.top2, tally.cases), Share(tally.wrong, tally.cases),
+                    Share(tally.ranked_first, tally.cases), Share(tally.at_noise, tally.fitted),
+                    Share(tally.within_15, tally.fitted), Share(tally.covered, tally.intervals),
+                    tally.median_before, tally.median_after, fmt::join(verdicts, ", "));
+  }
+  text += "\nhidden: what was said\n";
+  for (const auto& [truth, said] : report.confusion) {
+    std::vector<std::string> parts;
+    for (const auto& [name, count] : said) parts.push_back(fmt::format("{} {}", count, name));
+    text += fmt::format("  {:32} {}\n", truth, fmt::join(parts, ", "));
+  }
+  if (!report.unfinished.empty())
+    text += fmt::format("\n{} cases without an outcome\n", report.unfinished.size());
+  return text;
+}
+
+void SaveTrialReport(const TrialReport& report, const std::filesystem::path& folder) {
+  nlohmann::json tallies = nlohmann::json::array();
+  for (const TrialTally& tally : report.tallies)
+    tallies.push_back({{"group", tally.group},
+                       {"cases", tally.cases},
+                       {"top1", tally.top1},
+                       {"top2", tally.top2},
+                       {"wrong", tally.wrong},
+                       {"ranked_first", tally.ranked_first},
+                       {"verdicts", tally.verdicts},
+                       {"fitted", tally.fitted},
+                       {"at_noise", tally.at_noise},
+                       {"within_15_percent", tally.within_15},
+                       {"intervals", tally.intervals},
+                       {"covered", tally.covered},
+                       {"median_error_before", tally.median_before},
+                       {"median_error_after", tally.median_after}});
+  const nlohmann::json all = {{"schema_version", 1},
+                              {"tallies", tallies},
+                              {"confusion", report.confusion},
+                              {"unfinished", report.unfinished}};
+  WriteFileAtomically(folder / "report.json", all.dump(2) + "\n");
+  WriteFileAtomically(folder / "report.txt", ReportInWords(report));
+}
+
+}  // namespace lacuna

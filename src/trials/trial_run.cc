@@ -1,0 +1,179 @@
+#include "trials/trial_run.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "study/diagnosis.h"
+#include "study/reference.h"
+#include "trials/workers.h"
+
+namespace lacuna {
+namespace {
+
+ProgressOptions Silent() {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  return silent;
+}
+
+const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
+  for (const RankedEffect& effect : diagnosis.ranking)
+    if (effect.scored.candidate.type == type) return &effect;
+  return nullptr;
+}
+
+// How the hidden effect fared.
+void Compare(const TrialCase& trial, const CalibrationProblem& problem,
+             const Eigen::VectorXd& values, const Diagnosis& diagnosis, TrialOutcome* outcome) {
+  const HiddenEffect& hidden = trial.hidden.front();
+  const RankedEffect* effect = Find(diagnosis, hidden.type);
+  if (effect == nullptr) return;
+  Calibration calibration = effect->calibration;
+  double in_noise = effect->errors.in_noise;
+  if (!effect->refitted) {
+    Progress progress(Silent());
+    const EffectRefit refit = Refit(problem, values, effect->scored, {}, &progress);
+    if (!refit.message.empty()) return;
+    calibration = refit.calibration;
+    in_noise = refit.errors.in_noise;
+  } else if (!effect->refit_message.empty()) {
+    return;
+  }
+  outcome->has_truth = true;
+  outcome->error_after = in_noise * problem.noise() / trial.noise;
+  const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
+  double difference = 0, size = 0;
+  for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
+    const ParameterEstimate& estimate = calibration.estimates[static_cast<size_t>(shared) + k];
+    const double truth = hidden.parameters.at(hidden.amplitude[k]);
+    difference += std::pow(estimate.value - truth, 2);
+    size += truth * truth;
+    outcome->covered.push_back(estimate.low <= truth && truth <= estimate.high);
+  }
+  outcome->relative_error = std::sqrt(difference / size);
+}
+
+}  // namespace
+
+TrialOutcome RunCase(const std::filesystem::path& folder) {
+  const auto began = std::chrono::steady_clock::now();
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  const PredictedRecording& first = study.recordings.front();
+  const ReferenceBody reference = MakeReferenceBody(
+      {study.name, first.recording, study.mesh, study.sheet_layers, first.frames.front()});
+  const CalibrationProblem problem(study, reference.mesh);
+  Progress progress(Silent());
+  const Calibration calibration = problem.Fit(problem.Start(), &progress);
+  if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
+  DiagnosisOptions options;
+  // Only which effect is to be kept from the library is known of the truth before.
+  const std::filesystem::path without = folder / "without.txt";
+  if (std::filesystem::exists(without)) {
+    std::ifstream stream(without);
+    for (std::string type; std::getline(stream, type);) options.without.push_back(type);
+  }
+  const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
+
+  TrialOutcome outcome;
+  outcome.verdict = VerdictName(diagnosis.verdict);
+  outcome.named = diagnosis.effects;
+  outcome.control = diagnosis.control;
+  outcome.left = diagnosis.left_in_noise;
+  outcome.unexplained = diagnosis.unexplained;
+  std::vector<std::pair<double, std::string>> order;
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    // A refit counts for more than first order does.
+    const bool usable = effect.refitted && effect.refit_message.empty();
+    order.emplace_back(
+        usable ? effect.evidence : std::min(-1.0, effect.scored.score.evidence - 100),
+        effect.scored.candidate.type);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [evidence, type] : order) outcome.ranked.push_back(type);
+  if (!order.empty()) outcome.evidence = order[0].first;
+  if (order.size() > 1) outcome.second_evidence = order[1].first;
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+
+  const TrialCase trial = LoadCase(folder / "truth.json");
+  outcome.error_before = diagnosis.errors.in_noise * problem.noise() / trial.noise;
+  if (!outcome.named.empty())
+    if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
+      outcome.error_best = best->errors.in_noise * problem.noise() / trial.noise;
+  if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
+  return outcome;
+}
+
+void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
+  const nlohmann::json all = {{"schema_version", 1},
+                              {"verdict", outcome.verdict},
+                              {"named", outcome.named},
+                              {"ranked", outcome.ranked},
+                              {"error_before", outcome.error_before},
+                              {"error_best", outcome.error_best},
+                              {"evidence", outcome.evidence},
+                              {"second_evidence", outcome.second_evidence},
+                              {"control", outcome.control},
+                              {"left", outcome.left},
+                              {"unexplained", outcome.unexplained},
+                              {"has_truth", outcome.has_truth},
+                              {"error_after", outcome.error_after},
+                              {"relative_error", outcome.relative_error},
+                              {"covered", outcome.covered},
+                              {"seconds", outcome.seconds}};
+  WriteFileAtomically(file, all.dump(2) + "\n");
+}
+
+TrialOutcome LoadOutcome(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError(file.string() + ": cannot be opened");
+  try {
+    const auto json = nlohmann::json::parse(stream);
+    TrialOutcome outcome;
+    outcome.verdict = json.at("verdict");
+    outcome.named = json.at("named");
+    outcome.ranked = json.at("ranked");
+    outcome.error_before = json.at("error_before");
+    outcome.error_best = json.at("error_best");
+    outcome.evidence = json.at("evidence");
+    outcome.second_evidence = json.at("second_evidence");
+    outcome.control = json.at("control");
+    outcome.left = json.at("left");
+    outcome.unexplained = json.at("unexplained");
+    outcome.has_truth = json.at("has_truth");
+    outcome.error_after = json.at("error_after");
+    outcome.relative_error = json.at("relative_error");
+    for (const int covered : json.at("covered")) outcome.covered.push_back(covered != 0);
+    outcome.seconds = json.at("seconds");
+    return outcome;
+  } catch (const nlohmann::json::exception& problem) {
+    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
+  }
+}
+
+int RunTrials(const std::filesystem::path& folder, int workers) {
+  std::vector<std::filesystem::path> cases;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
+  std::sort(cases.begin(), cases.end());
+  return ShareOut(cases.size(), workers, [&](size_t k) {
+    const std::filesystem::path& own = cases[k];
+    const Claim claim(own / "claimed");
+    if (!claim.holds() || std::filesystem::exists(own / "outcome.json")) return;
+    try {
+      SaveOutcome(RunCase(own), own / "outcome.json");
+    } catch (const InputError& problem) {
+      WriteFileAtomically(own / "failed.txt", std::string(problem.what()) + "\n");
+    }
+  });
+}
+
+}  // namespace lacuna

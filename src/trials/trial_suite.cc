@@ -1,0 +1,202 @@
+#include "trials/trial_suite.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "effects/catalogue.h"
+#include "scan/random_bits.h"
+#include "study/candidates.h"
+#include "study/effect_ranking.h"
+#include "study/reference.h"
+#include "trials/trial_film.h"
+#include "trials/workers.h"
+
+namespace lacuna {
+namespace {
+
+const std::vector<std::string>& Nuisances() {
+  static const std::vector<std::string> nuisances = {"grip", "bad_frame", "coarse_mesh",
+                                                     "time_jitter"};
+  return nuisances;
+}
+
+TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
+                     const std::vector<std::string>& types, double factor, int recordings,
+                     size_t number) {
+  const uint64_t seed = RandomBits({suite.seed, number});
+  std::string name = fmt::format("{:04}-{}", number, group);
+  for (const std::string& type : types) name += "-" + type;
+  TrialCase trial = DrawCase(fmt::format("{}-{:g}x-{}rec", name, factor, recordings), group, seed,
+                             recordings, "");
+  for (const std::string& type : types) {
+    trial.hidden.push_back(DrawHidden(type, trial, RandomBits({seed, trial.hidden.size()})));
+    trial.hidden.back().factor = factor;
+  }
+  return trial;
+}
+
+// The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case.
+double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
+                  const std::filesystem::path& folder) {
+  TrialCase without = trial;
+  without.hidden.clear();
+  if (hidden.type == "gravity") {
+    // The model must not have what is hidden; its absence is no effect of its own here.
+    without.hidden.push_back(hidden);
+    for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
+  }
+  FilmCase(without, folder, /*rough=*/true);
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  const PredictedRecording& first = study.recordings.front();
+  const ReferenceBody reference = MakeReferenceBody(
+      {study.name, first.recording, study.mesh, study.sheet_layers, first.frames.front()});
+  const CalibrationProblem problem(study, reference.mesh);
+  Eigen::VectorXd values = problem.Start();
+  values[0] = trial.young_modulus;
+  values[1] = trial.poisson_ratio;
+  for (size_t r = 0; r < trial.hold_forces.size(); ++r)
+    values.segment<3>(2 + 3 * static_cast<Eigen::Index>(r)) = trial.hold_forces[r];
+  CHECK_EQ(values.size(), 2 + 3 * trial.recordings);
+
+  HiddenEffect none = hidden;
+  const EffectCard& card = *FindEntry(hidden.type)->card;
+  std::vector<MisfitDirection> directions;
+  Eigen::VectorXd amount(static_cast<Eigen::Index>(hidden.amplitude.size()));
+  for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
+    amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
+    none.parameters[hidden.amplitude[k]] = card.parameters[k].null_value;
+  }
+  const std::shared_ptr<Effect> effect = MakeHidden(none);
+  for (size_t k = 0; k < hidden.amplitude.size(); ++k)
+    directions.push_back({{.effect = effect, .parameter = static_cast<int>(k)}});
+  const LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
+  const Eigen::Index known = values.size();
+  Eigen::MatrixXd columns(misfit.by.rows(), known + 1);
+  columns << misfit.by.leftCols(known), misfit.by.rightCols(amount.size()) * amount;
+  std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
+  priors.push_back({});
+  const SeriesNoise noise{trial.noise, trial.noise_correlation_time, study.place_deviation};
+  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise, false),
+                          WhitenedRows(columns, misfit, noise, false), priors);
+  std::vector<int> taken;
+  for (int k = 0; k < known; ++k) taken.push_back(k);
+  const int own = static_cast<int>(known);
+  return kStandsOut / std::sqrt(model.Remaining(taken, {own}, {own}, 1)(0, 0));
+}
+
+bool IsPlausible(const HiddenEffect& hidden) {
+  const EffectCard& card = *FindEntry(hidden.type)->card;
+  for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
+    const double value = hidden.parameters.at(hidden.amplitude[k]);
+    if (value < card.parameters[k].plausible_min || value > card.parameters[k].plausible_max)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+TrialSuite ReadTrialSuite(const Config& config) {
+  TrialSuite suite;
+  config.Integer("schema_version", 1, 1);
+  suite.name = config.Text("name");
+  constexpr int kMost = 1'000'000;
+  suite.seed = static_cast<uint64_t>(config.Integer("seed", 0, kMost));
+  suite.controls = config.Integer("controls", 0, kMost, 0);
+  suite.hard_controls = config.Integer("hard_controls", 0, kMost, 0);
+  suite.pairs = config.Integer("pairs", 0, kMost, 0);
+  const auto types = [&](const std::string& key) {
+    std::vector<std::string> chosen;
+    for (const std::string& type : config.Texts(key)) {
+      if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
+      chosen.push_back(type);
+    }
+    return chosen;
+  };
+  suite.effects = types("effects");
+  suite.removed = types("removed");
+  suite.factors = config.Integers("factors", 1);
+  suite.recordings = config.Integers("recordings", 1);
+  if (suite.factors.empty()) suite.factors = {1, 2, 4};
+  if (suite.recordings.empty()) suite.recordings = {1, 2};
+  config.RefuseUnknownKeys();
+  return suite;
+}
+
+std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
+  std::vector<TrialCase> cases;
+  const auto control = [&](const std::string& group, const std::string& nuisance, size_t k) {
+    const size_t number = cases.size();
+    const int recordings = suite.recordings[k % suite.recordings.size()];
+    cases.push_back(DrawCase(fmt::format("{:04}-{}{}-{}rec", number, group,
+                                         nuisance.empty() ? "" : "-" + nuisance, recordings),
+                             group, RandomBits({suite.seed, number}), recordings, nuisance));
+  };
+  for (int k = 0; k < suite.controls; ++k) control("control", "", k);
+  for (int k = 0; k < suite.hard_controls; ++k)
+    control("hard_control", Nuisances()[(k / suite.recordings.size()) % Nuisances().size()], k);
+  const int largest = *std::max_element(suite.factors.begin(), suite.factors.end());
+  for (const std::string& type : suite.effects)
+    for (const int factor : suite.factors)
+      for (const int recordings : suite.recordings)
+        cases.push_back(EffectCase(suite, "one_effect", {type}, factor, recordings, cases.size()));
+  for (const std::string& type : suite.removed)
+    for (const int recordings : suite.recordings)
+      cases.push_back(EffectCase(suite, "removed", {type}, largest, recordings, cases.size()));
+  for (int k = 0; k < suite.pairs; ++k) {
+    const uint64_t draw = RandomBits({suite.seed, 7, static_cast<uint64_t>(k)});
+    const size_t count = suite.effects.size();
+    const size_t first = draw % count, second = (first + 1 + (draw >> 20) % (count - 1)) % count;
+    cases.push_back(EffectCase(suite, "pair", {suite.effects[first], suite.effects[second]},
+                               largest, suite.recordings.back(), cases.size()));
+  }
+  return cases;
+}
+
+bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
+  const std::filesystem::path own = folder / trial.name;
+  if (std::filesystem::exists(own / "truth.json")) return true;
+  if (std::filesystem::exists(own / "skipped.txt")) return false;
+  MakeFolder(own);
+  for (HiddenEffect& hidden : trial.hidden) {
+    const double size = hidden.factor * Detectable(trial, hidden, own);
+    for (const std::string& name : hidden.amplitude) hidden.parameters[name] *= size;
+    if (!std::isfinite(size) || !IsPlausible(hidden)) {
+      WriteFileAtomically(
+          own / "skipped.txt",
+          fmt::format("{} would have to be {:g} times its unit\n", hidden.type, size));
+      return false;
+    }
+  }
+  try {
+    FilmCase(trial, own);
+  } catch (const InputError& problem) {
+    WriteFileAtomically(own / "skipped.txt", std::string(problem.what()) + "\n");
+    return false;
+  }
+  if (trial.group == "removed") {
+    std::string types;
+    for (const HiddenEffect& hidden : trial.hidden) types += hidden.type + "\n";
+    WriteFileAtomically(own / "without.txt", types);
+  }
+  SaveCase(trial, own / "truth.json");
+  return true;
+}
+
+int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers) {
+  const std::vector<TrialCase> cases = CasesOf(suite);
+  MakeFolder(folder);
+  for (const TrialCase& trial : cases) MakeFolder(folder / trial.name);
+  return ShareOut(cases.size(), workers, [&](size_t k) {
+    const Claim claim(folder / cases[k].name / "claimed");
+    if (claim.holds()) MakeCase(cases[k], folder);
+  });
+}
+
+}  // namespace lacuna

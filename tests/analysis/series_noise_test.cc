@@ -1,0 +1,72 @@
+#include "analysis/series_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+namespace lacuna {
+namespace {
+
+SeriesLayout Irregular() {
+  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<char>(18, 1)};
+  layout.observed[3] = layout.observed[7] = layout.observed[17] = 0;
+  return layout;
+}
+
+TEST(SeriesNoise, WhitensItsCovariance) {
+  // W Σ Wᵀ = 1 for the observed rows of one series.
+  const SeriesLayout layout = Irregular();
+  const SeriesNoise noise{0.3, 0.2, 0.7};
+  const Eigen::MatrixXd W =
+      Whitened(Eigen::MatrixXd::Identity(layout.Rows(), layout.Rows()), layout, noise);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(layout.Rows(), layout.Rows());
+  Eigen::MatrixXd expected = covariance;
+  for (Eigen::Index i = 0; i < layout.Rows(); ++i) {
+    for (Eigen::Index j = 0; j < layout.Rows(); ++j) {
+      if (i % 3 != j % 3 || !layout.observed[i] || !layout.observed[j]) continue;
+      const double apart = std::abs(layout.times[i / 3] - layout.times[j / 3]);
+      covariance(i, j) = 0.09 * std::exp(-apart / 0.2) + 0.49;
+      expected(i, j) = i == j;
+    }
+  }
+  EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
+}
+
+TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
+  const SeriesLayout layout = Irregular();
+  const std::vector<char> chosen = {1, 1, 1, 0, 1, 0};
+  SeriesLayout without = layout;
+  for (Eigen::Index row = 0; row < layout.Rows(); ++row)
+    if (!chosen[row / 3]) without.observed[row] = 0;
+  const Eigen::MatrixXd rows = Eigen::MatrixXd::Random(layout.Rows(), 2);
+  const SeriesNoise noise{0.3, 0.2, 0.7};
+  EXPECT_EQ(Whitened(rows, layout, noise, chosen), Whitened(rows, without, noise));
+}
+
+TEST(SeriesNoise, TellsHowLongNoiseLasts) {
+  SeriesLayout layout{40, {}, {}};
+  for (int frame = 0; frame < 60; ++frame) layout.times.push_back(0.01 * frame);
+  layout.observed.assign(static_cast<size_t>(layout.Rows()), 1);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (const double memory : {0.0, 0.5}) {
+    Eigen::VectorXd rows(layout.Rows());
+    for (Eigen::Index row = 0; row < rows.size(); ++row)
+      rows[row] = row < 40
+                      ? normal(random)
+                      : memory * rows[row - 40] + std::sqrt(1 - memory * memory) * normal(random);
+    const SeriesStatistics statistics = Statistics(rows, layout);
+    EXPECT_NEAR(statistics.spacing, 0.01, 1e-12);  // rounding of the times
+    // 2400 rows: 0.02 by chance, 1/60 by the means taken away, times (1 + ρ)/(1 − ρ).
+    EXPECT_NEAR(statistics.lag_one, memory, 0.08);
+    // 1 + 2 Σ (1 − k/9) ρᵏ.
+    EXPECT_NEAR(statistics.long_run, memory == 0 ? 1 : 2.55, memory == 0 ? 0.15 : 0.5);
+    const SeriesNoise noise{1, CorrelationTime(statistics), 0};
+    EXPECT_NEAR(Statistics(Whitened(rows, layout, noise), layout).long_run, 1, 0.15);
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
