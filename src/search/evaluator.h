@@ -1,0 +1,64 @@
+// The one door between a search and its objective: cache, log, budget, bounds and the best point.
+#ifndef LACUNA_SEARCH_EVALUATOR_H_
+#define LACUNA_SEARCH_EVALUATOR_H_
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "search/evaluation_log.h"
+#include "search/search_problem.h"
+
+namespace lacuna {
+
+// Fixed variables (lower == upper) are left out of everything a search sees: `lower`, `upper`,
+// `start` and the points of At() hold the free ones only.
+class Evaluator {
+ public:
+  // `method` names the search and its options; with the problem and control.log_key it is the key
+  // of the log.
+  Evaluator(const SearchProblem& problem, const SearchControl& control, const std::string& method);
+
+  int n() const { return static_cast<int>(free_.size()); }
+  int m() const { return problem_.constraint_count; }
+  const Eigen::VectorXd& lower() const { return lower_; }
+  const Eigen::VectorXd& upper() const { return upper_; }
+  const Eigen::VectorXd& start() const { return start_; }
+
+  // The outcome at `x`, which lies within the bounds: from memory where it has been evaluated, else
+  // from the log or the objective. Null once the search has to stop; the pointer stays valid.
+  const Evaluation* At(const Eigen::VectorXd& x);
+
+  bool stopped() const { return status_ != SearchStatus::kNotRun; }
+  int evaluation_count() const { return static_cast<int>(result_.trace.size()); }
+  // Index of the best point so far in the trace; -1 if there is none.
+  int best() const { return result_.best.value_or(-1); }
+  // The free variables and the outcome of a step of the trace.
+  Eigen::VectorXd PointOf(int index) const;
+  const Evaluation& OutcomeOf(int index) const { return result_.trace[index].outcome; }
+
+  // The result, with `status` unless a stop rule has spoken. Call once, last.
+  SearchResult Finish(SearchStatus status, const std::string& message = "");
+
+ private:
+  SearchStatus StopReason() const;
+  SearchStep Evaluate(Eigen::VectorXd x);
+  bool IsBetter(const Evaluation& outcome) const;
+
+  SearchProblem problem_;
+  SearchControl control_;
+  std::vector<int> free_;
+  Eigen::VectorXd lower_, upper_, start_;
+  std::unique_ptr<EvaluationLog> log_;
+  std::map<std::vector<double>, int> known_;  // full x to the index in the trace
+  std::vector<std::unique_ptr<Evaluation>> outcomes_;
+  SearchStatus status_ = SearchStatus::kNotRun;
+  SearchResult result_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SEARCH_EVALUATOR_H_

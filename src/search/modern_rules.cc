@@ -1,0 +1,199 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "search/cobyla_rules.h"
+#include "search/ordered_algebra.h"
+#include "search/simplex.h"
+
+namespace lacuna {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kShortStep = 0.1;  // of the resolution
+constexpr double kPoorRatio = 0.1;  // of the predicted reduction: the radius shrinks below,
+constexpr double kGoodRatio = 0.7;  // and may grow above
+constexpr double kSnap = 1.5;       // a trust radius below this multiple of the resolution is it
+constexpr double kLongEdge = 2;     // of the trust radius: a vertex farther away is too far
+
+// The next resolution: a tenth far from the end, and then in steps that meet it.
+double NextResolution(double rho, double final_radius) {
+  const double ratio = rho / final_radius;
+  if (ratio > 250) return 0.1 * rho;
+  return ratio <= 16 ? final_radius : std::sqrt(ratio) * final_radius;
+}
+
+class ModernDescent {
+ public:
+  ModernDescent(const Descent& descent, Simplex simplex, Evaluator* evaluator)
+      : descent_(descent),
+        simplex_(std::move(simplex)),
+        evaluator_(*evaluator),
+        rho_(descent.initial_radius),
+        delta_(descent.initial_radius) {
+    penalty_ = std::clamp(simplex_.PenaltyLimit(), kLeastPenalty, 1e3);
+  }
+
+  SearchStatus Run() {
+    for (int iteration = 0; iteration < descent_.max_iterations; ++iteration) {
+      if (!RaisePenalty()) return SearchStatus::kRounding;
+      const bool is_spread = IsSpread();
+      const bool is_poor = !TryStep();
+      if (evaluator_.stopped()) return SearchStatus::kEvaluations;
+      if (!is_poor) continue;
+      if (!is_spread) {
+        if (!simplex_.MovePole(penalty_)) return SearchStatus::kRounding;
+        if (!IsSpread() && MoveVertex()) continue;
+        if (evaluator_.stopped()) return SearchStatus::kEvaluations;
+      }
+      if (std::max(delta_, last_length_) > rho_) continue;
+      if (rho_ <= descent_.final_radius) {
+        TakeLastStep();
+        return SearchStatus::kConverged;
+      }
+      const double next = NextResolution(rho_, descent_.final_radius);
+      delta_ = std::max(0.5 * rho_, next);
+      rho_ = next;
+      penalty_ = std::max(kLeastPenalty, std::min(penalty_, simplex_.PenaltyLimit()));
+    }
+    return SearchStatus::kIterationLimit;
+  }
+
+ private:
+  static constexpr double kLeastPenalty = std::numeric_limits<double>::epsilon();
+
+  bool IsSpread() const {
+    for (int j = 0; j < simplex_.n(); ++j) {
+      if (ClearlyGreater(simplex_.EdgeLength(j), kLongEdge * delta_)) return false;
+    }
+    return true;
+  }
+
+  // Solves the trust-region problem at the best vertex, with a penalty that makes its solution a
+  // descent of the merit. Raising the penalty may change the best vertex, at most n + 1 times.
+  bool RaisePenalty() {
+    for (int round = 0; round <= simplex_.n() + 1; ++round) {
+      if (!simplex_.MovePole(penalty_)) return false;
+      const VectorXd pole = simplex_.Vertex(simplex_.pole());
+      const LinearModel& model = simplex_.model();
+      trial_ =
+          SolveTrustRegion(model, evaluator_.lower() - pole, evaluator_.upper() - pole, delta_);
+      violation_reduction_ =
+          Violation(model.constraints) -
+          Violation(model.constraints + OrderedProduct(model.jacobian, trial_.step));
+      value_reduction_ = -OrderedDot(model.gradient, trial_.step);
+      if (!(violation_reduction_ > 0 && value_reduction_ < 0)) return true;
+      const double needed = -value_reduction_ / violation_reduction_;
+      if (penalty_ >= 1.5 * needed) return true;
+      penalty_ = 2 * needed;
+    }
+    return true;
+  }
+
+  // False where the step is too short, fails, gains nothing or has no place in the simplex.
+  bool TryStep() {
+    const VectorXd pole = simplex_.Vertex(simplex_.pole());
+    last_length_ = std::min(delta_, OrderedNorm(trial_.step));
+    const double expected = value_reduction_ + penalty_ * violation_reduction_;
+    is_short_ = last_length_ <= kShortStep * rho_;
+    if (is_short_ || !(expected > 1e-6 * std::min(penalty_, 1.0) * rho_)) {
+      SetDelta(0.1 * delta_);
+      return false;
+    }
+    const VectorXd x =
+        (pole + trial_.step).cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
+    const Evaluation* outcome = evaluator_.At(x);
+    if (outcome == nullptr) return false;
+    if (!outcome->value) {
+      SetDelta(0.5 * last_length_);
+      return false;
+    }
+    const double reduction = simplex_.Merit(simplex_.pole(), penalty_) - *outcome->value -
+                             penalty_ * Violation(outcome->constraints);
+    const double ratio = reduction / expected;
+    if (ratio <= kPoorRatio) {
+      SetDelta(0.5 * last_length_);
+    } else if (ratio <= kGoodRatio) {
+      SetDelta(std::max(0.5 * delta_, last_length_));
+    } else {
+      SetDelta(std::max(0.5 * delta_, 2 * last_length_));
+    }
+    const int dropped = VertexToDrop(x - pole, reduction > 0);
+    if (dropped < 0) return false;
+    simplex_.Replace(dropped, x, *outcome);
+    return ratio > 0;
+  }
+
+  void SetDelta(double delta) { delta_ = delta <= kSnap * rho_ ? rho_ : delta; }
+
+  int VertexToDrop(const VectorXd& step, bool is_better) const {
+    const double unit = std::max(rho_, 0.1 * delta_);
+    int dropped = -1;
+    double largest = is_better ? 0 : 1;
+    double at_pole = 1;
+    for (int j = 0; j <= simplex_.n(); ++j) {
+      const bool is_pole = j == simplex_.pole();
+      if (is_pole && !is_better) continue;
+      const double lagrange = is_pole ? at_pole : simplex_.Lagrange(j, step);
+      at_pole -= lagrange;
+      const VectorXd from = is_pole ? VectorXd::Zero(simplex_.n()) : simplex_.Offset(j);
+      const double distance = OrderedNorm(is_better ? VectorXd(from - step) : from) / unit;
+      const double score = std::max(1.0, distance * distance) * std::abs(lagrange);
+      if (ClearlyGreater(score, largest)) {
+        largest = score;
+        dropped = j;
+      }
+    }
+    return dropped;
+  }
+
+  bool MoveVertex() {
+    int moved = 0;
+    for (int j = 1; j < simplex_.n(); ++j) {
+      if (ClearlyGreater(simplex_.EdgeLength(j), simplex_.EdgeLength(moved))) moved = j;
+    }
+    const VectorXd pole = simplex_.Vertex(simplex_.pole());
+    const VectorXd target = simplex_.GeometryPoint(moved, 0.5 * delta_, penalty_, evaluator_);
+    for (const double factor : {1.0, -1.0, 0.5}) {
+      const VectorXd x = (pole + factor * (target - pole))
+                             .cwiseMax(evaluator_.lower())
+                             .cwiseMin(evaluator_.upper());
+      if (x == pole || x == simplex_.Vertex(moved)) continue;
+      const Evaluation* outcome = evaluator_.At(x);
+      if (outcome == nullptr) return false;
+      if (!outcome->value) continue;
+      simplex_.Replace(moved, x, *outcome);
+      return true;
+    }
+    return false;
+  }
+
+  // The step that was too short to go on with may still be the best.
+  void TakeLastStep() {
+    if (!is_short_ || last_length_ <= 1e-3 * rho_) return;
+    const VectorXd pole = simplex_.Vertex(simplex_.pole());
+    evaluator_.At((pole + trial_.step).cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper()));
+  }
+
+  const Descent& descent_;
+  Simplex simplex_;
+  Evaluator& evaluator_;
+  double rho_, delta_;
+  double penalty_ = 0;
+  TrustRegionStep trial_;
+  double violation_reduction_ = 0, value_reduction_ = 0;
+  double last_length_ = 0;
+  bool is_short_ = false;
+};
+
+}  // namespace
+
+SearchStatus DescendByModernRules(const Descent& descent, Evaluator* evaluator) {
+  std::optional<Simplex> simplex =
+      Simplex::Around(descent.start, descent.initial_radius, evaluator);
+  if (!simplex) return SearchStatus::kNoValue;
+  return ModernDescent(descent, *std::move(simplex), evaluator).Run();
+}
+
+}  // namespace lacuna

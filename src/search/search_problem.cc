@@ -1,0 +1,41 @@
+#include "search/search_problem.h"
+
+#include <algorithm>
+
+namespace lacuna {
+
+const char* ToString(SearchStatus status) {
+  switch (status) {
+    case SearchStatus::kNotRun:
+      return "not run";
+    case SearchStatus::kConverged:
+      return "converged";
+    case SearchStatus::kEvaluations:
+      return "evaluations used up";
+    case SearchStatus::kTime:
+      return "time used up";
+    case SearchStatus::kInterrupted:
+      return "interrupted";
+    case SearchStatus::kRounding:
+      return "stopped by rounding";
+    case SearchStatus::kNoValue:
+      return "no evaluation succeeded";
+    case SearchStatus::kAllFixed:
+      return "nothing to search";
+    case SearchStatus::kIterationLimit:
+      return "iteration limit";
+    case SearchStatus::kLibrary:
+      return "library gave up";
+  }
+  return "unknown";
+}
+
+double Violation(const Eigen::VectorXd& constraints) {
+  double violation = 0;
+  for (int i = 0; i < constraints.size(); ++i) violation = std::max(violation, -constraints[i]);
+  return violation;
+}
+
+double SearchResult::violation() const { return Violation(trace[*best].outcome.constraints); }
+
+}  // namespace lacuna

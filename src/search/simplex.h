@@ -1,0 +1,76 @@
+// The simplex of n + 1 evaluated points and its linear interpolation, shared by both sets of rules.
+//
+// Powell's notation (1994): the best vertex is the pole x⁰, the others x⁰ + s_j; row j of the
+// inverse of (s_1 … s_n) is the gradient of the Lagrange function of vertex j, its reciprocal
+// length σ_j the distance of vertex j from the opposite face, and η_j = ‖s_j‖.
+#ifndef LACUNA_SEARCH_SIMPLEX_H_
+#define LACUNA_SEARCH_SIMPLEX_H_
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "search/evaluator.h"
+#include "search/trust_region_step.h"
+
+namespace lacuna {
+
+class Simplex {
+ public:
+  // Evaluates `start` and one neighbour along each axis, at `radius` from the best value so far, on
+  // the side where the bounds leave more room if the upper side has too little. A neighbour that
+  // fails is tried on the other side and then nearer, three times in all; after that a value worse
+  // than all others stands in for it. A start that fails is replaced by the first point around it
+  // that does not. None when the search has to stop or all of these fail.
+  static std::optional<Simplex> Around(const Eigen::VectorXd& start, double radius,
+                                       Evaluator* evaluator);
+
+  int n() const { return static_cast<int>(vertices_.rows()); }
+  int pole() const { return n(); }  // index of the pole among the vertices
+
+  Eigen::VectorXd Vertex(int j) const { return vertices_.col(j); }
+  double value(int j) const { return values_[j]; }
+  double violation(int j) const { return violations_[j]; }
+  Eigen::VectorXd Constraints(int j) const { return constraints_.col(j); }
+  // f + penalty · max(0, max_i -c_i) at vertex j.
+  double Merit(int j, double penalty) const { return values_[j] + penalty * violations_[j]; }
+
+  // Makes the vertex of least merit the pole. False where the simplex has become flat: then none of
+  // what follows may be called.
+  bool MovePole(double penalty);
+
+  const LinearModel& model() const { return model_; }
+  Eigen::VectorXd Offset(int j) const { return offsets_.col(j); }
+  double EdgeLength(int j) const { return edge_lengths_[j]; }      // η_j
+  double FaceDistance(int j) const { return face_distances_[j]; }  // σ_j
+  Eigen::VectorXd FaceNormal(int j) const { return inverse_.row(j) * face_distances_[j]; }
+  // Value of the Lagrange function of vertex j < n at x⁰ + step.
+  double Lagrange(int j, const Eigen::VectorXd& step) const;
+
+  // Puts an evaluated point in the place of vertex j, which may be the pole.
+  void Replace(int j, const Eigen::VectorXd& x, const Evaluation& outcome);
+
+  // A point at `length` from the pole along the normal of the face opposite to vertex j, to the
+  // side that the linear model prefers (merit with `penalty`), or to the other one where the bounds
+  // cut more than half of that. Equal to the pole where there is no room at all.
+  Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
+                                const Evaluator& evaluator) const;
+
+  // The largest |c| range over |f| range of the vertices: an upper limit on a sensible penalty
+  // (Powell 1994, eq. 12 and 13); 0 where no constraint separates the vertices.
+  double PenaltyLimit() const;
+
+ private:
+  Simplex(int n, int m);
+  bool Refresh();
+
+  Eigen::MatrixXd vertices_;  // n × (n+1), the pole last
+  Eigen::VectorXd values_, violations_;
+  Eigen::MatrixXd constraints_;  // m × (n+1)
+  Eigen::MatrixXd offsets_, inverse_;
+  Eigen::VectorXd edge_lengths_, face_distances_;
+  LinearModel model_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SEARCH_SIMPLEX_H_
