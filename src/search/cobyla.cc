@@ -43,16 +43,20 @@ SearchResult MinimiseByCobyla(const SearchProblem& problem, const SearchControl&
   descent.max_iterations = 1000 + 20 * control.max_evaluations;
   const CobylaRestarts& restarts = options.restarts;
   SearchStatus status = SearchStatus::kNotRun;
-  for (int round = 0; round <= restarts.max_restarts; ++round) {
-    descent.final_radius =
-        std::max({options.final_radius, 1e-14 * descent.initial_radius,
-                  restarts.max_restarts > 0 ? restarts.resolution * descent.initial_radius : 0.0});
+  int barren = 0;  // descents in a row that evaluated nothing new
+  for (int round = 0; round <= restarts.max_restarts && barren < 2; ++round) {
+    descent.final_radius = std::max(options.final_radius, 1e-14 * descent.initial_radius);
+    if (restarts.max_restarts > 0) {
+      descent.final_radius =
+          std::max(descent.final_radius, restarts.resolution * descent.initial_radius);
+    }
     descent.final_radius = std::min(descent.final_radius, descent.initial_radius);
     const int before = evaluator.evaluation_count();
     status = Descend(options.mode, descent, &evaluator);
-    if (evaluator.stopped() || evaluator.best() < 0 || evaluator.evaluation_count() == before)
-      break;
+    if (evaluator.stopped() || evaluator.best() < 0) break;
+    barren = evaluator.evaluation_count() == before ? barren + 1 : 0;
     descent.start = evaluator.PointOf(evaluator.best());
+    if (barren > 0) descent.side = -descent.side;
     descent.initial_radius = std::max(restarts.shrink * descent.initial_radius,
                                       std::min(restarts.min_radius, descent.initial_radius));
   }

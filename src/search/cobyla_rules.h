@@ -11,6 +11,7 @@ namespace lacuna {
 struct Descent {
   Eigen::VectorXd start;  // free variables
   double initial_radius = 0;
+  double side = 1;  // -1: the first vertices lie on the lower side of the start
   double final_radius = 0;
   int max_iterations = 0;  // cap on trust-region and geometry steps together
 };

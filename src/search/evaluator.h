@@ -31,6 +31,7 @@ class Evaluator {
   // from the log or the objective. Null once the search has to stop; the pointer stays valid.
   const Evaluation* At(const Eigen::VectorXd& x);
 
+  double feasibility_tolerance() const { return control_.feasibility_tolerance; }
   bool stopped() const { return status_ != SearchStatus::kNotRun; }
   int evaluation_count() const { return static_cast<int>(result_.trace.size()); }
   // Index of the best point so far in the trace; -1 if there is none.

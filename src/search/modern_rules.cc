@@ -101,8 +101,7 @@ class ModernDescent {
       SetDelta(0.1 * delta_);
       return false;
     }
-    const VectorXd x =
-        (pole + trial_.step).cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
+    const VectorXd x = WithinBounds(pole + trial_.step);
     const Evaluation* outcome = evaluator_.At(x);
     if (outcome == nullptr) return false;
     if (!outcome->value) {
@@ -123,6 +122,10 @@ class ModernDescent {
     if (dropped < 0) return false;
     simplex_.Replace(dropped, x, *outcome);
     return ratio > 0;
+  }
+
+  VectorXd WithinBounds(const VectorXd& x) const {
+    return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
   }
 
   void SetDelta(double delta) { delta_ = delta <= kSnap * rho_ ? rho_ : delta; }
@@ -156,9 +159,7 @@ class ModernDescent {
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
     const VectorXd target = simplex_.GeometryPoint(moved, 0.5 * delta_, penalty_, evaluator_);
     for (const double factor : {1.0, -1.0, 0.5}) {
-      const VectorXd x = (pole + factor * (target - pole))
-                             .cwiseMax(evaluator_.lower())
-                             .cwiseMin(evaluator_.upper());
+      const VectorXd x = WithinBounds(pole + factor * (target - pole));
       if (x == pole || x == simplex_.Vertex(moved)) continue;
       const Evaluation* outcome = evaluator_.At(x);
       if (outcome == nullptr) return false;
@@ -173,7 +174,7 @@ class ModernDescent {
   void TakeLastStep() {
     if (!is_short_ || last_length_ <= 1e-3 * rho_) return;
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
-    evaluator_.At((pole + trial_.step).cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper()));
+    evaluator_.At(WithinBounds(pole + trial_.step));
   }
 
   const Descent& descent_;
@@ -191,7 +192,7 @@ class ModernDescent {
 
 SearchStatus DescendByModernRules(const Descent& descent, Evaluator* evaluator) {
   std::optional<Simplex> simplex =
-      Simplex::Around(descent.start, descent.initial_radius, evaluator);
+      Simplex::Around(descent.start, descent.side * descent.initial_radius, evaluator);
   if (!simplex) return SearchStatus::kNoValue;
   return ModernDescent(descent, *std::move(simplex), evaluator).Run();
 }

@@ -42,8 +42,10 @@ int VertexToMove(const Simplex& simplex, double rho) {
   return worst;
 }
 
-// The vertex that the trial point replaces (eq. 19 to 22); -1 for none.
-int VertexToDrop(const Simplex& simplex, const VectorXd& step, double rho, bool is_better) {
+// The vertex that the trial point replaces (eq. 19 to 22); -1 for none. Of equally far ones, which
+// are frequent and which the paper leaves open, the one of less merit.
+int VertexToDrop(const Simplex& simplex, const VectorXd& step, double rho, double penalty,
+                 bool is_better) {
   int dropped = -1;
   double largest = is_better ? 0 : 1;
   VectorXd height(simplex.n());
@@ -61,7 +63,9 @@ int VertexToDrop(const Simplex& simplex, const VectorXd& step, double rho, bool 
     if (ClearlyGreater(std::min(kAlpha * rho, simplex.FaceDistance(j)), height[j])) continue;
     const double distance =
         is_better ? OrderedNorm(step - simplex.Offset(j)) : simplex.EdgeLength(j);
-    if (ClearlyGreater(distance, longest)) {
+    const bool ties = farthest >= 0 && !ClearlyGreater(longest, distance) &&
+                      simplex.Merit(j, penalty) < simplex.Merit(farthest, penalty);
+    if (ClearlyGreater(distance, longest) || ties) {
       longest = distance;
       farthest = j;
     }
@@ -104,7 +108,7 @@ class PowellDescent {
         const Outcome outcome = MoveVertex();
         if (outcome == Outcome::kStopped) return SearchStatus::kEvaluations;
         if (outcome == Outcome::kGood) continue;
-        if (!Shrink()) return SearchStatus::kConverged;  // no room for a better geometry
+        if (!Shrink()) return Converged();  // no room for a better geometry
         continue;
       }
       wants_geometry = false;
@@ -114,7 +118,7 @@ class PowellDescent {
       if (!acceptable) {
         wants_geometry = true;
       } else if (!Shrink()) {
-        return SearchStatus::kConverged;
+        return Converged();
       }
     }
     return SearchStatus::kIterationLimit;
@@ -127,9 +131,7 @@ class PowellDescent {
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
     const VectorXd target = simplex_.GeometryPoint(moved, kGamma * rho_, penalty_, evaluator_);
     for (const double factor : {1.0, -1.0, 0.5}) {
-      const VectorXd x = (pole + factor * (target - pole))
-                             .cwiseMax(evaluator_.lower())
-                             .cwiseMin(evaluator_.upper());
+      const VectorXd x = WithinBounds(pole + factor * (target - pole));
       if (x == pole || x == simplex_.Vertex(moved)) continue;
       const Evaluation* outcome = evaluator_.At(x);
       if (outcome == nullptr) return Outcome::kStopped;
@@ -145,13 +147,15 @@ class PowellDescent {
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
     const TrustRegionStep trial =
         SolveTrustRegion(model, evaluator_.lower() - pole, evaluator_.upper() - pole, rho_);
-    if (!trial.on_boundary && ClearlyGreater(0.5 * rho_, OrderedNorm(trial.step)))
+    short_trial_.reset();
+    if (!trial.on_boundary && ClearlyGreater(0.5 * rho_, OrderedNorm(trial.step))) {
+      short_trial_ = WithinBounds(pole + trial.step);
       return Outcome::kShort;
+    }
     const Prediction predicted = Predict(model, trial.step);
     if (RaisePenalty(predicted)) return Outcome::kPenaltyRaised;
 
-    const VectorXd x =
-        (pole + trial.step).cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
+    const VectorXd x = WithinBounds(pole + trial.step);
     const Evaluation* outcome = evaluator_.At(x);
     if (outcome == nullptr) return Outcome::kStopped;
     if (!outcome->value) return Outcome::kPoor;
@@ -163,7 +167,7 @@ class PowellDescent {
       expected = predicted.reduction_of_violation;
       reduction = simplex_.violation(best) - Violation(outcome->constraints);
     }
-    const int dropped = VertexToDrop(simplex_, x - pole, rho_, reduction > 0);
+    const int dropped = VertexToDrop(simplex_, x - pole, rho_, penalty_, reduction > 0);
     if (dropped < 0) return Outcome::kPoor;
     simplex_.Replace(dropped, x, *outcome);
     return reduction > 0 && reduction >= 0.1 * expected ? Outcome::kGood : Outcome::kPoor;
@@ -188,6 +192,19 @@ class PowellDescent {
     return false;
   }
 
+  VectorXd WithinBounds(const VectorXd& x) const {
+    return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
+  }
+
+  // Not a rule of 1994: a last step that was too short to be tried is tried where it may be the one
+  // that makes the result feasible.
+  SearchStatus Converged() {
+    if (short_trial_ && simplex_.violation(simplex_.pole()) > evaluator_.feasibility_tolerance()) {
+      evaluator_.At(*short_trial_);
+    }
+    return SearchStatus::kConverged;
+  }
+
   bool Shrink() {
     if (rho_ <= descent_.final_radius) return false;
     rho_ = NextRadius(rho_, descent_.final_radius);
@@ -200,13 +217,14 @@ class PowellDescent {
   Evaluator& evaluator_;
   double rho_;
   double penalty_ = 0;
+  std::optional<VectorXd> short_trial_;  // the latest trial point, if it was too near to be tried
 };
 
 }  // namespace
 
 SearchStatus DescendByPowellRules(const Descent& descent, Evaluator* evaluator) {
   std::optional<Simplex> simplex =
-      Simplex::Around(descent.start, descent.initial_radius, evaluator);
+      Simplex::Around(descent.start, descent.side * descent.initial_radius, evaluator);
   if (!simplex) return SearchStatus::kNoValue;
   return PowellDescent(descent, *std::move(simplex), evaluator).Run();
 }

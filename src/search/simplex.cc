@@ -11,12 +11,14 @@ namespace {
 
 using Eigen::VectorXd;
 
-// The part of a step of `wanted` along axis i that the bounds allow on the better side.
+// The part of a step of `wanted` (its sign says which side comes first) along axis i that the
+// bounds allow on the better side.
 double AxisStep(const VectorXd& x, int i, double wanted, const Evaluator& evaluator) {
   const double above = evaluator.upper()[i] - x[i];
   const double below = x[i] - evaluator.lower()[i];
-  if (above >= wanted) return wanted;
-  if (below >= wanted) return -wanted;
+  const double size = std::abs(wanted);
+  if ((wanted > 0 ? above : below) >= size) return wanted;
+  if ((wanted > 0 ? below : above) >= size) return -wanted;
   return above >= below ? above : -below;
 }
 
@@ -46,7 +48,8 @@ std::optional<VectorXd> FirstSuccess(const VectorXd& start, double radius, Evalu
 Simplex::Simplex(int n, int m)
     : vertices_(n, n + 1), values_(n + 1), violations_(n + 1), constraints_(m, n + 1) {}
 
-std::optional<Simplex> Simplex::Around(const VectorXd& start, double radius, Evaluator* evaluator) {
+std::optional<Simplex> Simplex::Around(const VectorXd& start, double step, Evaluator* evaluator) {
+  const double radius = std::abs(step);
   const int n = evaluator->n();
   const std::optional<VectorXd> first = FirstSuccess(start, radius, evaluator);
   if (!first) return std::nullopt;
@@ -56,11 +59,11 @@ std::optional<Simplex> Simplex::Around(const VectorXd& start, double radius, Eva
   double best = worst;
   for (int j = 0; j < n; ++j) {
     const VectorXd base = simplex.Vertex(n);
-    const double step = AxisStep(base, j, radius, *evaluator);
+    const double along = AxisStep(base, j, step, *evaluator);
     const Evaluation* outcome = nullptr;
     VectorXd x;
     for (const double factor : {1.0, -1.0, 0.5, -0.5}) {
-      x = Within(base + factor * step * VectorXd::Unit(n, j), *evaluator);
+      x = Within(base + factor * along * VectorXd::Unit(n, j), *evaluator);
       if (x == base) continue;
       outcome = evaluator->At(x);
       if (outcome == nullptr) return std::nullopt;

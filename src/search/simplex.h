@@ -16,12 +16,12 @@ namespace lacuna {
 
 class Simplex {
  public:
-  // Evaluates `start` and one neighbour along each axis, at `radius` from the best value so far, on
-  // the side where the bounds leave more room if the upper side has too little. A neighbour that
-  // fails is tried on the other side and then nearer, three times in all; after that a value worse
-  // than all others stands in for it. A start that fails is replaced by the first point around it
-  // that does not. None when the search has to stop or all of these fail.
-  static std::optional<Simplex> Around(const Eigen::VectorXd& start, double radius,
+  // Evaluates `start` and one neighbour along each axis, at a distance `step` from the best value
+  // so far: on the upper side if `step` is positive, else on the lower one, unless the bounds leave
+  // more room on the other. A neighbour that fails is tried on the other side and then nearer;
+  // after that a value worse than all others stands in for it. A start that fails is replaced by
+  // the first point around it that does not. None when the search has to stop or all of these fail.
+  static std::optional<Simplex> Around(const Eigen::VectorXd& start, double step,
                                        Evaluator* evaluator);
 
   int n() const { return static_cast<int>(vertices_.rows()); }
