@@ -56,7 +56,8 @@ Evaluator::Evaluator(const SearchProblem& problem, const SearchControl& control,
   upper_ = problem.upper(free_);
   start_ = problem.start(free_);
   if (!control.log.empty()) {
-    std::string key = control.log_key + " " + method + " ";
+    std::string key =
+        fmt::format("{} {} {:a} ", control.log_key, method, control.feasibility_tolerance);
     for (const Eigen::VectorXd* part : {&problem.lower, &problem.upper, &problem.start}) {
       AppendBits(*part, &key);
     }
@@ -108,13 +109,14 @@ const Evaluation* Evaluator::At(const Eigen::VectorXd& free_x) {
     CHECK(lower_[i] <= free_x[i] && free_x[i] <= upper_[i]) << "a search left its bounds";
     x[free_[i]] = free_x[i] + 0.0;  // -0 becomes +0
   }
-  const auto [place, is_new] =
-      known_.try_emplace(std::vector<double>(x.data(), x.data() + x.size()), evaluation_count());
-  if (!is_new) return outcomes_[place->second].get();
+  const std::vector<double> key(x.data(), x.data() + x.size());
+  const auto known = known_.find(key);
+  if (known != known_.end()) return outcomes_[known->second].get();
   status_ = StopReason();
   if (stopped()) return nullptr;
   SearchStep step = Evaluate(std::move(x));
   if (!step.outcome.value) ++result_.failures;
+  known_.emplace(key, evaluation_count());
   outcomes_.push_back(std::make_unique<Evaluation>(step.outcome));
   const bool is_better = IsBetter(step.outcome);
   result_.trace.push_back(std::move(step));

@@ -193,7 +193,7 @@ class ModernDescent {
 SearchStatus DescendByModernRules(const Descent& descent, Evaluator* evaluator) {
   std::optional<Simplex> simplex =
       Simplex::Around(descent.start, descent.side * descent.initial_radius, evaluator);
-  if (!simplex) return SearchStatus::kNoValue;
+  if (!simplex) return evaluator->best() < 0 ? SearchStatus::kNoValue : SearchStatus::kRounding;
   return ModernDescent(descent, *std::move(simplex), evaluator).Run();
 }
 

@@ -225,7 +225,7 @@ class PowellDescent {
 SearchStatus DescendByPowellRules(const Descent& descent, Evaluator* evaluator) {
   std::optional<Simplex> simplex =
       Simplex::Around(descent.start, descent.side * descent.initial_radius, evaluator);
-  if (!simplex) return SearchStatus::kNoValue;
+  if (!simplex) return evaluator->best() < 0 ? SearchStatus::kNoValue : SearchStatus::kRounding;
   return PowellDescent(descent, *std::move(simplex), evaluator).Run();
 }
 

@@ -69,6 +69,7 @@ std::optional<Simplex> Simplex::Around(const VectorXd& start, double step, Evalu
       if (outcome == nullptr) return std::nullopt;
       if (outcome->value) break;
     }
+    if (outcome == nullptr) return std::nullopt;  // the range is too narrow for a second point
     if (outcome->value) {
       simplex.Replace(j, x, *outcome);
       worst = std::max(worst, *outcome->value);

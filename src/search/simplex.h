@@ -20,7 +20,8 @@ class Simplex {
   // so far: on the upper side if `step` is positive, else on the lower one, unless the bounds leave
   // more room on the other. A neighbour that fails is tried on the other side and then nearer;
   // after that a value worse than all others stands in for it. A start that fails is replaced by
-  // the first point around it that does not. None when the search has to stop or all of these fail.
+  // the first point around it that does not. None when the search has to stop, when all of
+  // these fail, or when the bounds lie too near to each other for a second point.
   static std::optional<Simplex> Around(const Eigen::VectorXd& start, double step,
                                        Evaluator* evaluator);
 

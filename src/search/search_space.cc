@@ -1,0 +1,72 @@
+#include "search/search_space.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lacuna {
+
+using Eigen::VectorXd;
+
+SearchSpace::SearchSpace(std::vector<SearchVariable> variables) : variables_(std::move(variables)) {
+  for (const SearchVariable& variable : variables_) {
+    CHECK(std::isfinite(variable.lower) && std::isfinite(variable.upper)) << variable.name;
+    CHECK(variable.lower <= variable.start && variable.start <= variable.upper) << variable.name;
+    CHECK(variable.scale == SearchScale::kLinear || variable.lower > 0) << variable.name;
+  }
+}
+
+VectorXd SearchSpace::ToUnit(const VectorXd& x) const {
+  VectorXd u(x.size());
+  for (int i = 0; i < x.size(); ++i) {
+    const SearchVariable& variable = variables_[i];
+    if (variable.lower == variable.upper) {
+      u[i] = 0;
+    } else if (variable.scale == SearchScale::kLinear) {
+      u[i] = (x[i] - variable.lower) / (variable.upper - variable.lower);
+    } else {
+      u[i] = std::log(x[i] / variable.lower) / std::log(variable.upper / variable.lower);
+    }
+    u[i] = std::clamp(u[i], 0.0, 1.0);
+  }
+  return u;
+}
+
+VectorXd SearchSpace::FromUnit(const VectorXd& u) const {
+  VectorXd x(u.size());
+  for (int i = 0; i < u.size(); ++i) {
+    const SearchVariable& variable = variables_[i];
+    if (u[i] >= 1) {
+      x[i] = variable.upper;
+    } else if (variable.scale == SearchScale::kLinear) {
+      x[i] = variable.lower + u[i] * (variable.upper - variable.lower);
+    } else {
+      x[i] = variable.lower * std::pow(variable.upper / variable.lower, u[i]);
+    }
+    x[i] = std::clamp(x[i], variable.lower, variable.upper);
+  }
+  return x;
+}
+
+SearchProblem SearchSpace::ProblemOf(std::function<Evaluation(const VectorXd& x)> evaluate,
+                                     int constraint_count) const {
+  const int n = static_cast<int>(variables_.size());
+  SearchProblem problem;
+  VectorXd start(n);
+  problem.lower = VectorXd::Zero(n);
+  problem.upper = VectorXd::Ones(n);
+  for (int i = 0; i < n; ++i) {
+    start[i] = variables_[i].start;
+    if (variables_[i].lower == variables_[i].upper) problem.upper[i] = 0;
+  }
+  problem.start = ToUnit(start);
+  problem.constraint_count = constraint_count;
+  problem.evaluate = [space = *this, evaluate = std::move(evaluate)](const VectorXd& u) {
+    return evaluate(space.FromUnit(u));
+  };
+  return problem;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,47 @@
+// The variables of a search as a user knows them, and the unit cube in which it takes place.
+#ifndef LACUNA_SEARCH_SEARCH_SPACE_H_
+#define LACUNA_SEARCH_SEARCH_SPACE_H_
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "search/search_problem.h"
+
+namespace lacuna {
+
+enum class SearchScale {
+  kLinear,
+  kLogarithmic,  // equal ratios are equal steps: for moduli and volumes over several decades
+};
+
+struct SearchVariable {
+  std::string name;
+  double lower = 0, upper = 1;               // in SI units; equal: the variable stays at `start`
+  double start = 0.5;                        // within the bounds
+  SearchScale scale = SearchScale::kLinear;  // logarithmic needs lower > 0
+};
+
+class SearchSpace {
+ public:
+  explicit SearchSpace(std::vector<SearchVariable> variables);
+
+  const std::vector<SearchVariable>& variables() const { return variables_; }
+
+  // Unit coordinates u in [0, 1] and back:
+  //   x = lower + u (upper - lower)     or     x = lower (upper / lower)^u.
+  // u = 0 and u = 1 give the bounds exactly, and no x lies outside of them.
+  Eigen::VectorXd ToUnit(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd FromUnit(const Eigen::VectorXd& u) const;
+
+  // The problem in unit coordinates of an objective of the variables.
+  SearchProblem ProblemOf(std::function<Evaluation(const Eigen::VectorXd& x)> evaluate,
+                          int constraint_count = 0) const;
+
+ private:
+  std::vector<SearchVariable> variables_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SEARCH_SEARCH_SPACE_H_
