@@ -115,7 +115,10 @@ GaussianProcessScales FitScales(const MatrixXd& points, const VectorXd& values,
   problem.evaluate = [&](const VectorXd& z) {
     Evaluation outcome;
     double penalty = 0;
-    for (int i = 0; i < n; ++i) penalty += 0.5 * std::pow(z[i] - std::log(0.5), 2);
+    for (int i = 0; i < n; ++i) {
+      const double off = z[i] - std::log(0.5);
+      penalty += 0.5 * off * off;
+    }
     outcome.value = penalty - GaussianProcess(points, values, unpack(z)).LogLikelihood();
     return outcome;
   };
