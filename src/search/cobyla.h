@@ -7,7 +7,13 @@
 // as steps need it.
 //
 // Bounds are kept at each evaluation: they are exact linear constraints of the trust-region
-// problem, and vertices and geometry steps turn to the other side or shorten at them.
+// problem, and vertices and geometry steps turn to the other side or shorten at them. A trial point
+// that fails is a poor step, and never enters the simplex.
+//
+// The path depends on the outcomes of the evaluations alone: one thread, sums in one written order
+// (ordered_algebra.h) and lengths that are equal by construction compared beyond their rounding, so
+// that it is the same to the last bit without optimisation and with any vector instructions. Each
+// loop has a cap.
 #ifndef LACUNA_SEARCH_COBYLA_H_
 #define LACUNA_SEARCH_COBYLA_H_
 
@@ -17,6 +23,8 @@ namespace lacuna {
 
 enum class CobylaMode {
   // The rules of 1994: one radius, halved whenever the geometry is acceptable and a step is poor.
+  // Other than there: the bounds; the trust-region problem is solved exactly; ties go to the vertex
+  // of less merit; and where the best vertex is infeasible in the end, one step more is tried.
   kPowell,
   // A trust radius that grows and shrinks with the success of the steps, above a resolution that
   // falls when neither steps nor geometry promise more, as in Powell's later methods; steps count

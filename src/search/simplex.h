@@ -56,8 +56,9 @@ class Simplex {
   Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
                                 const Evaluator& evaluator) const;
 
-  // The largest |c| range over |f| range of the vertices: an upper limit on a sensible penalty
-  // (Powell 1994, eq. 12 and 13); 0 where no constraint separates the vertices.
+  // The range of f over the vertices, divided by the least range of a constraint among those that
+  // are violated at one vertex or come near it: an upper limit on a sensible penalty (Powell 1994,
+  // eq. 12 and 13); 0 where there is no such constraint.
   double PenaltyLimit() const;
 
  private:
