@@ -249,6 +249,39 @@ TEST(Cobyla, KeepsToAnyBudget) {
   }
 }
 
+// The start is an isolated low, around which each simplex is soon known: after the first one on the
+// upper side with the least radius, one on the lower side follows.
+TEST(Cobyla, ARestartThatFindsNothingNewTurnsTheSimplex) {
+  const VectorXd start = VectorXd::Constant(2, 0.5);
+  CobylaOptions options = Options(CobylaMode::kModern);
+  options.restarts.max_restarts = 1000;
+  const SearchResult result = Checked(
+      InBox(start, 0, 1, [&](const VectorXd& x) { return x == start ? 0.0 : 1.0; }), options, 1000);
+  EXPECT_EQ(result.status, SearchStatus::kConverged);
+  int below = 0;
+  for (const SearchStep& step : result.trace) {
+    below += step.x[1] == 0.5 && std::abs(step.x[0] - 0.48) < 1e-12;  // rounding
+  }
+  EXPECT_EQ(below, 1);
+}
+
+// A step below a tenth of the resolution is not worth going on with, but it may be the best. Only
+// constraints make steps that short.
+TEST(Cobyla, ModernRulesTryTheLastShortStep) {
+  int tried = 0;
+  for (const KnownProblem& known : SmoothProblems()) {
+    if (known.problem.constraint_count == 0) continue;
+    const CobylaOptions options = Options(CobylaMode::kModern, known.radius);
+    const SearchResult result = Checked(known.problem, options, 2000);
+    double nearest = kInf;
+    for (size_t i = 0; i + 1 < result.trace.size(); ++i) {
+      nearest = std::min(nearest, (result.trace[i].x - result.trace.back().x).norm());
+    }
+    tried += nearest <= 0.1 * options.final_radius;
+  }
+  EXPECT_GT(tried, 3);
+}
+
 // The median of ten noises and two shares of failures; the box is 1 wide and the start is at 0.13.
 // Without restarts the same searches end five times as far from the minimum.
 TEST(Cobyla, RestartsLeadDownASteppedValley) {
