@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "core/progress.h"
 #include "study/comparison.h"
 
 namespace lacuna {
@@ -48,8 +49,10 @@ void PrintParagraph(const std::string& text) {
   fmt::print("{}\n", line);
 }
 
-int Compare(const std::string& run) {
-  const Comparison comparison = CompareRun(run);
+int Compare(const std::string& run, bool replay) {
+  Comparison comparison = CompareRun(run);
+  Progress progress;
+  if (replay) CompareMotion(run, &progress, &comparison);
   SaveComparison(comparison, run);
   PrintTable(comparison);
   for (const std::string& paragraph : ComparisonInWords(comparison)) {
@@ -64,8 +67,17 @@ int Compare(const std::string& run) {
       "\nWritten to {}/comparison\n"
       "  comparison.json   all of it, with the words\n"
       "  by_frame.csv, by_marker.csv   the error of each\n"
-      "  against.csv       the error against time, displacement, speed, distance from the grip\n",
+      "  against.csv       the error against time, displacement, speed, strain, height, distance\n",
       run);
+  for (size_t r = 0; r < comparison.recordings.size(); ++r) {
+    const ComparedRecording& recording = comparison.recordings[r];
+    if (recording.field_frames == 0) continue;
+    fmt::print("  {}/body.pvd, {}/markers.pvd   fields of {}, {} of {} frames\n", r, r,
+               recording.name, recording.field_frames, recording.frames.size());
+  }
+  if (std::any_of(comparison.recordings.begin(), comparison.recordings.end(),
+                  [](const auto& recording) { return recording.force && recording.force->usable; }))
+    fmt::print("  unexplained_force.csv   net force, torque, power and place over time\n");
   return 0;
 }
 
@@ -79,7 +91,12 @@ void AddCompare(CLI::App* app, std::function<int()>* command) {
       "docs/prediction.md says what the words mean.");
   auto run = std::make_shared<std::string>();
   compare->add_option("run", *run, "The run's folder, results/NAME")->required();
-  compare->callback([command, run] { *command = [run] { return Compare(*run); }; });
+  auto files_only = std::make_shared<bool>(false);
+  compare->add_flag("--files-only", *files_only,
+                    "Do not run the model again: no strain, height, fields, unexplained force");
+  compare->callback([command, run, files_only] {
+    *command = [run, files_only] { return Compare(*run, !*files_only); };
+  });
 }
 
 }  // namespace lacuna

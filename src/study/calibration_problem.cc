@@ -98,9 +98,35 @@ void CalibrationProblem::SetModel(const Eigen::VectorXd& values) const {
 
 Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
                                                const Eigen::VectorXd& values) const {
-  const Eigen::Index count = static_cast<Eigen::Index>(models_[recording].nuisances().size());
-  CHECK_GE(first_nuisance_[recording], 0);
-  return values.segment(first_nuisance_[recording], count);
+  const RecordingModel& model = models_[recording];
+  if (first_nuisance_[recording] >= 0)
+    return values.segment(first_nuisance_[recording],
+                          static_cast<Eigen::Index>(model.nuisances().size()));
+  const PredictedRecording& item = model.item();
+  std::vector<CalibratedParameter> own;
+  std::vector<MisfitDirection> directions;
+  for (const auto& entry : model.nuisances()) {
+    own.push_back(entry.prior);
+    directions.push_back(entry.direction);
+  }
+  const std::vector<double>& times = item.recording.times;
+  const double start = item.StartTime();
+  const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
+  std::vector<int> beginning = item.frames;
+  std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
+  const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
+    const Misfit misfit =
+        model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
+    Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
+    if (!prediction.usable) return prediction;
+    prediction.residual = Whitened(misfit.residual, misfit.observed, model.MarkerCount(), noise_,
+                                   study_.place_deviation);
+    if (with_jacobian)
+      prediction.jacobian =
+          Whitened(misfit.by, misfit.observed, model.MarkerCount(), noise_, study_.place_deviation);
+    return prediction;
+  });
+  return fitted.parameters;
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
@@ -262,38 +288,9 @@ std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& 
     const RecordingModel& model = models_[r];
     const PredictedRecording& item = model.item();
     const int markers = model.MarkerCount();
-    Eigen::VectorXd nuisance;
-    if (first_nuisance_[r] >= 0) {
-      nuisance = NuisanceOf(r, values);
-    } else {
-      std::vector<CalibratedParameter> own;
-      std::vector<MisfitDirection> directions;
-      for (const auto& entry : model.nuisances()) {
-        own.push_back(entry.prior);
-        directions.push_back(entry.direction);
-      }
-      const std::vector<double>& times = item.recording.times;
-      const double start = item.StartTime();
-      const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
-      std::vector<int> beginning = item.frames;
-      std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
-      const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
-        const Misfit misfit = model.Predict(
-            beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
-        Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
-        if (!prediction.usable) return prediction;
-        prediction.residual =
-            Whitened(misfit.residual, misfit.observed, markers, noise_, study_.place_deviation);
-        if (with_jacobian)
-          prediction.jacobian =
-              Whitened(misfit.by, misfit.observed, markers, noise_, study_.place_deviation);
-        return prediction;
-      });
-      nuisance = fitted.parameters;
-    }
     RecordingMisfit recording;
     recording.name = item.name;
-    recording.misfit = model.Predict(item.frames, nuisance, {});
+    recording.misfit = model.Predict(item.frames, NuisanceOf(r, values), {});
     const double release = item.StartTime();
     recording.place_offset.setZero(3, markers);
     Eigen::VectorXd seen = Eigen::VectorXd::Zero(markers);

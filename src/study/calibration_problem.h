@@ -65,7 +65,8 @@ class CalibrationProblem {
   const PredictionStudy& study() const { return study_; }
   const std::vector<RecordingModel>& models() const { return models_; }
   const std::shared_ptr<const Body>& body() const { return body_; }
-  // Places of recording r's nuisances among the parameters.
+  // Recording r's nuisances: among the parameters where it is fitted; else found from its first
+  // tenth, the model staying as `values` have set it (SetModel).
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
 
   // Gives the study's effects, which other problems may share and have changed, these values.
@@ -86,8 +87,7 @@ class CalibrationProblem {
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
                   const CalibrationOptions& options = {}) const;
 
-  // All frames of every recording. The nuisances of one that is not fitted are found from its first
-  // tenth, the model staying as it is.
+  // All frames of every recording.
   std::vector<RecordingMisfit> Misfits(const Eigen::VectorXd& values) const;
 
  private:

@@ -6,18 +6,23 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/residual_statistics.h"
 #include "analysis/whiteness.h"
+#include "core/progress.h"
+#include "study/unexplained_force.h"
 
 namespace lacuna {
 
 inline constexpr double kBeyondNoise = 1.5;  // an error this many times that of noise is none
 
 // The error against one quantity: of frames, rms over their markers both, against time,
-// displacement and speed; of markers, rms over the frames, against their distance from the grip.
+// displacement and speed, and, where the model was run again, strain, its rate (these rms over the
+// markers) and height (their mean); of markers, rms over the frames, against their distance from
+// the grip.
 struct ErrorAgainst {
   std::string quantity;  // with its unit: "speed_m_per_s"
   std::vector<ResidualBin> bins;
@@ -64,6 +69,10 @@ struct ComparedRecording {
   double rest_deviation = kUnknown;  // m, the median of the spans'
   double floor = kUnknown;           // m: the larger of the two
   std::vector<ComparedPart> parts;   // fitted first; one where nothing was held out
+  // Where the model was run again (CompareMotion).
+  std::optional<UnexplainedForce> force;
+  bool height_by_gravity = false;  // else z
+  int field_frames = 0;            // written as VTU and VTP
 };
 
 // Two recordings of the same rate, as they were measured.
@@ -82,11 +91,18 @@ struct Comparison {
 // Throws InputError when the folder is no finished run of `lacuna fit`, or its files are damaged.
 Comparison CompareRun(const std::filesystem::path& run);
 
+// Runs the fitted model again: adds the error against strain, strain rate and height, and the
+// unexplained force, and writes fields as VTU and VTP to <run>/comparison/<number of the
+// recording>. Where the run's experiment or recordings are not as they were, a note says so
+// instead. Throws InputError when files cannot be written, and Interrupted.
+void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison);
+
 // What it says, one paragraph of sentences a recording and part.
 std::vector<std::string> ComparisonInWords(const Comparison& comparison);
 
-// <run>/comparison/: comparison.json (written last), by_frame.csv, by_marker.csv, against.csv; each
-// whole or not there. Throws InputError when they cannot be written.
+// <run>/comparison/: comparison.json (written last), by_frame.csv, by_marker.csv, against.csv,
+// unexplained_force.csv where there is one; each whole or not there. Throws InputError when they
+// cannot be written.
 void SaveComparison(const Comparison& comparison, const std::filesystem::path& run);
 
 }  // namespace lacuna

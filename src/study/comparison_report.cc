@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "study/comparison.h"
+#include "study/unexplained_force_report.h"
 
 namespace lacuna {
 namespace {
@@ -24,21 +25,6 @@ std::string Millimetres(double length) {
 
 std::string Chance(double p_value) {
   return p_value <= 0.001 ? "p ≤ 0.001" : fmt::format("p = {:.2g}", p_value);
-}
-
-// "mostly −z", or the two axes that make up the direction.
-std::string DirectionInWords(const Eigen::Vector3d& vector) {
-  const Eigen::Vector3d unit = vector.normalized();
-  std::vector<int> axes{0, 1, 2};
-  std::sort(axes.begin(), axes.end(),
-            [&](int a, int b) { return std::abs(unit[a]) > std::abs(unit[b]); });
-  const auto name = [&](int axis) {
-    return fmt::format("{}{}", unit[axis] < 0 ? "−" : "+", "xyz"[axis]);
-  };
-  std::string text = name(axes[0]);
-  // More than 30 degrees off the axis: name the second too.
-  if (std::abs(unit[axes[0]]) < 0.866) text += " and " + name(axes[1]);
-  return text;
 }
 
 std::string WorstPlaceInWords(const ComparedRecording& recording, const ComparedPart& part) {
@@ -100,6 +86,9 @@ std::string TrendInWords(const ErrorAgainst& against) {
       {"time_s", {"time", "s", 1}},
       {"displacement_m", {"displacement", "mm", 1e3}},
       {"speed_m_per_s", {"speed", "mm/s", 1e3}},
+      {"strain", {"strain", "%", 100}},
+      {"strain_rate_per_s", {"strain rate", "%/s", 100}},
+      {"height_m", {"height", "mm", 1e3}},
       {"grip_distance_m", {"distance from the grip", "mm", 1e3}}};
   const Wording& wording = wordings.at(against.quantity);
   const auto at = [&](const ResidualBin& bin) {
@@ -128,7 +117,7 @@ std::string TrendsInWords(const ComparedPart& part) {
     }
   }
   return (in_motion != nullptr ? TrendInWords(*in_motion)
-                               : " It goes clearly with neither time, displacement nor speed.") +
+                               : " It goes clearly with nothing in the motion.") +
          (along != nullptr ? TrendInWords(*along) : "");
 }
 
@@ -224,6 +213,11 @@ json ToJson(const Comparison& comparison) {
     for (const ComparedPart& part : recording.parts) parts.push_back(ToJson(recording, part));
     json distances = nullptr;
     if (recording.grip_distance.size() > 0) distances = Numbers(recording.grip_distance);
+    json force = nullptr, height = nullptr;
+    if (recording.force) {
+      force = ToJson(*recording.force);
+      height = recording.height_by_gravity ? "against gravity" : "z";
+    }
     recordings.push_back({{"name", recording.name},
                           {"markers", recording.markers},
                           {"grip_distance_m", distances},
@@ -231,7 +225,10 @@ json ToJson(const Comparison& comparison) {
                           {"white_noise_m", Number(recording.white_noise)},
                           {"rest_deviation_m", Number(recording.rest_deviation)},
                           {"rests", rests},
-                          {"parts", parts}});
+                          {"parts", parts},
+                          {"height_along", height},
+                          {"field_frames", recording.field_frames},
+                          {"unexplained_force", force}});
   }
   json pairs = json::array();
   for (const ComparedPair& pair : comparison.pairs)
@@ -334,6 +331,7 @@ std::vector<std::string> ComparisonInWords(const Comparison& comparison) {
                            Millimetres(comparison.noise), ratio);
     }
     sentences.push_back(floor);
+    if (recording.force) sentences.push_back(ForceInWords(*recording.force, recording.name));
   }
   for (const ComparedPair& pair : comparison.pairs) {
     sentences.push_back(fmt::format(
@@ -352,6 +350,17 @@ void SaveComparison(const Comparison& comparison, const std::filesystem::path& r
   WriteFileAtomically(folder / "by_frame.csv", ByFrame(comparison));
   WriteFileAtomically(folder / "by_marker.csv", ByMarker(comparison));
   WriteFileAtomically(folder / "against.csv", Against(comparison));
+  std::string forces;
+  for (size_t r = 0; r < comparison.recordings.size(); ++r) {
+    const std::optional<UnexplainedForce>& force = comparison.recordings[r].force;
+    if (force && force->usable) forces += ForceTableRows(*force, r);
+  }
+  const std::filesystem::path force_file = folder / "unexplained_force.csv";
+  if (forces.empty()) {
+    std::filesystem::remove(force_file);  // of an earlier comparison
+  } else {
+    WriteFileAtomically(force_file, ForceTableHeader() + forces);
+  }
   WriteFileAtomically(folder / "comparison.json", ToJson(comparison).dump(2) + "\n");
 }
 

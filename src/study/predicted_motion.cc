@@ -14,17 +14,6 @@
 namespace lacuna {
 namespace {
 
-// Σ_a weight_a · x_a for each marker: rows of points from rows of nodes.
-Eigen::MatrixXd AtMarkers(const Embedding& places, const TetMesh& mesh,
-                          const Eigen::MatrixXd& nodal) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3 * places.tet.size(), nodal.cols());
-  for (Eigen::Index m = 0; m < places.tet.size(); ++m)
-    for (Eigen::Index a = 0; a < places.weight.rows(); ++a)
-      rows.middleRows<3>(3 * m) +=
-          places.weight(a, m) * nodal.middleRows<3>(3 * mesh.tets(a, places.tet[m]));
-  return rows;
-}
-
 void MoveGripsWithMarkers(const Recording& recording, const std::vector<int>& frames,
                           const TetMesh& mesh, GripTracks* grips) {
   for (const int frame : frames)
@@ -85,24 +74,33 @@ std::vector<int> RecordingModel::FittedFrames() const {
   return frames;
 }
 
-Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
-                               const std::vector<MisfitDirection>& directions) const {
+PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const {
   CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
-  const Body& body = *model_.body;
-  const int markers = MarkerCount();
   PredictionOptions options;
+  options.start_time = item_.StartTime();
   options.time_step = study_.time_step;
   options.step.scheme = study_.scheme;
-  options.held_force = Eigen::VectorXd::Zero(3 * body.NodeCount());
-  double late = 0;
+  options.held_force = Eigen::VectorXd::Zero(3 * model_.body->NodeCount());
   for (size_t k = 0; k < nuisances_.size(); ++k) {
-    const MisfitDirection& direction = nuisances_[k].direction;
-    if (direction.is_clock) late += nuisance[static_cast<Eigen::Index>(k)];
-    if (direction.perturbation.held_force.size() > 0)
-      options.held_force +=
-          nuisance[static_cast<Eigen::Index>(k)] * direction.perturbation.held_force;
+    const Eigen::VectorXd& force = nuisances_[k].direction.perturbation.held_force;
+    if (force.size() > 0) options.held_force += nuisance[static_cast<Eigen::Index>(k)] * force;
   }
-  options.start_time = item_.StartTime();
+  return options;
+}
+
+double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
+  double late = 0;
+  for (size_t k = 0; k < nuisances_.size(); ++k)
+    if (nuisances_[k].direction.is_clock) late += nuisance[static_cast<Eigen::Index>(k)];
+  return late;
+}
+
+Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
+                               const std::vector<MisfitDirection>& directions) const {
+  const Body& body = *model_.body;
+  const int markers = MarkerCount();
+  const PredictionOptions options = Options(nuisance);
+  const double late = Delay(nuisance);
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
 
@@ -150,6 +148,16 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   misfit.residual.conservativeResize(reached);
   misfit.by.conservativeResize(reached, Eigen::NoChange);
   return misfit;
+}
+
+Eigen::MatrixXd AtMarkers(const Embedding& places, const TetMesh& mesh,
+                          const Eigen::MatrixXd& nodal) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3 * places.tet.size(), nodal.cols());
+  for (Eigen::Index m = 0; m < places.tet.size(); ++m)
+    for (Eigen::Index a = 0; a < places.weight.rows(); ++a)
+      rows.middleRows<3>(3 * m) +=
+          places.weight(a, m) * nodal.middleRows<3>(3 * mesh.tets(a, places.tet[m]));
+  return rows;
 }
 
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& observed,

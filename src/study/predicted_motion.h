@@ -56,6 +56,11 @@ class RecordingModel {
 
   std::vector<int> FittedFrames() const;
 
+  const Embedding& places() const { return places_; }  // of the markers, in the body's mesh
+  // How the model is run with these nuisances, and by how much, s, the recording's clock is late.
+  PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
+  double Delay(const Eigen::VectorXd& nuisance) const;
+
  private:
   const PredictionStudy& study_;
   const PredictedRecording& item_;
@@ -63,6 +68,10 @@ class RecordingModel {
   Embedding places_;
   std::vector<Nuisance> nuisances_;
 };
+
+// Rows of points (x, y, z each) from rows of nodes: Σ_a weight_a · x_a.
+Eigen::MatrixXd AtMarkers(const Embedding& places, const TetMesh& mesh,
+                          const Eigen::MatrixXd& nodal);
 
 // Rows divided by the noise, and what is common to all frames of a marker's coordinate weighed
 // down: the covariance is σ² I + s² 1 1ᵀ for each, as the marker's place on the object is known to

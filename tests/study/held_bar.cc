@@ -27,6 +27,10 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
       MakeEffect("neo_hookean", {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}}),
       MakeEffect("gravity", {{"acceleration_z", -9.80665}}),
       MakeEffect("mass_damping", {{"alpha", truth.alpha}})};
+  if (truth.body_force) {
+    model.effects.push_back(std::make_shared<PrescribedForce>(
+        model.body->node_mass / model.body->node_mass.sum(), truth.body_force));
+  }
   model.grips = {{NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() < 0.002; }), {}}};
   const Eigen::VectorXd share = BoundaryShares(
       *model.body, NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.078; }));

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct HeldBarTruth {
   Eigen::Vector3d hold_force{0, 0.05, 0.02};  // N
   double clock = 0.003;                       // s, by which the recording runs late
   double noise = 5e-5;                        // m
+  // N, over time: a net force spread over the bar by mass, that a model may lack.
+  std::function<Eigen::Vector3d(double time)> body_force = {};
 };
 inline constexpr double kRelease = 0.0437;   // s
 inline constexpr double kFitUntil = 0.1501;  // s

@@ -1,0 +1,203 @@
+#include "fem/reduced_response.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <optional>
+
+#include "fem/cholmod_factor.h"
+#include "fem/elimination_order.h"
+
+namespace lacuna {
+namespace {
+
+// Of the largest eigenvalue of the shapes' Gram matrix: below it a shape is rounding of others.
+constexpr double kDependent = 1e-11;
+
+Eigen::MatrixXd Massed(const Body& body, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd product = columns;
+  for (Eigen::Index i = 0; i < body.node_mass.size(); ++i)
+    product.middleRows<3>(3 * i) *= body.node_mass[i];
+  return product;
+}
+
+Eigen::MatrixXd Product(const BlockMatrix& matrix, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd product(columns.rows(), columns.cols());
+  Eigen::VectorXd image;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    matrix.Multiply(columns.col(k), &image);
+    product.col(k) = image;
+  }
+  return product;
+}
+
+class TangentsAlong {
+ public:
+  TangentsAlong(const Model& model, double time_step)
+      : model_(model),
+        time_step_(time_step),
+        order_(NestedDissection(*model.body->pattern, GrippedNodes(model))),
+        factor_(*model.body->pattern, order_),
+        matrix_(model.body->pattern) {}
+
+  // −(weighted ∂f) at the state, times the columns.
+  Eigen::MatrixXd Apply(const TrajectoryState& state, const TangentWeights& weights,
+                        const Eigen::MatrixXd& columns) {
+    Assemble(state, weights, false);
+    return Product(matrix_, columns);
+  }
+
+  // K⁻¹ right on the free nodes; where K is not definite, with its stand-in. Nothing where that
+  // fails too.
+  std::optional<Eigen::MatrixXd> Compliance(const TrajectoryState& state,
+                                            const Eigen::MatrixXd& right, const Body& body) {
+    bool factorised = false;
+    for (const bool convexify : {false, true}) {
+      Assemble(state, {.position = 1}, convexify);
+      if ((factorised = factor_.Factorise(matrix_))) break;
+    }
+    if (!factorised) return std::nullopt;
+    const Eigen::MatrixXd first = SolveFree(right);
+    Eigen::MatrixXd both(right.rows(), 2 * right.cols());
+    both << first, SolveFree(Massed(body, first));
+    return both;
+  }
+
+ private:
+  void Assemble(const TrajectoryState& state, const TangentWeights& weights, bool convexify) {
+    const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(state.position.size());
+    const TangentWeights negative{-weights.position, -weights.velocity, -weights.acceleration};
+    matrix_.SetZero();
+    for (size_t j = 0; j < model_.effects.size(); ++j)
+      model_.effects[j]->AddTangents({*model_.body, state.position, state.velocity, no_acceleration,
+                                      state.time, time_step_, state.effect_state[j]},
+                                     negative, convexify, &matrix_);
+  }
+
+  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {
+    Eigen::MatrixXd reduced(3 * order_.FreeNodes(), right.cols()), solution;
+    for (int i = 0; i < order_.FreeNodes(); ++i)
+      reduced.middleRows<3>(3 * i) = right.middleRows<3>(3 * order_.node[i]);
+    factor_.Solve(reduced, &solution);
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+    for (int i = 0; i < order_.FreeNodes(); ++i)
+      all.middleRows<3>(3 * order_.node[i]) = solution.middleRows<3>(3 * i);
+    return all;
+  }
+
+  const Model& model_;
+  double time_step_;
+  EliminationOrder order_;
+  CholmodFactor factor_;
+  BlockMatrix matrix_;
+};
+
+// The shapes that matter most of the columns, each column counting alike; orthonormal in M.
+Eigen::MatrixXd PrincipalShapes(const Body& body, Eigen::MatrixXd columns, int most) {
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const double norm = std::sqrt(columns.col(k).dot(Massed(body, columns.col(k)).col(0)));
+    if (norm > 0) columns.col(k) /= norm;
+  }
+  const Eigen::MatrixXd gram = columns.transpose() * Massed(body, columns);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const Eigen::Index count = gram.rows();
+  Eigen::Index kept = 0;
+  while (kept < std::min<Eigen::Index>(count, most) &&
+         eigen.eigenvalues()[count - 1 - kept] > kDependent * eigen.eigenvalues()[count - 1])
+    ++kept;
+  return columns * eigen.eigenvectors().rightCols(kept) *
+         eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+ReducedResponse::ReducedResponse(const Model& model, const std::vector<TrajectoryState>& states,
+                                 const Eigen::MatrixXd& shapes,
+                                 const ReducedResponseOptions& options)
+    : options_(options) {
+  CHECK(!states.empty());
+  CHECK(options.scheme != TimeScheme::kQuasiStatic) << "a response in time needs inertia";
+  const Body& body = *model.body;
+  TangentsAlong along(model, options.time_step);
+
+  std::vector<Eigen::MatrixXd> answers;
+  const size_t wanted = std::min<size_t>(options.basis_states, states.size());
+  for (size_t k = 0; k < wanted; ++k) {
+    const size_t at = wanted > 1 ? k * (states.size() - 1) / (wanted - 1) : 0;
+    if (auto answer = along.Compliance(states[at], shapes, body))
+      answers.push_back(std::move(*answer));
+  }
+  if (answers.empty()) {
+    message_ = "the model's stiffness is nowhere definite";
+    return;
+  }
+  Eigen::MatrixXd all(shapes.rows(), 0);
+  for (const Eigen::MatrixXd& answer : answers) {
+    all.conservativeResize(Eigen::NoChange, all.cols() + answer.cols());
+    all.rightCols(answer.cols()) = answer;
+  }
+  basis_ = PrincipalShapes(body, std::move(all), options.most_shapes);
+  load_ = basis_.transpose() * shapes;
+  const Eigen::MatrixXd mass = basis_.transpose() * Massed(body, basis_);
+  for (const TrajectoryState& state : states) {
+    const auto reduced = [&](const TangentWeights& weights) -> Eigen::MatrixXd {
+      return basis_.transpose() * along.Apply(state, weights, basis_);
+    };
+    tangents_.push_back({state.time, mass + reduced({.acceleration = 1}), reduced({.velocity = 1}),
+                         reduced({.position = 1})});
+  }
+}
+
+ReducedResponse::Tangents ReducedResponse::At(double time) const {
+  const auto after = std::find_if(tangents_.begin(), tangents_.end(),
+                                  [&](const Tangents& tangents) { return tangents.time >= time; });
+  if (after == tangents_.end()) return tangents_.back();
+  if (after == tangents_.begin()) return tangents_.front();
+  const Tangents& before = *(after - 1);
+  const double t = (time - before.time) / (after->time - before.time);
+  return {time, (1 - t) * before.mass + t * after->mass,
+          (1 - t) * before.damping + t * after->damping,
+          (1 - t) * before.stiffness + t * after->stiffness};
+}
+
+void ReducedResponse::Respond(
+    const Eigen::MatrixXd& held, const ForceHistories& histories, const std::vector<double>& times,
+    const std::function<void(int index, const Eigen::MatrixXd& position,
+                             const Eigen::MatrixXd& velocity)>& visit) const {
+  CHECK(IsUsable()) << message_;
+  const double h = options_.time_step;
+  double time = tangents_.front().time;
+  Eigen::MatrixXd q = tangents_.front().stiffness.partialPivLu().solve(load_ * held);
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(q.rows(), q.cols());
+  Eigen::MatrixXd q_before, w_before;
+  size_t next = 0;
+  for (; next < times.size() && times[next] <= time; ++next) visit(static_cast<int>(next), q, w);
+  while (next < times.size()) {
+    const bool two_steps = options_.scheme == TimeScheme::kBdf2 && q_before.size() > 0;
+    const double rate = two_steps ? 1.5 / h : 1 / h;
+    Eigen::MatrixXd q_history = q, w_history = w;
+    if (two_steps) {
+      q_history = (4 * q - q_before) / 3;
+      w_history = (4 * w - w_before) / 3;
+    }
+    time += h;
+    const Tangents at = At(time);
+    const Eigen::MatrixXd right = load_ * histories(time) +
+                                  at.mass * (rate * rate * q_history + rate * w_history) +
+                                  at.damping * (rate * q_history);
+    q_before = std::move(q);
+    w_before = std::move(w);
+    q = (rate * rate * at.mass + rate * at.damping + at.stiffness).partialPivLu().solve(right);
+    w = rate * (q - q_history);
+    for (; next < times.size() && times[next] <= time; ++next) {
+      const double t = 1 - (time - times[next]) / h, s = 1 - t;
+      visit(static_cast<int>(next),
+            (1 + 2 * t) * s * s * q_before + t * t * (3 - 2 * t) * q +
+                h * (t * s * s * w_before - t * t * s * w),
+            6 * t * s / h * (q - q_before) + s * (1 - 3 * t) * w_before + t * (3 * t - 2) * w);
+    }
+  }
+}
+
+}  // namespace lacuna

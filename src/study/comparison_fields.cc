@@ -1,0 +1,82 @@
+#include "study/comparison_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "fem/element_strain.h"
+#include "report/vtk_files.h"
+
+namespace lacuna {
+namespace {
+
+void WriteBody(const Body& body, const TrajectoryState& state, const UnexplainedForce* force,
+               double recorded_time, const std::filesystem::path& file) {
+  TetMesh deformed = body.mesh;
+  deformed.nodes = state.position.reshaped(3, body.NodeCount());
+  Eigen::RowVectorXd strain(body.ElementCount());
+  for (int element = 0; element < body.ElementCount(); ++element)
+    strain[element] =
+        LargestPrincipal(MeanStrain(body, element, state.position, state.velocity).strain);
+  FieldSet fields{{{"displacement_m", deformed.nodes - body.mesh.nodes},
+                   {"velocity_m_per_s", state.velocity.reshaped(3, body.NodeCount())}},
+                  {{"strain", strain}}};
+  if (force != nullptr)
+    fields.nodes.push_back(
+        {"unexplained_force_N_per_m3", force->field.DensityAt(recorded_time - force->delay)});
+  WriteVtu(file, deformed, fields);
+}
+
+void WriteMarkers(const ComparedRecording& recording, int frame, double noise,
+                  const std::filesystem::path& file) {
+  std::vector<int> seen;
+  for (int m = 0; 3 * m < recording.measured.rows(); ++m)
+    if (recording.difference.col(frame).segment<3>(3 * m).allFinite()) seen.push_back(m);
+  const Eigen::Index count = static_cast<Eigen::Index>(seen.size());
+  PointCloud cloud;
+  cloud.points.resize(3, count);
+  Eigen::MatrixXd difference(3, count), marker(1, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    cloud.points.col(k) = recording.measured.col(frame).segment<3>(3 * seen[k]);
+    difference.col(k) = recording.difference.col(frame).segment<3>(3 * seen[k]);
+    marker(0, k) = seen[k];
+  }
+  WriteVtp(file, cloud,
+           {{"predicted_m", cloud.points + difference},
+            {"difference_m", difference},
+            {"difference_in_noise", difference.colwise().norm() / (std::sqrt(3.0) * noise)},
+            {"fitted", Eigen::MatrixXd::Constant(1, count, recording.fitted[frame] != 0)},
+            {"marker", marker}});
+}
+
+}  // namespace
+
+int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& recording,
+                          const ReplayedMotion& motion, double noise,
+                          const std::filesystem::path& folder) {
+  MakeFolder(folder / "fields");
+  const UnexplainedForce* force =
+      recording.force && recording.force->usable ? &*recording.force : nullptr;
+  const auto file = [&](const char* what, int frame, const char* extension) {
+    return folder / "fields" / fmt::format("{}_{:05}.{}", what, recording.frames[frame], extension);
+  };
+  const int states = static_cast<int>(motion.states.size());
+  const int every = (states + kMostFieldFrames - 1) / kMostFieldFrames;
+  std::vector<TimedFile> bodies, markers;
+  for (int k = (states - 1) % every; k < states; k += every) {
+    const int frame = motion.state_frame[k];
+    if (frame < 0) continue;
+    const double time = recording.times[frame];
+    WriteBody(*model.model().body, motion.states[k], force, time, file("body", frame, "vtu"));
+    bodies.push_back({time, file("body", frame, "vtu")});
+    WriteMarkers(recording, frame, noise, file("markers", frame, "vtp"));
+    markers.push_back({time, file("markers", frame, "vtp")});
+  }
+  WritePvd(folder / "body.pvd", bodies);
+  WritePvd(folder / "markers.pvd", markers);
+  return static_cast<int>(bodies.size());
+}
+
+}  // namespace lacuna

@@ -1,0 +1,93 @@
+#include "fem/reduced_response.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "effects/catalogue.h"
+#include "fem/prediction.h"
+#include "fem/prescribed_force.h"
+#include "support/box_mesh.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kStart = 0.1, kStep = 0.005;  // s
+
+// A damped bar in its weight, held aside and let go: large deflections.
+struct SwingingBar {
+  Model model;
+  PredictionOptions options;
+  Eigen::VectorXd pull, share;
+  std::vector<double> times;
+
+  SwingingBar() {
+    model.body = std::make_shared<const Body>(
+        MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {4, 1, 1}, 2), 1000));
+    const TetMesh& mesh = model.body->mesh;
+    model.effects = {MakeEffect("neo_hookean", {{"young_modulus", 5e4}, {"poisson_ratio", 0.4}}),
+                     MakeEffect("gravity", {{"acceleration_z", -9.80665}}),
+                     MakeEffect("mass_damping", {{"alpha", 3.0}})};
+    model.grips = {
+        {NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() < 0.001; }), {}}};
+    const Eigen::VectorXi tip =
+        NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.079; });
+    pull.setZero(3 * model.body->NodeCount());
+    for (const int node : tip) pull.segment<3>(3 * node) << 0, 0.01, 0.005;
+    share = model.body->node_mass / model.body->node_mass.sum();
+    options.start_time = kStart;
+    options.time_step = kStep;
+    options.held_force = pull;
+    options.step.relative_tolerance = 1e-12;
+    for (int k = 0; k <= 60; ++k) times.push_back(kStart + kStep * k);
+  }
+};
+
+double Push(double time) { return 0.3 + std::sin(20 * (time - kStart)); }
+
+TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
+  const SwingingBar bar;
+  const int n = bar.model.body->NodeCount();
+  const auto push = std::make_shared<PrescribedForce>(
+      bar.share, [](double time) { return Eigen::Vector3d(0, Push(time), 0); });
+  std::vector<TrajectoryState> states;
+  std::vector<Eigen::MatrixXd> exact;
+  const PredictionSummary summary =
+      Predict(bar.model, bar.options, bar.times, {{.effect = push}, {.held_force = bar.pull}},
+              [&](int, const PredictedState& state) {
+                states.push_back({state.time,
+                                  state.position,
+                                  state.velocity,
+                                  {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
+                exact.push_back(state.position_by);
+              });
+  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * n, 2);
+  for (int i = 0; i < n; ++i) shapes(3 * i + 1, 0) = bar.share[i];
+  shapes.col(1) = bar.pull;
+  const ReducedResponse response(bar.model, states, shapes, {.time_step = kStep});
+  ASSERT_TRUE(response.IsUsable()) << response.message();
+  EXPECT_LE(response.basis().cols(), 24);  // 2 moments of 2 shapes at 6 states
+  const auto history = [](double time) -> Eigen::MatrixXd {
+    return Eigen::Vector2d(Push(time), 0) * Eigen::RowVector2d(1, 0);
+  };
+  Eigen::MatrixXd held = history(kStart);
+  held(1, 1) = 1;
+  double difference[2] = {0, 0}, size[2] = {0, 0};
+  response.Respond(held, history, bar.times,
+                   [&](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
+                     const Eigen::MatrixXd moved = response.basis() * q;
+                     for (int k = 0; k < 2; ++k) {
+                       difference[k] += (moved - exact[index]).col(k).squaredNorm();
+                       size[k] += exact[index].col(k).squaredNorm();
+                     }
+                   });
+  // Of what two moments at six states leave out, and of linear interpolation of the tangents. The
+  // release is abrupt, and rings in shapes that the basis does not have.
+  EXPECT_LT(std::sqrt(difference[0] / size[0]), 0.01);
+  EXPECT_LT(std::sqrt(difference[1] / size[1]), 0.03);
+}
+
+}  // namespace
+}  // namespace lacuna
