@@ -1,7 +1,7 @@
 // Many amplitudes at once from a residual, with a prior whose width the data chooses.
 //
 // With the whitened residual r of a fitted model, what its fit can still do taken away
-// (effect_score.h), and its derivative S by amplitudes a of one kind and unit,
+// (fitted_model.h), and its derivative S by amplitudes a of one kind and unit,
 //   r + S a ~ N(0, v C),   a ~ N(0, s² L Lᵀ),   v ≥ 1,
 // the width s and, of several given, the shape L are taken from the marginal likelihood (type II
 // maximum likelihood: MacKay, Neural Computation 4, 1992), with v what they leave: a residual that
@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "analysis/effect_score.h"
+#include "analysis/fitted_model.h"
 
 namespace lacuna {
 
