@@ -29,16 +29,19 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout
     Eigen::Index last = -1;
     for (Eigen::Index f = 0; f < frame_count; ++f) {
       const Eigen::Index row = f * layout.series + s;
-      if (!layout.observed[row] || (!frames.empty() && !frames[f])) continue;
+      if (layout.count[row] == 0 || (!frames.empty() && !frames[f])) continue;
       double memory = 0;
       if (last >= 0 && noise.correlation_time > 0)
         memory = std::exp(-(layout.times[f] - layout.times[last]) / noise.correlation_time);
       const double scale = 1 / std::sqrt(1 - memory * memory);
-      white.row(row) = scale / noise.deviation * rows.row(row);
-      one[f] = scale;
+      const double weight = scale * std::sqrt(layout.count[row]);
+      white.row(row) = weight / noise.deviation * rows.row(row);
+      one[f] = weight;
       if (memory > 0) {
-        white.row(row) -= scale * memory / noise.deviation * rows.row(last * layout.series + s);
-        one[f] -= scale * memory;
+        const Eigen::Index before = last * layout.series + s;
+        const double weight_before = scale * memory * std::sqrt(layout.count[before]);
+        white.row(row) -= weight_before / noise.deviation * rows.row(before);
+        one[f] -= weight_before;
       }
       last = f;
     }
@@ -74,7 +77,7 @@ SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout&
   for (int s = 0; s < layout.series; ++s) {
     double mean = 0;
     int seen = 0;
-    const auto observed = [&](Eigen::Index f) { return layout.observed[f * layout.series + s]; };
+    const auto observed = [&](Eigen::Index f) { return layout.count[f * layout.series + s] > 0; };
     for (Eigen::Index f = 0; f < frames; ++f) {
       if (!observed(f)) continue;
       mean += residual[f * layout.series + s];

@@ -3,8 +3,8 @@
 // Of each series y (one coordinate of one marker, say) the noise is
 //   e ~ N(0, σ² R + s² 1 1ᵀ),   R_ij = exp(−|t_i − t_j|/τ):
 // correlated over a time τ (an Ornstein–Uhlenbeck process; 0: white) and with a part that is common
-// to all frames, as a marker's place on the object is known to s only. Rows of a recording: its
-// series in each frame, frames outermost.
+// to all frames, as a marker's place on the object is known to s only. A value that is the mean of
+// n measurements has σ/√n for σ. Rows of a recording: its series in each frame, frames outermost.
 #ifndef LACUNA_ANALYSIS_SERIES_NOISE_H_
 #define LACUNA_ANALYSIS_SERIES_NOISE_H_
 
@@ -15,8 +15,8 @@ namespace lacuna {
 
 struct SeriesLayout {
   int series = 0;
-  std::vector<double> times;   // s, ascending, of the frames
-  std::vector<char> observed;  // series × frames
+  std::vector<double> times;  // s, ascending, of the frames
+  std::vector<int> count;     // series × frames: n, 0 where nothing was observed
 
   Eigen::Index Rows() const {
     return static_cast<Eigen::Index>(series) * static_cast<Eigen::Index>(times.size());

@@ -24,7 +24,7 @@ int Fit(const std::string& file) {
   fmt::print(
       "\nThe run lies in {}\n"
       "  calibration/calibration.json   parameters with intervals, errors\n"
-      "  calibration/misfit.csv         each marker of each frame\n",
+      "  calibration/misfit.csv         each marker, or patch of a surface, of each frame\n",
       study.output.string());
   return record.usable ? 0 : 1;
 }

@@ -31,11 +31,21 @@ std::string Describe(const MisfitMeasure& measure) {
 
 void PrintCalibration(const CalibrationRecord& record) {
   PrintParameters(record);
-  fmt::print("\n  rms distance of predicted from measured markers; σ = {:.3f} mm of a coordinate\n",
-             1e3 * record.noise);
+  if (record.noise > 0)
+    fmt::print(
+        "\n  rms distance of predicted from measured markers; σ = {:.3f} mm of a coordinate\n",
+        1e3 * record.noise);
+  if (record.scan_noise > 0)
+    fmt::print(
+        "{}  rms distance of the predicted surface from scanned patches, along its normal;\n"
+        "  σ = {:.3f} mm of one point, less of a patch\n",
+        record.noise > 0 ? "" : "\n", 1e3 * record.scan_noise);
   for (const FittedRecording& recording : record.recordings) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));
+    if (recording.scan)
+      fmt::print("  {:14} {} patches, {:.0f} % of the scanned points compared\n", "",
+                 recording.scan->places.cols(), 100 * recording.scan->used);
   }
   for (const std::string& strain : record.strains) fmt::print("  strained: {}\n", strain);
 }

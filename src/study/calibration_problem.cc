@@ -8,14 +8,20 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "study/own_nuisance.h"
 
 namespace lacuna {
 namespace {
 
 // Share of the fitted time that is fitted first.
 constexpr double kShortHorizon = 0.25;
-// Share of the time of a recording that is only predicted, over which its own nuisances are found.
-constexpr double kNuisanceHorizon = 0.1;
+// Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
+// wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
+// its posterior deviation.
+constexpr int kIterationsOfRound = 4;
+constexpr double kSettled = 0.1;
+// Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
+constexpr double kFewestMatched = 0.5;
 
 std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters) {
   std::vector<MisfitDirection> directions;
@@ -37,26 +43,27 @@ Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
   return sum;
 }
 
-MisfitMeasure Measure(const RecordingMisfit& recording, int markers, bool fitted, double noise) {
-  MisfitMeasure measure;
-  double squares = 0;
-  for (size_t f = 0; f < recording.fitted.size(); ++f) {
-    if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
-    ++measure.frames;
-    for (int m = 0; m < markers; ++m) {
-      const Eigen::Index at = static_cast<Eigen::Index>(f) * markers + m;
-      if (!recording.misfit.observed[at]) continue;
-      const double distance =
-          (recording.misfit.residual.segment<3>(3 * at) - recording.place_offset.col(m)).norm();
-      squares += distance * distance;
-      measure.largest = std::max(measure.largest, distance);
-      ++measure.points;
-    }
+// Why the correspondences of a scan mean nothing; empty: they do.
+std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
+  const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
+  if (2 * lost <= misfit.frames.size()) return "";
+  return fmt::format(
+      "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
+      "surface: start nearer to the solution, or enlarge the reach",
+      lost, misfit.frames.size());
+}
+
+// Of any parameter, in parts of its posterior deviation.
+double LargestChange(const std::vector<CalibratedParameter>& parameters,
+                     const Calibration& calibration, const Eigen::VectorXd& from) {
+  double largest = 0;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    const double to = calibration.parameters[at];
+    const double change = parameters[k].log_scale ? std::log(to / from[at]) : to - from[at];
+    largest = std::max(largest, std::abs(change) / calibration.estimates[k].posterior_deviation);
   }
-  if (measure.points == 0) return measure;
-  measure.rms = std::sqrt(squares / measure.points);
-  measure.in_noise = measure.rms / (std::sqrt(3.0) * noise);
-  return measure;
+  return largest;
 }
 
 }  // namespace
@@ -64,24 +71,54 @@ MisfitMeasure Measure(const RecordingMisfit& recording, int markers, bool fitted
 CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
     : study_(study),
       body_(std::make_shared<const Body>(MakeBody(mesh, study.density))),
+      patches_(study.patches),
       noise_(study.noise) {
   for (const ModelParameter& parameter : study.fitted) parameters_.push_back(parameter.prior);
-  std::vector<double> noises;
+  const bool has_scans =
+      std::any_of(study.recordings.begin(), study.recordings.end(),
+                  [](const PredictedRecording& item) { return item.scans != nullptr; });
+  if (has_scans && patches_.Count() == 0)
+    patches_ = DivideSurface(body_->boundary.surface, study.scan.patches);
+  double of_markers = 0, of_scans = 0;
+  bool has_markers = false;
   for (const PredictedRecording& item : study.recordings) {
-    models_.emplace_back(study, item, mesh, body_);
+    models_.emplace_back(study, item, mesh, body_, patches_);
     first_nuisance_.push_back(item.fitted ? static_cast<Eigen::Index>(parameters_.size()) : -1);
     if (item.fitted)
       for (const auto& nuisance : models_.back().nuisances()) parameters_.push_back(nuisance.prior);
-    noises.push_back(EstimateMarkerNoise(item, models_.back().FittedFrames()));
+    has_markers = has_markers || item.scans == nullptr;
+    double& largest = item.scans != nullptr ? of_scans : of_markers;
+    largest = std::max(largest, EstimateRecordingNoise(item, models_.back().FittedFrames()));
   }
   for (CalibratedParameter& parameter : parameters_)
     if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
-  if (noise_ == 0) noise_ = *std::max_element(noises.begin(), noises.end());
-  if (!(noise_ > 0)) {
+  if (noise_ == 0 || !has_markers) noise_ = of_markers;
+  if (has_markers && !(noise_ > 0)) {
     throw InputError(
         fmt::format("{}: noise: cannot be estimated (the markers do not move at all); give it",
                     study.file.string()));
   }
+  if (!has_scans) return;
+  scan_noise_ = study.scan.noise > 0 ? study.scan.noise : of_scans;
+  if (!(scan_noise_ > 0)) {
+    throw InputError(fmt::format(
+        "{}: scan.noise: cannot be estimated (no scan is fitted, or its points lie on planes); "
+        "give it",
+        study.file.string()));
+  }
+}
+
+MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) const {
+  return model.item().scans != nullptr ? MeasurementErrors{scan_noise_, study_.scan.shape_deviation}
+                                       : MeasurementErrors{noise_, study_.place_deviation};
+}
+
+PredictionStudy CalibrationProblem::WithGivenNoise() const {
+  PredictionStudy given = study_;
+  given.noise = noise_;
+  given.scan.noise = scan_noise_;
+  given.patches = patches_;
+  return given;
 }
 
 Eigen::VectorXd CalibrationProblem::Start() const {
@@ -102,36 +139,19 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
   if (first_nuisance_[recording] >= 0)
     return values.segment(first_nuisance_[recording],
                           static_cast<Eigen::Index>(model.nuisances().size()));
-  const PredictedRecording& item = model.item();
-  std::vector<CalibratedParameter> own;
-  std::vector<MisfitDirection> directions;
-  for (const auto& entry : model.nuisances()) {
-    own.push_back(entry.prior);
-    directions.push_back(entry.direction);
-  }
-  const std::vector<double>& times = item.recording.times;
-  const double start = item.StartTime();
-  const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
-  std::vector<int> beginning = item.frames;
-  std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
-  const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
-    const Misfit misfit =
-        model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{});
-    Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
-    if (!prediction.usable) return prediction;
-    prediction.residual = Whitened(misfit.residual, misfit.observed, model.MarkerCount(), noise_,
-                                   study_.place_deviation);
-    if (with_jacobian)
-      prediction.jacobian =
-          Whitened(misfit.by, misfit.observed, model.MarkerCount(), noise_, study_.place_deviation);
-    return prediction;
-  });
-  return fitted.parameters;
+  return OwnNuisance(model, ErrorsOf(model));
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
                                        double horizon,
                                        const std::vector<MisfitDirection>& more) const {
+  Correspondences found;
+  return PredictWith(values, with_jacobian, horizon, more, &found);
+}
+
+Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool with_jacobian,
+                                           double horizon, const std::vector<MisfitDirection>& more,
+                                           Correspondences* correspondences) const {
   ThrowIfInterrupted();
   SetModel(values);
   Prediction all;
@@ -142,6 +162,8 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   std::vector<Eigen::VectorXd> residuals;
   std::vector<Eigen::MatrixXd> jacobians;
   Eigen::Index rows = 0;
+  const bool seek = correspondences->empty();
+  if (seek) correspondences->resize(models_.size());
   for (size_t r = 0; r < models_.size(); ++r) {
     const RecordingModel& model = models_[r];
     if (first_nuisance_[r] < 0) continue;
@@ -155,14 +177,17 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
       directions.insert(directions.end(), more.begin(), more.end());
       for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
     }
-    const Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions);
-    if (!misfit.summary.IsUsable()) {
+    Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions,
+                                  seek ? nullptr : &(*correspondences)[r]);
+    all.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
+    if (!all.message.empty()) {
       all.usable = false;
-      all.message = model.item().name + ": " + misfit.summary.message;
+      all.message = model.item().name + ": " + all.message;
       return all;
     }
+    if (seek) (*correspondences)[r] = std::move(misfit.observed);
     const auto whitened = [&](const Eigen::MatrixXd& what) {
-      return Whitened(what, misfit.observed, model.MarkerCount(), noise_, study_.place_deviation);
+      return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model));
     };
     residuals.emplace_back(whitened(misfit.residual));
     rows += misfit.residual.size();
@@ -186,9 +211,9 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   return all;
 }
 
-LinearisedMisfit CalibrationProblem::Linearise(
-    const Eigen::VectorXd& values, bool with_jacobian,
-    const std::vector<MisfitDirection>& directions) const {
+LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bool with_jacobian,
+                                               const std::vector<MisfitDirection>& directions,
+                                               const LinearisedMisfit* same) const {
   ThrowIfInterrupted();
   SetModel(values);
   LinearisedMisfit all;
@@ -207,7 +232,9 @@ LinearisedMisfit CalibrationProblem::Linearise(
       for (const auto& nuisance : model.nuisances()) wanted.push_back(nuisance.direction);
     }
     wanted.push_back({.perturbation = {}, .is_clock = true});
-    const Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted);
+    Misfit misfit =
+        model.Predict(item.frames, NuisanceOf(r, values), wanted,
+                      same != nullptr ? &same->parts[all.parts.size()].observed : nullptr);
     if (!misfit.summary.IsUsable()) {
       all.message = item.name + ": " + misfit.summary.message;
       return all;
@@ -215,13 +242,16 @@ LinearisedMisfit CalibrationProblem::Linearise(
     LinearisedMisfit::Part part;
     part.recording = r;
     part.first_row = all.residual.size();
-    part.layout.series = 3 * model.MarkerCount();
+    part.errors = ErrorsOf(model);
+    const Eigen::Index components = model.observer().Components();
+    part.layout.series = static_cast<int>(components) * model.PointCount();
     for (const int frame : misfit.frames) {
       part.layout.times.push_back(item.recording.times[frame]);
       part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
     }
-    for (const char observed : misfit.observed)
-      part.layout.observed.insert(part.layout.observed.end(), 3, observed);
+    for (const int count : misfit.count)
+      part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
+    part.observed = std::move(misfit.observed);
     part.speed = -misfit.by.rightCols<1>();
     const Eigen::Index rows = misfit.residual.size();
     all.residual.conservativeResize(part.first_row + rows);
@@ -241,6 +271,43 @@ LinearisedMisfit CalibrationProblem::Linearise(
   return all;
 }
 
+Calibration CalibrationProblem::FitOver(double horizon, const Eigen::VectorXd& start,
+                                        const CalibrationOptions& options, Progress* progress,
+                                        int* evaluations) const {
+  Calibration calibration;
+  std::vector<CalibratedParameter> parameters = parameters_;
+  Eigen::VectorXd values = start;
+  CalibrationOptions of_round = options;
+  for (int iterations = 0; iterations < options.max_iterations;) {
+    if (HasScans())
+      of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
+    for (size_t k = 0; k < parameters.size(); ++k)
+      parameters[k].start =
+          std::clamp(values[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
+    Correspondences correspondences;
+    calibration = Calibrate(
+        parameters,
+        [&](const Eigen::VectorXd& at, bool with_jacobian) {
+          const Prediction prediction =
+              PredictWith(at, with_jacobian, horizon, {}, &correspondences);
+          progress->Report(++*evaluations,
+                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+          return prediction;
+        },
+        of_round);
+    if (!HasScans() || calibration.estimates.empty()) return calibration;
+    const double moved = LargestChange(parameters_, calibration, values);
+    values = calibration.parameters;
+    if (moved < kSettled) return calibration;
+    iterations += std::max(calibration.iterations, 1);
+  }
+  calibration.usable = false;
+  calibration.message =
+      "scanned points and places of the surface did not settle: start nearer to the solution, fit "
+      "less at once, or give scan.reach a smaller value";
+  return calibration;
+}
+
 Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress,
                                     const CalibrationOptions& options) const {
   double longest = 0;
@@ -251,24 +318,12 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
     longest = std::max(longest, times[frames.back()] - model.item().StartTime());
   }
   Calibration calibration;
-  std::vector<CalibratedParameter> parameters = parameters_;
   Eigen::VectorXd values = start;
   int evaluations = 0;
   for (const double share : {kShortHorizon, 1.0}) {
-    for (size_t k = 0; k < parameters.size(); ++k)
-      parameters[k].start =
-          std::clamp(values[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
     progress->Begin(share < 1 ? "fit, first part" : "fit", 0);
     const double horizon = share < 1 ? share * longest : std::numeric_limits<double>::infinity();
-    calibration = Calibrate(
-        parameters,
-        [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction = Predict(at, with_jacobian, horizon);
-          progress->Report(++evaluations,
-                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
-          return prediction;
-        },
-        options);
+    calibration = FitOver(horizon, values, options, progress, &evaluations);
     progress->End(calibration.usable ? "" : calibration.message);
     if (calibration.parameters.size() > 0) values = calibration.parameters;
   }
@@ -279,42 +334,6 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
       before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
   SetModel(values);
   return calibration;
-}
-
-std::vector<RecordingMisfit> CalibrationProblem::Misfits(const Eigen::VectorXd& values) const {
-  SetModel(values);
-  std::vector<RecordingMisfit> all;
-  for (size_t r = 0; r < models_.size(); ++r) {
-    const RecordingModel& model = models_[r];
-    const PredictedRecording& item = model.item();
-    const int markers = model.MarkerCount();
-    RecordingMisfit recording;
-    recording.name = item.name;
-    recording.misfit = model.Predict(item.frames, NuisanceOf(r, values), {});
-    const double release = item.StartTime();
-    recording.place_offset.setZero(3, markers);
-    Eigen::VectorXd seen = Eigen::VectorXd::Zero(markers);
-    for (size_t f = 0; f < recording.misfit.frames.size(); ++f) {
-      const double time = item.recording.times[recording.misfit.frames[f]];
-      const bool fitted = item.fitted && time <= item.fit_until;
-      recording.fitted.push_back(fitted);
-      // Of a recording that is not fitted, only what it shows before it moves tells the places.
-      if (!fitted && (item.fitted || time > release)) continue;
-      for (int m = 0; m < markers; ++m) {
-        const Eigen::Index at = static_cast<Eigen::Index>(f) * markers + m;
-        if (!recording.misfit.observed[at]) continue;
-        recording.place_offset.col(m) += recording.misfit.residual.segment<3>(3 * at);
-        seen[m] += 1;
-      }
-    }
-    const double ratio = study_.place_deviation / noise_;
-    for (int m = 0; m < markers; ++m)
-      recording.place_offset.col(m) *= ratio * ratio / (1 + seen[m] * ratio * ratio);
-    recording.in_fit = Measure(recording, markers, true, noise_);
-    recording.held_out = Measure(recording, markers, false, noise_);
-    all.push_back(std::move(recording));
-  }
-  return all;
 }
 
 }  // namespace lacuna

@@ -11,29 +11,11 @@
 #include "analysis/series_noise.h"
 #include "core/progress.h"
 #include "fit/calibration.h"
+#include "study/measurement_errors.h"
 #include "study/predicted_motion.h"
 #include "study/prediction_study.h"
 
 namespace lacuna {
-
-// How far predictions are from measurements in a set of frames. Distances are of markers, after the
-// part of a marker's error that is its place on the object (Misfit) has been taken away.
-struct MisfitMeasure {
-  int frames = 0;
-  int points = 0;       // markers seen, over all frames
-  double rms = 0;       // m, of the distances
-  double largest = 0;   // m
-  double in_noise = 0;  // rms of the coordinates, in standard deviations of the noise
-};
-
-// The misfit of one recording at the solution, all frames.
-struct RecordingMisfit {
-  std::string name;
-  Misfit misfit;
-  std::vector<char> fitted;        // per frame of the misfit
-  Eigen::Matrix3Xd place_offset;   // 3 × markers, m, what was taken for the markers' places
-  MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
-};
 
 // The misfit of the fitted recordings over all of their frames, held-out ones too, to first order
 // about some values: rows of one recording after another, in m and not whitened.
@@ -42,8 +24,10 @@ struct LinearisedMisfit {
     size_t recording = 0;  // of the study
     Eigen::Index first_row = 0;
     SeriesLayout layout;
-    std::vector<char> fitted;  // per frame
-    Eigen::VectorXd speed;     // rows of d(predicted)/dt, m/s
+    MeasurementErrors errors;
+    std::vector<char> fitted;        // per frame
+    Eigen::VectorXd speed;           // rows of d(predicted)/dt, m/s
+    std::vector<Observed> observed;  // per frame: what it was compared with
   };
   bool usable = false;
   std::string message;
@@ -54,17 +38,24 @@ struct LinearisedMisfit {
 
 class CalibrationProblem {
  public:
-  // Throws InputError when the object cannot be meshed or a region is empty. The study must outlive
-  // the problem.
+  // Throws InputError when a region is empty or a scan does not show the object. The study must
+  // outlive the problem.
   CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh);
 
   // The study's parameters, then the nuisances of each fitted recording.
   const std::vector<CalibratedParameter>& parameters() const { return parameters_; }
   Eigen::VectorXd Start() const;
+  // σ of a marker's coordinate, and of a scanned point along the normal, m, that residuals are
+  // weighed with; 0 where no recording has such.
   double noise() const { return noise_; }
+  double scan_noise() const { return scan_noise_; }
+  MeasurementErrors ErrorsOf(const RecordingModel& model) const;
   const PredictionStudy& study() const { return study_; }
   const std::vector<RecordingModel>& models() const { return models_; }
   const std::shared_ptr<const Body>& body() const { return body_; }
+  bool HasScans() const { return scan_noise_ > 0; }
+  // The study, with what was estimated or chosen on this mesh given: for the same on another mesh.
+  PredictionStudy WithGivenNoise() const;
   // Recording r's nuisances: among the parameters where it is fitted; else found from its first
   // tenth, the model staying as `values` have set it (SetModel).
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
@@ -74,29 +65,41 @@ class CalibrationProblem {
 
   // The whitened misfit over the fitted frames not later than `horizon` seconds after the start of
   // each recording, with derivatives by the parameters and by `more` (columns after them; the same
-  // for each recording).
+  // for each recording). Scanned points go with the places of the surface nearest to them in this
+  // prediction. Not usable where most points of a scan have none.
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
                      double horizon = std::numeric_limits<double>::infinity(),
                      const std::vector<MisfitDirection>& more = {}) const;
 
   // `directions` are those of each recording alike; without a Jacobian only the residual is there.
+  // Compared with what `same`, where given, was compared with.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
-                             const std::vector<MisfitDirection>& directions = {}) const;
+                             const std::vector<MisfitDirection>& directions = {},
+                             const LinearisedMisfit* same = nullptr) const;
 
-  // First over a short horizon, where a wrong model is least wrong, then over all fitted frames.
+  // First over a short horizon, where a wrong model is least wrong, then over all fitted frames. Of
+  // scans, the points' places on the surface are kept during a fit and sought again after it, until
+  // the parameters settle; where they do not, the result is not usable.
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
                   const CalibrationOptions& options = {}) const;
 
-  // All frames of every recording.
-  std::vector<RecordingMisfit> Misfits(const Eigen::VectorXd& values) const;
-
  private:
+  // Of each fitted recording, what its frames are compared with; empty: found while predicting.
+  using Correspondences = std::vector<std::vector<Observed>>;
+  Prediction PredictWith(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
+                         const std::vector<MisfitDirection>& more,
+                         Correspondences* correspondences) const;
+  Calibration FitOver(double horizon, const Eigen::VectorXd& start,
+                      const CalibrationOptions& options, Progress* progress,
+                      int* evaluations) const;
+
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;
+  SurfacePatches patches_;
   std::vector<RecordingModel> models_;
   std::vector<CalibratedParameter> parameters_;
   std::vector<Eigen::Index> first_nuisance_;  // −1 for a recording that is not fitted
-  double noise_ = 0;
+  double noise_ = 0, scan_noise_ = 0;
 };
 
 }  // namespace lacuna

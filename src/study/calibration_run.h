@@ -8,40 +8,12 @@
 
 #include "core/progress.h"
 #include "study/calibration_problem.h"
+#include "study/calibration_record.h"
 
 namespace lacuna {
 
-struct FittedParameter {
-  std::string name, unit;  // SI
-  bool log_scale = false;
-  ParameterEstimate estimate;
-};
-
-struct FittedRecording {
-  std::string name;
-  bool fitted = true;
-  double noise = 0;  // m, the white part, as this recording's own differences tell it
-  MisfitMeasure in_fit, held_out;
-};
-
-// calibration/calibration.json
-struct CalibrationRecord {
-  std::filesystem::path experiment;
-  bool usable = false;
-  std::string message;
-  double noise = 0;               // m, that residuals are weighed with
-  double start_rms = 0, rms = 0;  // of the whitened residuals, before and after
-  int predictions = 0;
-  std::vector<FittedParameter> parameters;  // the model's, then the recordings'
-  std::vector<FittedRecording> recordings;
-  // What the fit took for granted against its prior: markers far from where the recording has them,
-  // a clock or a hold far from what was allowed. Physics may hide there.
-  std::vector<std::string> strains;
-  MeshRecord mesh;
-};
-
-// The mesh stage and the calibration stage: calibration.json and misfit.csv (each marker of each
-// frame: predicted, measured, difference). Throws InputError and Interrupted.
+// The mesh stage and the calibration stage: calibration.json and misfit.csv (each marker or
+// patch of each frame: measured, difference). Throws InputError and Interrupted.
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress);
 
 // Of a finished run. Throws InputError.
@@ -57,8 +29,6 @@ struct FittedRun {
 // Throws InputError when the run is not finished or its fit not usable, or when the experiment has
 // changed since.
 FittedRun OpenRun(const std::filesystem::path& run);
-
-std::string VerdictName(ParameterEstimate::Verdict verdict);
 
 }  // namespace lacuna
 

@@ -67,6 +67,10 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     ThrowIfInterrupted();
     ComparedRecording& recording = comparison->recordings[r];
     const RecordingModel& model = problem.models()[r];
+    if (model.Markers() == nullptr) {
+      without(recording.name + " is a recording of scans");
+      continue;
+    }
     const ReplayedMotion motion = Replay(model, problem.NuisanceOf(r, fitted.values));
     if (!motion.summary.IsUsable() || !IsThatMotion(recording, motion, comparison->noise)) {
       without(recording.name + (motion.summary.IsUsable()

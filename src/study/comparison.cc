@@ -97,22 +97,23 @@ ComparedRecording ReadRecordingRows(const CsvTable& table, int recording,
 }
 
 // Distance of each place from the nearest node that the recording holds or moves; empty: no grip.
-Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& nodes) {
+Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
+                              const Eigen::Matrix3Xd& nodes) {
   std::vector<Region> regions = recording.fixed;
   for (const RecordedGrip& grip : recording.grips) regions.push_back(grip.region);
-  Eigen::VectorXd distances = Eigen::VectorXd::Constant(recording.marker_places.cols(),
-                                                        std::numeric_limits<double>::infinity());
+  Eigen::VectorXd distances =
+      Eigen::VectorXd::Constant(places.cols(), std::numeric_limits<double>::infinity());
   for (const Region& region : regions)
     for (const int node : SelectNodes(region, nodes))
       for (Eigen::Index m = 0; m < distances.size(); ++m)
-        distances[m] =
-            std::min(distances[m], (recording.marker_places.col(m) - nodes.col(node)).norm());
+        distances[m] = std::min(distances[m], (places.col(m) - nodes.col(node)).norm());
   return regions.empty() ? Eigen::VectorXd() : distances;
 }
 
 // Whether the item is what the run was made from.
 bool IsThat(const ComparedRecording& recording, const PredictedRecording& item) {
   if (item.name != recording.name || item.frames != recording.frames) return false;
+  if (recording.is_scan || item.scans != nullptr) return recording.is_scan && item.scans != nullptr;
   const Eigen::Matrix3Xd& first = item.recording.markers.positions[recording.frames.front()];
   if (3 * first.cols() != recording.measured.rows()) return false;
   for (Eigen::Index m = 0; m < first.cols(); ++m)
@@ -136,8 +137,11 @@ void AddWhatTheRecordingsTell(const std::filesystem::path& run, const Calibratio
         problem = fmt::format("{} is not what the run was made from any more", recording.name);
         continue;
       }
-      recording.markers = study.recordings[r].recording.markers.names;
-      recording.grip_distance = GripDistances(study.recordings[r].recording, body.mesh.nodes);
+      const Recording& now = study.recordings[r].recording;
+      if (!recording.is_scan) recording.markers = now.markers.names;
+      recording.grip_distance = GripDistances(
+          now, recording.is_scan ? record.recordings[r].scan->places : now.marker_places,
+          body.mesh.nodes);
     }
   } catch (const InputError& error) {
     problem = error.what();
@@ -148,7 +152,8 @@ void AddWhatTheRecordingsTell(const std::filesystem::path& run, const Calibratio
   }
 }
 
-void MeasureNoise(ComparedRecording* recording, double sigma) {
+void MeasureNoise(ComparedRecording* recording) {
+  const double sigma = recording->noise;
   recording->white_noise = WhiteNoise(recording->measured);
   const double noise = std::isnan(recording->white_noise) || recording->white_noise == 0
                            ? sigma
@@ -176,8 +181,7 @@ Eigen::Matrix3Xd MeanPlaces(const Eigen::MatrixXd& measured) {
   return places;
 }
 
-ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int first, int last,
-                         double noise) {
+ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int first, int last) {
   const Eigen::Index begin = first, count = last - first + 1;
   const Eigen::MatrixXd difference = recording.difference.middleCols(begin, count);
   const Eigen::MatrixXd lengths = PointLengths(difference);
@@ -201,8 +205,8 @@ ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int fi
     if (!std::isnan(part.of_markers[m]) &&
         (part.worst_marker < 0 || part.of_markers[m] > part.of_markers[part.worst_marker]))
       part.worst_marker = m;
-  part.in_noise = part.rms / (std::sqrt(3.0) * noise);
-  if (recording.floor > 0) part.in_floor = part.rms / (std::sqrt(3.0) * recording.floor);
+  part.in_noise = part.rms / recording.LengthOf(recording.noise);
+  if (recording.floor > 0) part.in_floor = part.rms / recording.LengthOf(recording.floor);
 
   part.in_time = WhitenessInTime(difference);
   const Eigen::VectorXd times = recording.times.segment(begin, count);
@@ -213,9 +217,9 @@ ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int fi
   part.mean_error = MeanOver(difference, 0, static_cast<int>(count) - 1);
 
   const Eigen::VectorXd of_frames = RmsOfFrames(lengths);
-  part.worst_span =
-      LongestSpanAbove(of_frames, std::max(part.rms, kBeyondNoise * std::sqrt(3.0) * noise),
-                       static_cast<int>(kLargestGap * static_cast<double>(count)));
+  part.worst_span = LongestSpanAbove(
+      of_frames, std::max(part.rms, kBeyondNoise * recording.LengthOf(recording.noise)),
+      static_cast<int>(kLargestGap * static_cast<double>(count)));
   if (part.worst_span.above < kFewestOfSpan) part.worst_span = {};
   if (part.worst_span.first >= 0) {
     part.worst_span_error = MeanOver(difference, part.worst_span.first, part.worst_span.last);
@@ -244,13 +248,12 @@ ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int fi
 }
 
 // Fitted frames come before those held out of the same recording.
-void MeasureParts(ComparedRecording* recording, double noise) {
+void MeasureParts(ComparedRecording* recording) {
   const int frames = static_cast<int>(recording->frames.size());
   for (int first = 0; first < frames;) {
     int last = first;
     while (last + 1 < frames && recording->fitted[last + 1] == recording->fitted[first]) ++last;
-    recording->parts.push_back(
-        MeasurePart(*recording, recording->fitted[first] != 0, first, last, noise));
+    recording->parts.push_back(MeasurePart(*recording, recording->fitted[first] != 0, first, last));
     first = last + 1;
   }
 }
@@ -283,7 +286,9 @@ void ComparePairs(const json& configuration, Comparison* comparison) {
                               &second = comparison->recordings[j];
       const bool same_rate =
           std::abs(MeanStep(first) / MeanStep(second) - 1) < 0.01;  // false for NaN
-      if (!same_rate || first.measured.rows() != second.measured.rows()) continue;
+      // Patches are not measured along the surface, where repeats would differ too.
+      if (!same_rate || first.is_scan || second.is_scan) continue;
+      if (first.measured.rows() != second.measured.rows()) continue;
       const Repeatability repeatability =
           CompareRepeats(first.times, first.measured, second.times, second.measured,
                          starts[j] - starts[i], kLargestDelay);
@@ -312,6 +317,14 @@ Comparison CompareRun(const std::filesystem::path& run) {
     if (recording.frames.empty())
       throw InputError({file.string()}, "has no row of recording " + record.recordings[r].name);
     recording.name = record.recordings[r].name;
+    recording.noise = record.noise;
+    if (const auto& scan = record.recordings[r].scan) {
+      // Where a patch's points lie differs along the surface, which is no noise: its floor is that
+      // of the points themselves.
+      recording.is_scan = true;
+      recording.noise = scan->patch_noise;
+      recording.floor = scan->patch_noise * record.recordings[r].noise / record.scan_noise;
+    }
     recording.mean_places = MeanPlaces(recording.measured);
     for (int m = 0; 3 * m < recording.measured.rows(); ++m)
       recording.markers.push_back(std::to_string(m));
@@ -319,8 +332,8 @@ Comparison CompareRun(const std::filesystem::path& run) {
   }
   AddWhatTheRecordingsTell(run, record, &comparison);
   for (ComparedRecording& recording : comparison.recordings) {
-    MeasureNoise(&recording, comparison.noise);
-    MeasureParts(&recording, comparison.noise);
+    if (!recording.is_scan) MeasureNoise(&recording);
+    MeasureParts(&recording);
   }
   ComparePairs(LoadManifest(run / "manifest.json").configuration, &comparison);
   return comparison;

@@ -5,6 +5,7 @@
 #define LACUNA_STUDY_COMPARISON_H_
 
 #include <Eigen/Core>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -56,6 +57,9 @@ struct ComparedPart {
 
 struct ComparedRecording {
   std::string name;
+  // Of scans the points are patches of the surface, measured along its normal only.
+  bool is_scan = false;
+  double noise = 0;                  // m, σ of a component of a point that the fit weighed with
   std::vector<int> frames;           // of the recording
   Eigen::VectorXd times;             // s
   std::vector<char> fitted;          // per frame
@@ -73,6 +77,10 @@ struct ComparedRecording {
   std::optional<UnexplainedForce> force;
   bool height_by_gravity = false;  // else z
   int field_frames = 0;            // written as VTU and VTP
+
+  // The rms length, m, of errors that are noise of σ alone: √3 σ of a marker, σ of a patch.
+  double LengthOf(double sigma) const { return (is_scan ? 1 : std::sqrt(3.0)) * sigma; }
+  const char* PointName() const { return is_scan ? "patch" : "marker"; }
 };
 
 // Two recordings of the same rate, as they were measured.

@@ -28,9 +28,9 @@ std::string Chance(double p_value) {
 }
 
 std::string WorstPlaceInWords(const ComparedRecording& recording, const ComparedPart& part) {
-  std::string text =
-      fmt::format("Worst is marker {} ({} rms); ", recording.markers[part.worst_marker],
-                  Millimetres(part.of_markers[part.worst_marker]));
+  std::string text = fmt::format("Worst is {} {} ({} rms); ", recording.PointName(),
+                                 recording.markers[part.worst_marker],
+                                 Millimetres(part.of_markers[part.worst_marker]));
   if (part.worst_span.first < 0) return text + "no run of frames stands out.";
   const int span = part.worst_span.last - part.worst_span.first + 1;
   if (span > kThroughout * (part.last - part.first + 1)) {
@@ -48,7 +48,7 @@ std::string WorstPlaceInWords(const ComparedRecording& recording, const Compared
   return text + ", in no common direction.";
 }
 
-std::string NoiseInWords(const ComparedPart& part) {
+std::string NoiseInWords(const ComparedPart& part, const char* points) {
   const bool white_in_time = part.in_time.p_value >= kSignificant;
   const bool white_in_space = part.in_space.p_value >= kSignificant;
   if (std::isnan(part.in_time.p_value)) return "Too few frames to tell noise from a trend.";
@@ -67,8 +67,8 @@ std::string NoiseInWords(const ComparedPart& part) {
   if (std::isnan(part.in_space.p_value)) return text + ".";
   if (white_in_space)
     return text +
-           fmt::format("; the markers err independently ({}).", Chance(part.in_space.p_value));
-  text += fmt::format("; the markers err together (mean correlation {:.2f}, {}",
+           fmt::format("; the {} err independently ({}).", points, Chance(part.in_space.p_value));
+  text += fmt::format("; the {} err together (mean correlation {:.2f}, {}", points,
                       part.in_space.mean_correlation, Chance(part.in_space.p_value));
   if (part.in_space.correlation_length > 0 && std::isfinite(part.in_space.correlation_length))
     text += fmt::format(", over {:.3g} mm", 1e3 * part.in_space.correlation_length);
@@ -121,20 +121,21 @@ std::string TrendsInWords(const ComparedPart& part) {
          (along != nullptr ? TrendInWords(*along) : "");
 }
 
-std::string PartInWords(const ComparedRecording& recording, const ComparedPart& part,
-                        double noise) {
+std::string PartInWords(const ComparedRecording& recording, const ComparedPart& part) {
   std::string text = fmt::format("{}, {}, {:.3f} s to {:.3f} s: ", recording.name,
                                  part.fitted ? "fitted" : "held out", recording.times[part.first],
                                  recording.times[part.last]);
-  if (part.points == 0) return text + "no marker was seen.";
-  text += fmt::format("{} rms, {:.1f} times the noise assumed (σ = {} of a coordinate)",
-                      Millimetres(part.rms), part.in_noise, Millimetres(noise));
+  if (part.points == 0) return text + fmt::format("no {} was seen.", recording.PointName());
+  text += fmt::format("{} rms, {:.1f} times the noise assumed (σ = {} of a {})",
+                      Millimetres(part.rms), part.in_noise, Millimetres(recording.noise),
+                      recording.is_scan ? "patch along its normal" : "coordinate");
   if (!std::isnan(part.in_floor))
     text += fmt::format(", {:.1f} times the recording's own floor ({})", part.in_floor,
                         Millimetres(recording.floor));
-  text += fmt::format("; largest {} at marker {}, {:.3f} s. ", Millimetres(part.largest),
-                      recording.markers[part.largest_marker], recording.times[part.largest_column]);
-  text += NoiseInWords(part);
+  text += fmt::format("; largest {} at {} {}, {:.3f} s. ", Millimetres(part.largest),
+                      recording.PointName(), recording.markers[part.largest_marker],
+                      recording.times[part.largest_column]);
+  text += NoiseInWords(part, recording.is_scan ? "patches" : "markers");
   if (part.in_noise < kBeyondNoise && part.in_time.p_value >= kSignificant &&
       !(part.in_space.p_value < kSignificant))
     return text + " Nothing here contradicts the model.";
@@ -154,7 +155,8 @@ json Scale(double value) {
 
 json ToJson(const ComparedRecording& recording, const ComparedPart& part) {
   json pairs = json::array();
-  for (const PointPair& pair : part.in_space.pairs)
+  // Of the patches of a scan there are too many to be listed.
+  for (const PointPair& pair : recording.is_scan ? std::vector<PointPair>() : part.in_space.pairs)
     pairs.push_back({{"markers", {pair.first, pair.second}},
                      {"distance_m", Number(pair.distance)},
                      {"correlation", Number(pair.correlation)}});
@@ -259,7 +261,7 @@ std::string ByFrame(const Comparison& comparison) {
       const Eigen::Vector3d mean = MeanOver(recording.difference, f, f).mean;
       text += fmt::format("{},{},{},{:d},{},{},{},{},{},{},{}\n", r, recording.frames[f],
                           recording.times[f], recording.fitted[f] != 0, points, rms,
-                          rms / (std::sqrt(3.0) * comparison.noise), largest, mean[0], mean[1],
+                          rms / recording.LengthOf(recording.noise), largest, mean[0], mean[1],
                           mean[2]);
     }
   }
@@ -286,7 +288,7 @@ std::string ByMarker(const Comparison& comparison) {
             MeanOver(recording.difference.middleRows<3>(3 * m), part.first, part.last).mean;
         text += fmt::format("{},{},{:d},{},{},{},{},{},{},{},{},{},{}\n", r, m, part.fitted, frames,
                             part.of_markers[m],
-                            part.of_markers[m] / (std::sqrt(3.0) * comparison.noise), largest,
+                            part.of_markers[m] / recording.LengthOf(recording.noise), largest,
                             mean[0], mean[1], mean[2], places(0, m), places(1, m), places(2, m));
       }
     }
@@ -296,13 +298,15 @@ std::string ByMarker(const Comparison& comparison) {
 
 std::string Against(const Comparison& comparison) {
   std::string text = "recording,fitted,quantity,low,high,mean,count,rms_m,in_noise\n";
-  for (size_t r = 0; r < comparison.recordings.size(); ++r)
-    for (const ComparedPart& part : comparison.recordings[r].parts)
+  for (size_t r = 0; r < comparison.recordings.size(); ++r) {
+    const ComparedRecording& recording = comparison.recordings[r];
+    for (const ComparedPart& part : recording.parts)
       for (const ErrorAgainst& against : part.against)
         for (const ResidualBin& bin : against.bins)
           text += fmt::format("{},{:d},{},{},{},{},{},{},{}\n", r, part.fitted, against.quantity,
                               bin.low, bin.high, bin.mean, bin.points, bin.rms,
-                              bin.rms / (std::sqrt(3.0) * comparison.noise));
+                              bin.rms / recording.LengthOf(recording.noise));
+  }
   return text;
 }
 
@@ -312,7 +316,8 @@ std::vector<std::string> ComparisonInWords(const Comparison& comparison) {
   std::vector<std::string> sentences;
   for (const ComparedRecording& recording : comparison.recordings) {
     for (const ComparedPart& part : recording.parts)
-      sentences.push_back(PartInWords(recording, part, comparison.noise));
+      sentences.push_back(PartInWords(recording, part));
+    if (recording.is_scan) continue;  // its floor is that of its points, and stands above
     std::string floor = fmt::format("{}, noise in the measurement: white part {} of a coordinate",
                                     recording.name, Millimetres(recording.white_noise));
     if (recording.rests.empty()) {
@@ -325,10 +330,10 @@ std::vector<std::string> ComparisonInWords(const Comparison& comparison) {
                            Millimetres(recording.rest_deviation), Millimetres(drift));
     }
     constexpr double kFarFromOne = 2;
-    const double ratio = comparison.noise / recording.floor;
+    const double ratio = recording.noise / recording.floor;
     if (ratio > kFarFromOne || ratio < 1 / kFarFromOne) {
       floor += fmt::format(" The fit weighed with σ = {}, {:.2g} times that floor.",
-                           Millimetres(comparison.noise), ratio);
+                           Millimetres(recording.noise), ratio);
     }
     sentences.push_back(floor);
     if (recording.force) sentences.push_back(ForceInWords(*recording.force, recording.name));

@@ -66,7 +66,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
     if (ranked.refitted || done == kMostRefits) return;
     ++done;
     ranked.refitted = true;
-    refits[k] = Refit(problem, values, ranked.scored, ranking.adopted, progress);
+    refits[k] = Refit(problem, values, ranked.scored, ranking.adopted, ranking.misfit, progress);
     ranked.refit_message = refits[k].message;
     ranked.errors = refits[k].errors;
     ranked.calibration = refits[k].calibration;
@@ -80,7 +80,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   }
 
   // The noise is what the best of them leaves.
-  const FittedHypothesis present = HypothesisAt(problem, values, ranking.adopted);
+  const FittedHypothesis present = HypothesisAt(problem, values, ranking.adopted, ranking.misfit);
   CHECK(present.misfit.usable) << present.misfit.message;
   const auto weigh = [&] {
     const FittedHypothesis* best = &present;
@@ -93,7 +93,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
       best = &refits[k].hypothesis;
     }
     diagnosis.noise_level =
-        LevelOf(LeftBy(*best, ranking.noise), best->misfit, problem, best->misfit.by.cols());
+        LevelOf(LeftBy(*best, ranking.noise), best->misfit, best->misfit.by.cols());
     const LinearFit before = EvidenceOf(present, diagnosis.noise_level);
     for (size_t k = 0; k < refits.size(); ++k) {
       RankedEffect& ranked = diagnosis.ranking[k];
@@ -118,13 +118,10 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   }
   const FittedHypothesis& left = *weigh();
   const Eigen::VectorXd white =
-      WhitenedRows(LeftBy(left, diagnosis.noise_level), left.misfit,
-                   {problem.noise(), 0, problem.study().place_deviation}, false);
-  Eigen::Index observed = 0;
-  for (const LinearisedMisfit::Part& part : left.misfit.parts)
-    observed += std::count(part.layout.observed.begin(), part.layout.observed.end(), 1);
+      WhitenedRows(LeftBy(left, diagnosis.noise_level), left.misfit, 0, false);
   diagnosis.left_in_noise =
-      std::sqrt(white.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, observed)));
+      std::sqrt(white.squaredNorm() /
+                static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(left.misfit))));
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   return diagnosis;
@@ -168,24 +165,23 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                          {"evidence", nuisance.evidence},
                          {"explained_share", nuisance.explained},
                          {"adopted", nuisance.adopted}});
-  const nlohmann::json all = {
-      {"schema_version", 2},
-      {"verdict", VerdictName(diagnosis.verdict)},
-      {"effects", diagnosis.effects},
-      {"explanation", diagnosis.explanation},
-      {"experiment", diagnosis.experiment},
-      {"noise_m", diagnosis.noise},
-      {"noise_correlation_time_s", diagnosis.noise_level.series.correlation_time},
-      {"noise_variance_factor", diagnosis.noise_level.variance},
-      {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
-      {"held_out_rms_m", diagnosis.errors.held_out_rms},
-      {"held_out_in_noise", diagnosis.errors.in_noise},
-      {"has_held_out", diagnosis.errors.has_held_out},
-      {"control_evidence", diagnosis.control},
-      {"left_in_noise", diagnosis.left_in_noise},
-      {"unexplained_evidence", diagnosis.unexplained},
-      {"nuisances", nuisances},
-      {"ranking", ranking}};
+  const nlohmann::json all = {{"schema_version", 2},
+                              {"verdict", VerdictName(diagnosis.verdict)},
+                              {"effects", diagnosis.effects},
+                              {"explanation", diagnosis.explanation},
+                              {"experiment", diagnosis.experiment},
+                              {"noise_m", diagnosis.noise},
+                              {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
+                              {"noise_variance_factor", diagnosis.noise_level.variance},
+                              {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
+                              {"held_out_rms_m", diagnosis.errors.held_out_rms},
+                              {"held_out_in_noise", diagnosis.errors.in_noise},
+                              {"has_held_out", diagnosis.errors.has_held_out},
+                              {"control_evidence", diagnosis.control},
+                              {"left_in_noise", diagnosis.left_in_noise},
+                              {"unexplained_evidence", diagnosis.unexplained},
+                              {"nuisances", nuisances},
+                              {"ranking", ranking}};
   WriteFileAtomically(file, all.dump(2) + "\n");
 }
 

@@ -55,11 +55,11 @@ struct Weighed {
 };
 
 Weighed Weigh(const LinearisedMisfit& misfit, const Hypotheses& hypotheses,
-              const SeriesNoise& noise) {
+              double correlation_time) {
   Eigen::MatrixXd rows(misfit.residual.size(), hypotheses.by.cols() + 1);
   rows << misfit.residual, hypotheses.by;
-  const Eigen::MatrixXd all = WhitenedRows(rows, misfit, noise, false);
-  const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, noise, true);
+  const Eigen::MatrixXd all = WhitenedRows(rows, misfit, correlation_time, false);
+  const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, correlation_time, true);
   const Eigen::Index count = hypotheses.by.cols();
   return {LinearModel(all.col(0), all.rightCols(count), hypotheses.priors),
           LinearModel(fitted.col(0), fitted.rightCols(count), hypotheses.priors), all.col(0),
@@ -142,21 +142,21 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
 }
 
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
-                             const SeriesNoise& noise, bool fitted_only) {
+                             double correlation_time, bool fitted_only) {
   Eigen::MatrixXd white(rows.rows(), rows.cols());
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     const Eigen::Index count = part.layout.Rows();
     white.middleRows(part.first_row, count) =
-        Whitened(rows.middleRows(part.first_row, count), part.layout, noise,
+        Whitened(rows.middleRows(part.first_row, count), part.layout,
+                 {part.errors.noise, correlation_time, part.errors.common},
                  fitted_only ? part.fitted : std::vector<char>{});
   }
   return white;
 }
 
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
-                   const CalibrationProblem& problem, Eigen::Index parameters) {
+                   Eigen::Index parameters) {
   NoiseLevel level;
-  level.series = {problem.noise(), 0, problem.study().place_deviation};
   const auto pooled = [&](const Eigen::VectorXd& rows) {
     SeriesStatistics mean{0, 0, 0};
     for (const LinearisedMisfit::Part& part : misfit.parts) {
@@ -169,22 +169,27 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
     }
     return mean;
   };
-  level.series.correlation_time =
-      CorrelationTime(pooled(WhitenedRows(left, misfit, level.series, false)));
-  const Eigen::VectorXd white = WhitenedRows(left, misfit, level.series, false);
-  Eigen::Index observed = 0;
-  for (const LinearisedMisfit::Part& part : misfit.parts)
-    observed += std::count(part.layout.observed.begin(), part.layout.observed.end(), 1);
-  const double freedom = static_cast<double>(std::max<Eigen::Index>(1, observed - parameters));
+  level.correlation_time = CorrelationTime(pooled(WhitenedRows(left, misfit, 0, false)));
+  const Eigen::VectorXd white = WhitenedRows(left, misfit, level.correlation_time, false);
+  const double freedom =
+      static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(misfit) - parameters));
   level.variance = std::max(1.0, white.squaredNorm() / freedom) * pooled(white).long_run;
   return level;
+}
+
+Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
+  Eigen::Index observed = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    observed += std::count_if(part.layout.count.begin(), part.layout.count.end(),
+                              [](int count) { return count > 0; });
+  return observed;
 }
 
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
   double squares[2] = {0, 0}, rows[2] = {0, 0};
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     for (Eigen::Index row = 0; row < part.layout.Rows(); ++row) {
-      if (!part.layout.observed[row]) continue;
+      if (part.layout.count[row] == 0) continue;
       const bool fitted = part.fitted[row / part.layout.series];
       squares[fitted] += std::pow(whitened[part.first_row + row], 2);
       ++rows[fitted];
@@ -233,21 +238,21 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
     of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
 
   // What no effect explains is taken for noise.
-  const SeriesNoise white{problem.noise(), 0, study.place_deviation};
   const auto left_by = [&](const std::vector<int>& chosen) -> Eigen::VectorXd {
-    const LinearFit fit = Weigh(misfit, hypotheses, white).all.Fit(chosen, 1);
+    const LinearFit fit = Weigh(misfit, hypotheses, 0).all.Fit(chosen, 1);
     return misfit.residual + hypotheses.by(Eigen::all, chosen) * fit.change;
   };
   const Eigen::VectorXd left = left_by(Range(0, hypotheses.by.cols()));
-  ranking.noise = LevelOf(left, misfit, problem, hypotheses.by.cols());
+  ranking.noise = LevelOf(left, misfit, hypotheses.by.cols());
   for (NuisanceCandidate& nuisance : grips.Candidates(
            misfit.by.middleCols(known + effect_columns, misfit.by.cols() - known - effect_columns)))
     of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
   for (NuisanceCandidate& nuisance : MeasurementNuisances(
-           problem, misfit, WhitenedRows(left_by(base), misfit, ranking.noise.series, false)))
+           problem, misfit,
+           WhitenedRows(left_by(base), misfit, ranking.noise.correlation_time, false)))
     of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
 
-  const Weighed weighed = Weigh(misfit, hypotheses, ranking.noise.series);
+  const Weighed weighed = Weigh(misfit, hypotheses, ranking.noise.correlation_time);
   const double variance = ranking.noise.variance;
   for (size_t k = 0; k < ranking.nuisances.size(); ++k) {
     ScoredNuisance& nuisance = ranking.nuisances[k];
@@ -323,6 +328,8 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
         scored.look_alikes.push_back(other.scored.candidate.type);
   }
   for (Entry& entry : entries) ranking.effects.push_back(std::move(entry.scored));
+  ranking.misfit = misfit;
+  ranking.misfit.by.resize(0, 0);
   progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));
   return ranking;
 }

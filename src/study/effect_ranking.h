@@ -51,7 +51,7 @@ struct ScoredNuisance {
 
 // The noise that hypotheses are weighed with.
 struct NoiseLevel {
-  SeriesNoise series;
+  double correlation_time = 0;  // s
   double variance = 1;  // of the whitened rows: more than 1 where the best hypothesis leaves more
 };
 
@@ -66,6 +66,7 @@ struct EffectRanking {
   std::vector<ScoredNuisance> nuisances;
   AdoptedNuisances adopted;
   NoiseLevel noise;
+  LinearisedMisfit misfit;       // at the fitted values, without columns of hypotheses
   double held_out_in_noise = 0;  // of the model with what was adopted
   int variants = 0;              // scored in all
 };
@@ -80,15 +81,18 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values);
 
-// Rows of a linearised misfit, whitened recording by recording; of the frames that were fitted, or
-// of all.
+// Rows of a linearised misfit, whitened recording by recording with its errors; of the frames that
+// were fitted, or of all.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
-                             const SeriesNoise& noise, bool fitted_only);
+                             double correlation_time, bool fitted_only);
 
 // The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and larger
 // than the study's own where it is larger.
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
-                   const CalibrationProblem& problem, Eigen::Index parameters);
+                   Eigen::Index parameters);
+
+// Rows that were observed.
+Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
 
 // √ of the mean square of the observed rows that were held out (all where none were), in σ.
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);

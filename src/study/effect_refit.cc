@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "study/recording_misfit.h"
 
 namespace lacuna {
 namespace {
@@ -36,27 +37,35 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
 }  // namespace
 
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  double fitted = 0, held_out = 0;
+  double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
   int fitted_points = 0, held_out_points = 0;
-  for (const RecordingMisfit& recording : problem.Misfits(values)) {
-    fitted += recording.in_fit.rms * recording.in_fit.rms * recording.in_fit.points;
-    fitted_points += recording.in_fit.points;
-    held_out += recording.held_out.rms * recording.held_out.rms * recording.held_out.points;
-    held_out_points += recording.held_out.points;
+  for (const RecordingMisfit& recording : MisfitsOf(problem, values)) {
+    const MisfitMeasure &in_fit = recording.in_fit, &out = recording.held_out;
+    fitted += in_fit.rms * in_fit.rms * in_fit.points;
+    fitted_noise += in_fit.in_noise * in_fit.in_noise * in_fit.points;
+    fitted_points += in_fit.points;
+    held_out += out.rms * out.rms * out.points;
+    held_out_noise += out.in_noise * out.in_noise * out.points;
+    held_out_points += out.points;
   }
   ModelErrors errors;
   errors.has_held_out = held_out_points > 0;
-  if (fitted_points > 0) errors.in_fit_rms = std::sqrt(fitted / fitted_points);
-  errors.held_out_rms =
-      errors.has_held_out ? std::sqrt(held_out / held_out_points) : errors.in_fit_rms;
-  errors.in_noise = errors.held_out_rms / (std::sqrt(3.0) * problem.noise());
+  if (fitted_points > 0) {
+    errors.in_fit_rms = std::sqrt(fitted / fitted_points);
+    errors.in_noise = std::sqrt(fitted_noise / fitted_points);
+  }
+  errors.held_out_rms = errors.in_fit_rms;
+  if (errors.has_held_out) {
+    errors.held_out_rms = std::sqrt(held_out / held_out_points);
+    errors.in_noise = std::sqrt(held_out_noise / held_out_points);
+  }
   return errors;
 }
 
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted) {
+                              const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   FittedHypothesis hypothesis;
-  hypothesis.misfit = problem.Linearise(values, true);
+  hypothesis.misfit = problem.Linearise(values, true, {}, &same);
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   Eigen::MatrixXd& by = hypothesis.misfit.by;
@@ -73,8 +82,9 @@ LinearFit FitAll(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   std::vector<int> all;
   for (Eigen::Index k = 0; k < misfit.by.cols(); ++k) all.push_back(static_cast<int>(k));
-  return LinearModel(WhitenedRows(misfit.residual, misfit, noise.series, false),
-                     WhitenedRows(misfit.by, misfit, noise.series, false), hypothesis.priors)
+  return LinearModel(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+                     WhitenedRows(misfit.by, misfit, noise.correlation_time, false),
+                     hypothesis.priors)
       .Fit(all, noise.variance);
 }
 
@@ -132,7 +142,8 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& sco
 }
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect& effect, const AdoptedNuisances& adopted, Progress* progress) {
+                  const ScoredEffect& effect, const AdoptedNuisances& adopted,
+                  const LinearisedMisfit& misfit, Progress* progress) {
   const PredictionStudy study = WithEffect(problem.study(), effect);
   const CalibrationProblem with(study, problem.body()->mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
@@ -148,10 +159,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     parameters.push_back(amount);
   }
   // Adopted nuisances change the misfit as they did at the model without the effect.
-  const LinearisedMisfit rows = problem.Linearise(values, false);
-  const Eigen::MatrixXd nuisance = FittedRows(
-      WhitenedRows(adopted.by, rows, {problem.noise(), 0, problem.study().place_deviation}, true),
-      rows);
+  const Eigen::MatrixXd nuisance = FittedRows(WhitenedRows(adopted.by, misfit, 0, true), misfit);
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     Prediction prediction = with.Predict(at.head(own), with_jacobian);
     if (!prediction.usable) return prediction;
@@ -205,7 +213,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   } else {
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted);
+    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
     if (!refit.hypothesis.misfit.usable) refit.message = refit.hypothesis.misfit.message;
   }

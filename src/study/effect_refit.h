@@ -30,8 +30,9 @@ LinearFit EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise
 // What the hypothesis leaves, rows in m.
 Eigen::VectorXd LeftBy(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
 
+// Compared with what `same` was compared with.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted);
+                              const AdoptedNuisances& adopted, const LinearisedMisfit& same);
 
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
@@ -45,9 +46,10 @@ struct EffectRefit {
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& effect);
 
 // From where first order expects the best parameters, or from `values` where that is nearer. Leaves
-// the study's effects at `values`. Throws Interrupted.
+// the study's effects at `values`. `misfit`: of the model as it is. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect& effect, const AdoptedNuisances& adopted, Progress* progress);
+                  const ScoredEffect& effect, const AdoptedNuisances& adopted,
+                  const LinearisedMisfit& misfit, Progress* progress);
 
 }  // namespace lacuna
 

@@ -40,31 +40,6 @@ void SplitTracked(const Frame& frame, int hold_out_every, FrameState* state) {
   state->cloud.points = state->tracked(Eigen::all, seen);
 }
 
-FrameState MakeState(const ReconstructionStudy& study, int frame_number) {
-  const Frame frame = LoadFrame(study.recording, frame_number);
-  FrameState state;
-  state.time = frame.time;
-  if (study.recording.tracked || study.recording.kind == FrameKind::kMarkers) {
-    SplitTracked(frame, study.validation.hold_out_every, &state);
-    return state;
-  }
-  if (study.recording.kind == FrameKind::kMesh && frame.triangles.cols() > 0) {
-    state.surface = {frame.cloud.points, frame.triangles};
-    state.cloud = {frame.cloud.points, VertexNormals(state.surface)};
-    return state;
-  }
-  const std::string where =
-      fmt::format("{}: frame {}", study.recording.file.string(), frame_number);
-  state.cloud = NamingWhere(
-      where, [&] { return FilterCloud(frame.cloud, frame.sensors, study.filter).cloud; });
-  if (!study.surfaces_of_frames) return state;
-  const Surface surface =
-      NamingWhere(where, [&] { return ReconstructSurface(state.cloud, study.surface); });
-  if (!surface.IsUsable()) throw InputError(where + ": no closed surface: " + surface.message);
-  state.surface = surface.mesh;
-  return state;
-}
-
 std::filesystem::path FrameFile(const std::filesystem::path& folder, size_t k, const char* what) {
   return folder / fmt::format("{}_{:04}.npy", what, k);
 }
@@ -82,12 +57,39 @@ PointCloud StatePoints(const FrameState& state) {
   return {state.surface.vertices, VertexNormals(state.surface)};
 }
 
+FrameState MakeFrameState(const Recording& recording, int frame_number,
+                          const FrameStateOptions& options) {
+  const Frame frame = LoadFrame(recording, frame_number);
+  FrameState state;
+  state.time = frame.time;
+  if (recording.tracked || recording.kind == FrameKind::kMarkers) {
+    SplitTracked(frame, options.hold_out_every, &state);
+    return state;
+  }
+  if (recording.kind == FrameKind::kMesh && frame.triangles.cols() > 0) {
+    state.surface = {frame.cloud.points, frame.triangles};
+    state.cloud = {frame.cloud.points, VertexNormals(state.surface)};
+    return state;
+  }
+  const std::string where = fmt::format("{}: frame {}", recording.file.string(), frame_number);
+  state.cloud = NamingWhere(
+      where, [&] { return FilterCloud(frame.cloud, frame.sensors, options.filter).cloud; });
+  if (!options.surfaces) return state;
+  const Surface surface =
+      NamingWhere(where, [&] { return ReconstructSurface(state.cloud, options.surface); });
+  if (!surface.IsUsable()) throw InputError(where + ": no closed surface: " + surface.message);
+  state.surface = surface.mesh;
+  return state;
+}
+
 std::vector<FrameState> LoadFrameStates(const ReconstructionStudy& study, Progress* progress) {
+  const FrameStateOptions options{study.filter, study.surface, study.surfaces_of_frames,
+                                  study.validation.hold_out_every};
   std::vector<FrameState> states;
   progress->Begin("surfaces", static_cast<int64_t>(study.frames.size()));
   for (const int frame : study.frames) {
     ThrowIfInterrupted();
-    states.push_back(MakeState(study, frame));
+    states.push_back(MakeFrameState(study.recording, frame, options));
     progress->Report(static_cast<int64_t>(states.size()));
   }
   progress->End();

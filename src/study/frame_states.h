@@ -26,6 +26,16 @@ struct FrameState {
 // The points that stand for the state in a registration: the surface's vertices, or the cloud.
 PointCloud StatePoints(const FrameState& state);
 
+// What is made of a frame.
+struct FrameStateOptions {
+  FilterOptions filter;
+  SurfaceOptions surface;
+  bool surfaces = true;    // Poisson surface of the points; else they stand for it
+  int hold_out_every = 0;  // tracked points that are kept apart; 0: none
+};
+// Frame `frame` of the recording. Throws InputError naming it.
+FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
+
 std::vector<FrameState> LoadFrameStates(const ReconstructionStudy& study, Progress* progress);
 
 // For the run directory.

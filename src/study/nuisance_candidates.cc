@@ -150,20 +150,16 @@ std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem&
     candidate.priors = {{kToTheLimit, kLimitDeviation, false}};
     candidates.push_back(std::move(candidate));
   };
-  PredictionStudy fine = problem.study();
-  fine.noise = problem.noise();
-  const PredictedRecording& first = fine.recordings.front();
+  PredictionStudy fine = problem.WithGivenNoise();
   fine.mesh.tets.max_volume /= kVolumeRatio;
   try {
-    const ReferenceBody reference = MakeReferenceBody(
-        {fine.name, first.recording, fine.mesh, fine.sheet_layers, first.frames.front()});
+    const ReferenceBody reference = MakeReferenceBody(fine);
     add("mesh", "the size of the elements", "choose a smaller mesh.max_volume",
         CalibrationProblem(fine, reference.mesh).Linearise(values, false));
   } catch (const InputError&) {
     // A shape that cannot be meshed more finely says nothing about its mesh.
   }
-  PredictionStudy slow = problem.study();
-  slow.noise = problem.noise();
+  PredictionStudy slow = problem.WithGivenNoise();
   slow.time_step /= 2;
   add("time_step", "the length of the step", "choose a smaller motion.time_step",
       CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false));
@@ -215,14 +211,16 @@ std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& pr
         worst = f;
       }
     }
-    // Of the frame's markers, about their middle.
+    // Of what the frame shows, about the object's middle.
+    const Eigen::Vector3d middle = problem.body()->mesh.nodes.rowwise().mean();
     const auto rigid = [&](Eigen::Index f, int s, int axis) {
-      const Eigen::Matrix3Xd& places = item.recording.markers.positions[item.frames[f]];
-      if (axis < 3) return s % 3 == axis ? 1.0 : 0.0;
-      const Eigen::Vector3d place = places.col(s / 3);
-      if (!place.allFinite()) return 0.0;
-      const Eigen::Vector3d from = place - item.recording.marker_places.rowwise().mean();
-      return Eigen::Vector3d::Unit(axis - 3).cross(from)[s % 3];
+      const Observed& seen = part.observed[f];
+      const bool along_normal = seen.normal.cols() > 0;
+      const int point = along_normal ? s : s / 3;
+      if (seen.count[point] == 0) return 0.0;
+      Eigen::Vector3d motion = Eigen::Vector3d::Unit(axis % 3);
+      if (axis >= 3) motion = motion.cross(Eigen::Vector3d(seen.measured.col(point) - middle));
+      return along_normal ? motion.dot(seen.normal.col(point)) : motion[s % 3];
     };
     NuisanceCandidate bad{"bad_frame",
                           fmt::format("the frame at {:.3f} s of {}", times[worst], item.name),

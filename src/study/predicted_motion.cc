@@ -10,53 +10,91 @@
 #include "fem/prescribed_force.h"
 #include "study/grip_tracks.h"
 #include "study/outer_forces.h"
+#include "study/scan_grips.h"
+#include "study/surface_observer.h"
 
 namespace lacuna {
 namespace {
 
-void MoveGripsWithMarkers(const Recording& recording, const std::vector<int>& frames,
-                          const TetMesh& mesh, GripTracks* grips) {
-  for (const int frame : frames)
-    grips->Extend(recording.times[frame], mesh.nodes, mesh.nodes,
-                  recording.markers.positions[frame]);
+constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
+
+double ShareUsed(const Observed& observed) {
+  return observed.offered > 0 ? static_cast<double>(observed.used) / observed.offered : 0;
+}
+
+// Where the scans carry the nodes of grips that follow them: frame by frame, 3 × nodes.
+std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double reach,
+                                          bool tells_the_shape, const TetMesh& mesh,
+                                          const BoundarySurface& boundary) {
+  const bool rests_at_first =
+      tells_the_shape && item.recording.reference.source == ReferenceSource::kFirstFrame;
+  std::vector<Eigen::Matrix3Xd> moved(item.frames.size(), mesh.nodes);
+  for (const RecordedGrip& grip : item.recording.grips) {
+    if (grip.motion != GripMotion::kFollowsScan) continue;
+    const std::vector<int> nodes = NamingWhere(
+        item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh.nodes); });
+    const std::vector<Eigen::Isometry3d> motions = FollowGrip(
+        *item.scans, item.frames, boundary, {grip.region.name, nodes, reach, rests_at_first});
+    for (size_t k = 0; k < motions.size(); ++k)
+      for (const int node : nodes) moved[k].col(node) = motions[k] * mesh.nodes.col(node);
+  }
+  return moved;
+}
+
+void MoveGrips(const PredictedRecording& item, double reach, bool tells_the_shape,
+               const TetMesh& mesh, const BoundarySurface& boundary, GripTracks* grips) {
+  const bool is_scan = item.scans != nullptr;
+  std::vector<Eigen::Matrix3Xd> moved;
+  if (is_scan) moved = FollowGrips(item, reach, tells_the_shape, mesh, boundary);
+  for (size_t k = 0; k < item.frames.size(); ++k) {
+    const int frame = item.frames[k];
+    grips->Extend(item.recording.times[frame], mesh.nodes, is_scan ? moved[k] : mesh.nodes,
+                  is_scan ? Eigen::Matrix3Xd(3, 0) : item.recording.markers.positions[frame]);
+  }
+}
+
+// A scanned object that is not held must rest in its first frames.
+void RequireStaticStart(const PredictedRecording& item) {
+  if (item.hold) return;
+  const ScannedPoints& first = item.scans->At(item.frames.front());
+  const double step = LargestMove(first, item.scans->At(item.frames[1]));
+  const double whole = LargestMove(first, item.scans->At(item.frames.back()));
+  constexpr double kNoise = 4;  // standard deviations of one point
+  if (step > 0.25 * whole && step > kNoise * first.noise) {
+    throw InputError(fmt::format(
+        "{}: the object moves already between its first two frames, by {:.2f} mm; a prediction "
+        "starts from rest: give `from:`, or `hold:`",
+        item.recording.file.string(), 1e3 * step));
+  }
 }
 
 }  // namespace
 
 RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
-                               const TetMesh& mesh, std::shared_ptr<const Body> body)
+                               const TetMesh& mesh, std::shared_ptr<const Body> body,
+                               const SurfacePatches& patches)
     : study_(study), item_(recording) {
   model_.body = std::move(body);
   model_.effects = study.effects;
   model_.effects.insert(model_.effects.end(), recording.effects.begin(), recording.effects.end());
   GripTracks grips(recording.recording, mesh, &model_);
-  MoveGripsWithMarkers(recording.recording, recording.frames, mesh, &grips);
+  const bool tells_the_shape = &recording == &study.recordings.front();
+  if (item_.scans != nullptr) {
+    auto observer =
+        std::make_unique<SurfaceObserver>(item_.scans, model_.body, patches, study.scan);
+    RequireStaticStart(item_);
+    const double reach = observer->Reach();
+    observer_ = std::move(observer);
+    RequireThatScansShowTheObject();
+    MoveGrips(item_, reach, tells_the_shape, mesh, model_.body->boundary, &grips);
+  } else {
+    // The body has the elements of the mesh in an order of its own.
+    observer_ = std::make_unique<MarkerObserver>(item_.recording, model_.body->mesh);
+    MoveGrips(item_, 0, tells_the_shape, mesh, model_.body->boundary, &grips);
+  }
   for (const auto& load : MakeKnownForces(recording.recording, model_))
     model_.effects.push_back(load);
-  // The body has the elements of the mesh in an order of its own.
-  places_ = Embed(model_.body->mesh, recording.recording.marker_places);
-
-  if (item_.hold) {
-    const std::string where = study.file.string() + ": hold of " + item_.name;
-    const std::vector<int> nodes =
-        NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh.nodes); });
-    const Eigen::VectorXi chosen =
-        Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
-    const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);
-    if (areas(chosen).sum() == 0)
-      throw InputError(where + " touches no boundary node: its region is too small");
-    const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
-    const double weight = 10 * model_.body->node_mass.sum();  // N, about that of the object
-    for (int axis = 0; axis < 3; ++axis) {
-      Nuisance nuisance;
-      nuisance.prior.name = fmt::format("{}.hold_force_{}", item_.name, "xyz"[axis]);
-      nuisance.prior.prior_deviation = nuisance.prior.typical = weight;
-      Eigen::VectorXd& force = nuisance.direction.perturbation.held_force;
-      force = Eigen::VectorXd::Zero(3 * share.size());
-      for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
-      nuisances_.push_back(std::move(nuisance));
-    }
-  }
+  if (item_.hold) AddHold(mesh);
   if (item_.clock_deviation > 0) {
     Nuisance nuisance;
     nuisance.prior.name = item_.name + ".clock";
@@ -64,6 +102,42 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
     nuisance.direction.is_clock = true;
     nuisances_.push_back(std::move(nuisance));
   }
+}
+
+void RecordingModel::AddHold(const TetMesh& mesh) {
+  const std::string where = study_.file.string() + ": hold of " + item_.name;
+  const std::vector<int> nodes =
+      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh.nodes); });
+  const Eigen::VectorXi chosen =
+      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);
+  if (areas(chosen).sum() == 0)
+    throw InputError(where + " touches no boundary node: its region is too small");
+  const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
+  const double weight = 10 * model_.body->node_mass.sum();  // N, about that of the object
+  for (int axis = 0; axis < 3; ++axis) {
+    Nuisance nuisance;
+    nuisance.prior.name = fmt::format("{}.hold_force_{}", item_.name, "xyz"[axis]);
+    nuisance.prior.prior_deviation = nuisance.prior.typical = weight;
+    Eigen::VectorXd& force = nuisance.direction.perturbation.held_force;
+    force = Eigen::VectorXd::Zero(3 * share.size());
+    for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
+    nuisances_.push_back(std::move(nuisance));
+  }
+}
+
+void RecordingModel::RequireThatScansShowTheObject() {
+  // A frame that cannot be read is told before the long computation, not by it.
+  for (const int frame : item_.frames) item_.scans->At(frame);
+  const Observed first =
+      observer_->Observe(item_.frames.front(), model_.body->mesh.nodes.reshaped());
+  const int seen = static_cast<int>((first.count.array() > 0).count());
+  shown_ = ShareUsed(first);
+  if (seen >= kFewestSeen * PointCount()) return;
+  throw InputError(fmt::format(
+      "{}: frame {} shows {} of {} patches of the undeformed surface: its points lie elsewhere, or "
+      "their length unit, transform or normals are wrong, or scan.reach is too small",
+      item_.recording.file.string(), item_.frames.front(), seen, PointCount()));
 }
 
 std::vector<int> RecordingModel::FittedFrames() const {
@@ -96,9 +170,8 @@ double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
 }
 
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
-                               const std::vector<MisfitDirection>& directions) const {
-  const Body& body = *model_.body;
-  const int markers = MarkerCount();
+                               const std::vector<MisfitDirection>& directions,
+                               const std::vector<Observed>* observed) const {
   const PredictionOptions options = Options(nuisance);
   const double late = Delay(nuisance);
   std::vector<double> times;
@@ -113,36 +186,41 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   }
 
   Misfit misfit;
-  const Eigen::Index rows_of_frame = 3 * markers;
+  misfit.points = PointCount();
+  const Eigen::Index components = observer_->Components();
+  const Eigen::Index rows_of_frame = components * misfit.points;
   misfit.residual.resize(rows_of_frame * static_cast<Eigen::Index>(frames.size()));
   misfit.by.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
         const int frame = frames[index];
         const Eigen::Index begin = rows_of_frame * index;
-        const Eigen::Matrix3Xd& measured = item_.recording.markers.positions[frame];
-        const Eigen::VectorXd predicted = AtMarkers(places_, body.mesh, state.position);
-        const Eigen::VectorXd velocity = AtMarkers(places_, body.mesh, state.velocity);
+        Observed seen =
+            observed != nullptr ? (*observed)[index] : observer_->Observe(frame, state.position);
+        const Eigen::VectorXd predicted = *seen.rows * state.position;
+        const Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
-        if (!perturbations.empty()) by = AtMarkers(places_, body.mesh, state.position_by);
-        for (int m = 0; m < markers; ++m) {
-          const bool observed = measured.col(m).allFinite();
-          misfit.observed.push_back(observed);
-          const Eigen::Index row = begin + 3 * m;
-          misfit.residual.segment<3>(row).setZero();
-          if (!observed) continue;
-          misfit.residual.segment<3>(row) = predicted.segment<3>(3 * m) - measured.col(m);
+        if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        for (int point = 0; point < misfit.points; ++point) {
+          misfit.count.push_back(seen.count[point]);
+          const Eigen::Index row = begin + components * point, own = components * point;
+          misfit.residual.segment(row, components).setZero();
+          if (seen.count[point] == 0) continue;
+          misfit.residual.segment(row, components) =
+              predicted.segment(own, components) - seen.target.segment(own, components);
           for (size_t k = 0; k < directions.size(); ++k) {
             const Eigen::Index at = static_cast<Eigen::Index>(k);
             const bool moves = state.time > options.start_time;
             if (column[k] >= 0) {
-              misfit.by.col(at).segment<3>(row) = by.col(column[k]).segment<3>(3 * m);
+              misfit.by.col(at).segment(row, components) =
+                  by.col(column[k]).segment(own, components);
             } else if (moves) {
-              misfit.by.col(at).segment<3>(row) = -velocity.segment<3>(3 * m);
+              misfit.by.col(at).segment(row, components) = -velocity.segment(own, components);
             }
           }
         }
         misfit.frames.push_back(frame);
+        misfit.observed.push_back(std::move(seen));
       });
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
@@ -150,42 +228,18 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   return misfit;
 }
 
-Eigen::MatrixXd AtMarkers(const Embedding& places, const TetMesh& mesh,
-                          const Eigen::MatrixXd& nodal) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3 * places.tet.size(), nodal.cols());
-  for (Eigen::Index m = 0; m < places.tet.size(); ++m)
-    for (Eigen::Index a = 0; a < places.weight.rows(); ++a)
-      rows.middleRows<3>(3 * m) +=
-          places.weight(a, m) * nodal.middleRows<3>(3 * mesh.tets(a, places.tet[m]));
-  return rows;
+std::vector<int> RecordingModel::LostFrames(const Misfit& misfit, double least) const {
+  std::vector<int> lost;
+  if (item_.scans == nullptr) return lost;
+  double best = shown_;
+  for (const Observed& observed : misfit.observed) best = std::max(best, ShareUsed(observed));
+  for (size_t f = 0; f < misfit.observed.size(); ++f)
+    if (ShareUsed(misfit.observed[f]) < least * best) lost.push_back(misfit.frames[f]);
+  return lost;
 }
 
-Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& observed,
-                         int markers, double noise, double place_deviation) {
-  CHECK_GT(noise, 0);
-  Eigen::MatrixXd white = rows / noise;
-  const Eigen::Index frames = rows.rows() / (3 * markers);
-  const double ratio = place_deviation / noise;
-  for (int m = 0; m < markers; ++m) {
-    double seen = 0;
-    for (Eigen::Index f = 0; f < frames; ++f) seen += observed[f * markers + m];
-    if (seen == 0) continue;
-    // (σ² I + s² 1 1ᵀ)^(−1/2) takes this share of the mean away.
-    const double share = 1 - 1 / std::sqrt(1 + seen * ratio * ratio);
-    for (int axis = 0; axis < 3; ++axis) {
-      for (Eigen::Index k = 0; k < rows.cols(); ++k) {
-        double mean = 0;
-        for (Eigen::Index f = 0; f < frames; ++f) mean += white(3 * (f * markers + m) + axis, k);
-        mean /= seen;
-        for (Eigen::Index f = 0; f < frames; ++f)
-          if (observed[f * markers + m]) white(3 * (f * markers + m) + axis, k) -= share * mean;
-      }
-    }
-  }
-  return white;
-}
-
-double EstimateMarkerNoise(const PredictedRecording& item, const std::vector<int>& frames) {
+double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
+  if (item.scans != nullptr) return EstimateScanNoise(*item.scans, frames);
   Eigen::MatrixXd rows(item.recording.marker_places.size(),
                        static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)

@@ -8,20 +8,26 @@
 #include <vector>
 
 #include "fem/prediction.h"
-#include "geometry/embedding.h"
+#include "study/observer.h"
 #include "study/prediction_study.h"
 #include "study/reference.h"
 
 namespace lacuna {
 
-// Predicted minus measured, m, of one recording: three rows (x, y, z) for each marker of each
-// frame, frames outermost. Rows of a marker that was not seen are 0.
+// Predicted minus measured, m, of one recording: the components (Observer) of each point, marker or
+// patch, of each frame, frames outermost. Rows of a point that was not seen are 0.
 struct Misfit {
   std::vector<int> frames;   // of the recording, as far as the prediction came
-  Eigen::VectorXd residual;  // 3·markers·frames
-  Eigen::MatrixXd by;  // ∂residual/∂(parameter), rows × columns; 0 columns: not asked for
-  std::vector<char> observed;  // markers × frames
+  int points = 0;            // of each frame
+  Eigen::VectorXd residual;  // components·points·frames
+  Eigen::MatrixXd by;      // ∂residual/∂(parameter), rows × columns; 0 columns: not asked for
+  std::vector<int> count;  // points × frames: measurements that each is the mean of; 0: not seen
+  std::vector<Observed> observed;  // of each frame: what the prediction was compared with
   PredictionSummary summary;
+
+  Eigen::Index Components() const {
+    return count.empty() ? 0 : residual.size() / static_cast<Eigen::Index>(count.size());
+  }
 };
 
 // Of one column of a Misfit's derivative.
@@ -33,14 +39,21 @@ struct MisfitDirection {
 // The model in the place of one recording.
 class RecordingModel {
  public:
-  // `effects`: the study's, shared between its recordings. Throws InputError when a region holds no
-  // node.
+  // `effects`: the study's, shared between its recordings; `patches`: of scans. Throws InputError
+  // when a region holds no node, a scan misses the object or is one of an object that moves
+  // already.
   RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
-                 const TetMesh& mesh, std::shared_ptr<const Body> body);
+                 const TetMesh& mesh, std::shared_ptr<const Body> body,
+                 const SurfacePatches& patches);
 
   const PredictedRecording& item() const { return item_; }
   const Model& model() const { return model_; }
-  int MarkerCount() const { return static_cast<int>(places_.tet.size()); }
+  const Observer& observer() const { return *observer_; }
+  int PointCount() const { return observer_->PointCount(); }
+  // Null of a recording of scans.
+  const MarkerObserver* Markers() const {
+    return dynamic_cast<const MarkerObserver*>(observer_.get());
+  }
   // What the recording itself leaves open: three components of the force that holds the body, the
   // clock. `prior` is by name and deviation; start 0.
   struct Nuisance {
@@ -50,38 +63,37 @@ class RecordingModel {
   const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
   // With the effects as they are, `nuisance` in the order of nuisances(), for the chosen `frames`
-  // (ascending).
+  // (ascending). Compared with `observed`, one for each frame, or, null, with what the observer
+  // makes of the frames at the predicted positions.
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
-                 const std::vector<MisfitDirection>& directions) const;
+                 const std::vector<MisfitDirection>& directions,
+                 const std::vector<Observed>* observed = nullptr) const;
 
   std::vector<int> FittedFrames() const;
 
-  const Embedding& places() const { return places_; }  // of the markers, in the body's mesh
   // How the model is run with these nuisances, and by how much, s, the recording's clock is late.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
+  // In which frames of a scan points found no place on the predicted surface: fewer than `least`
+  // times the share that did in the best frame, or in the first with the undeformed surface.
+  std::vector<int> LostFrames(const Misfit& misfit, double least) const;
 
  private:
   const PredictionStudy& study_;
   const PredictedRecording& item_;
   Model model_;
-  Embedding places_;
+  void AddHold(const TetMesh& mesh);
+  void RequireThatScansShowTheObject();
+
+  std::unique_ptr<const Observer> observer_;
+  double shown_ = 0;  // share of the first scan's points that the undeformed surface has
   std::vector<Nuisance> nuisances_;
 };
 
-// Rows of points (x, y, z each) from rows of nodes: Σ_a weight_a · x_a.
-Eigen::MatrixXd AtMarkers(const Embedding& places, const TetMesh& mesh,
-                          const Eigen::MatrixXd& nodal);
-
-// Rows divided by the noise, and what is common to all frames of a marker's coordinate weighed
-// down: the covariance is σ² I + s² 1 1ᵀ for each, as the marker's place on the object is known to
-// s only. Applied to a residual or to the columns of its derivative.
-Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<char>& observed,
-                         int markers, double noise, double place_deviation);
-
-// The white part of a recording's noise, m, from the second differences of its coordinates in these
-// frames (ascending): the median over the markers. 0 of fewer than three frames.
-double EstimateMarkerNoise(const PredictedRecording& item, const std::vector<int>& frames);
+// The white part of a recording's noise, m, in these frames (ascending). Of markers: from the
+// second differences of their coordinates, the median; 0 of fewer than three frames. Of a scan: of
+// a point along the normal (EstimateScanNoise).
+double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames);
 
 }  // namespace lacuna
 

@@ -57,10 +57,36 @@ void RequireStaticStart(const Config& config, const PredictedRecording& item) {
                 "rest: give `from:`, or `hold:`");
 }
 
-PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material) {
+// What markers must be told with, and scans.
+void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
+  const Recording& recording = item.recording;
+  const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
+  if (recording.kind == FrameKind::kMarkers) {
+    if (!recording.marker_places.allFinite())
+      config.Fail("recording",
+                  "lacks marker_places: where each marker sits on the undeformed object");
+    if (of_first_frame)
+      config.Fail("recording", "has no reference shape: markers alone do not tell it");
+    for (const RecordedGrip& grip : recording.grips)
+      if (grip.motion == GripMotion::kFollowsScan)
+        config.Fail("recording",
+                    fmt::format("{} is to follow the scan, but there are only markers: "
+                                "give `follows_markers` or a `path`",
+                                grip.region.name));
+  } else if (tells_the_shape && of_first_frame && item.hold) {
+    config.Fail("hold",
+                "the recording's reference shape is its first frame, in which the object is held "
+                "out of shape: give a `reference` mesh");
+  }
+}
+
+PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
+                                      const ScanSettings& scan, bool tells_the_shape) {
   PredictedRecording item;
   item.recording = LoadRecording(config.Path("recording"));
   item.name = config.Text("name", item.recording.name);
+  if (item.recording.kind != FrameKind::kMarkers)
+    item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
   const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
   const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
   item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
@@ -72,8 +98,6 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   for (const Config& effect : config.Items("effects"))
     item.effects.push_back(MakeEffect(effect, material));
 
-  if (item.recording.kind != FrameKind::kMarkers)
-    config.Fail("recording", "is no marker recording; scans cannot be predicted against yet");
   constexpr size_t kFewest = 3;
   if (item.frames.size() < kFewest) {
     config.Fail("recording",
@@ -82,11 +106,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   }
   if (item.fitted && item.fit_until < item.recording.times[item.frames[kFewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", kFewest));
-  if (!item.recording.marker_places.allFinite())
-    config.Fail("recording",
-                "lacks marker_places: where each marker sits on the undeformed object");
-  if (item.recording.reference.source == ReferenceSource::kFirstFrame)
-    config.Fail("recording", "has no reference shape: markers alone do not tell it");
+  CheckObserved(config, item, tells_the_shape);
   RequireStaticStart(config, item);
   for (const MeasuredForce& force : item.recording.forces) {
     const double first = item.recording.times[item.frames.front()];
@@ -217,8 +237,10 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
+  study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings"))
-    study.recordings.push_back(ReadRecordingEntry(item, study.effects.front().get()));
+    study.recordings.push_back(ReadRecordingEntry(item, study.effects.front().get(), study.scan,
+                                                  /*tells_the_shape=*/study.recordings.empty()));
   if (study.recordings.empty()) config.Fail("recordings", "is empty");
   if (std::none_of(study.recordings.begin(), study.recordings.end(),
                    [](const PredictedRecording& item) { return item.fitted; }))

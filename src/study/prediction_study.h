@@ -18,6 +18,9 @@
 #include "fit/calibration.h"
 #include "scan/recording.h"
 #include "study/physics.h"
+#include "study/scan_frames.h"
+#include "study/scan_settings.h"
+#include "study/surface_patches.h"
 
 namespace lacuna {
 
@@ -30,8 +33,9 @@ struct Hold {
 struct PredictedRecording {
   std::string name;
   Recording recording;
-  std::vector<int> frames;  // ascending
-  bool fitted = true;       // false: only predicted
+  std::shared_ptr<const ScanFrames> scans;  // its points; null: markers
+  std::vector<int> frames;                  // ascending
+  bool fitted = true;                       // false: only predicted
   // Frames after this time are held out: predicted, not fitted. s
   double fit_until = std::numeric_limits<double>::infinity();
   std::optional<Hold> hold;
@@ -64,9 +68,13 @@ struct PredictionStudy {
   std::vector<std::shared_ptr<Effect>> effects;  // the material first
   TimeScheme scheme = TimeScheme::kBdf2;
   double time_step = 0.005;  // s
-  double noise = 0;          // m, of a measured coordinate; 0: estimated from the recordings
+  double noise = 0;          // m, of a marker's coordinate; 0: estimated from the recordings
   // m, of a marker's place on the object: it adds to all frames alike.
   double place_deviation = 0.001;
+  ScanSettings scan;
+  // Into which scans divide the surface; empty: chosen on the mesh. Given where predictions with
+  // different meshes are compared.
+  SurfacePatches patches;
   std::vector<ModelParameter> fitted;
   std::vector<PredictedRecording> recordings;
   nlohmann::json configuration;  // resolved, SI

@@ -13,6 +13,7 @@
 #include "study/reference.h"
 #include "study/results.h"
 #include "study/run_stage.h"
+#include "study/scan_settings.h"
 
 namespace lacuna {
 namespace {
@@ -22,25 +23,6 @@ constexpr int kStatesVersion = 1;
 constexpr int kReferenceVersion = 1;
 constexpr int kMotionVersion = 2;
 constexpr int kResultsVersion = 2;
-
-FilterOptions ReadFilter(const Config& config) {
-  FilterOptions filter;
-  filter.outlier_neighbours = config.Integer("outlier_neighbours", 0, 1000, 16);
-  filter.outlier_deviations =
-      config.Number("outlier_deviations", kPositive, filter.outlier_deviations);
-  filter.voxel_size = config.Quantity("voxel", kLength, kNotNegative, filter.voxel_size);
-  filter.normal_neighbours = config.Integer("normal_neighbours", 3, 1000, filter.normal_neighbours);
-  return filter;
-}
-
-SurfaceOptions ReadSurface(const Config& config) {
-  SurfaceOptions surface;
-  surface.depth = config.Integer("depth", 0, 12, surface.depth);
-  surface.samples_per_node = config.Number("samples_per_node", kPositive, surface.samples_per_node);
-  surface.point_weight = config.Number("point_weight", kNotNegative, surface.point_weight);
-  surface.edge_length = config.Quantity("edge_length", kLength, kNotNegative, surface.edge_length);
-  return surface;
-}
 
 CpdOptions ReadRegistration(const Config& config) {
   CpdOptions cpd;

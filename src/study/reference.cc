@@ -126,6 +126,19 @@ ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameSta
   return MakeReferenceBody(request);
 }
 
+ReferenceBody MakeReferenceBody(const PredictionStudy& study) {
+  const PredictedRecording& first = study.recordings.front();
+  ReferenceRequest request{study.name, first.recording, study.mesh, study.sheet_layers,
+                           first.frames.front()};
+  FrameState state;
+  if (first.recording.reference.source == ReferenceSource::kFirstFrame) {
+    state = MakeFrameState(first.recording, request.first_frame,
+                           {study.scan.filter, study.scan.surface});
+    request.first_surface = &state.surface;
+  }
+  return MakeReferenceBody(request);
+}
+
 void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {
   WriteTetMesh(folder / "body.msh", body.mesh);
   std::string notes;

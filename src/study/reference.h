@@ -8,6 +8,7 @@
 #include "geometry/tet_mesh.h"
 #include "record/run_record.h"
 #include "study/frame_states.h"
+#include "study/prediction_study.h"
 #include "study/reconstruction.h"
 
 namespace lacuna {
@@ -33,6 +34,8 @@ struct ReferenceRequest {
 // Throws InputError when the shape cannot be meshed, saying why and where.
 ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first);
+// From the first recording; where its shape is a scan, that of its first frame used.
+ReferenceBody MakeReferenceBody(const PredictionStudy& study);
 
 void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
 ReferenceBody ReadReferenceBody(const std::filesystem::path& folder);

@@ -1,5 +1,7 @@
 #include "study/replayed_motion.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 
 #include "fem/element_strain.h"
@@ -56,7 +58,9 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   Model loaded = model;
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
   const Body& body = *model.body;
-  const Embedding& places = recording.places();
+  CHECK(recording.Markers() != nullptr) << "only markers are replayed";
+  const MarkerObserver& observer = *recording.Markers();
+  const Embedding& places = observer.places_in_mesh();
   const std::vector<int>& frames = recording.item().frames;
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
@@ -71,7 +75,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const int at_start = static_cast<int>(start - times.begin());
   times.insert(start, options.start_time);
 
-  const Eigen::Index markers = recording.MarkerCount();
+  const Eigen::Index markers = recording.PointCount();
   const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
   motion.predicted.resize(3 * markers, count);
   motion.velocity.resize(3 * markers, count);
@@ -92,8 +96,8 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       return;
     }
     const int frame = index < at_start ? index : index - 1;
-    motion.predicted.col(frame) = AtMarkers(places, body.mesh, state.position);
-    motion.velocity.col(frame) = AtMarkers(places, body.mesh, state.velocity);
+    motion.predicted.col(frame) = observer.rows() * state.position;
+    motion.velocity.col(frame) = observer.rows() * state.velocity;
     for (Eigen::Index m = 0; m < markers; ++m) {
       const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
       motion.strain(m, frame) = LargestPrincipal(strain.strain);

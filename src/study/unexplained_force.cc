@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/amplitude_estimate.h"
+#include "study/measurement_errors.h"
 
 namespace lacuna {
 namespace {
@@ -71,7 +72,7 @@ class Problem {
       shapes_.conservativeResize(Eigen::NoChange, shapes_.cols() + 1);
       shapes_.rightCols(1) = nuisance.direction.perturbation.held_force;
     }
-    const int markers = recording.MarkerCount();
+    const int markers = recording.PointCount();
     const int most =
         std::max(2 * field.KnotCount(),
                  static_cast<int>(kMostEntries / (3.0 * markers * kShapes * field.KnotCount())));
@@ -117,15 +118,14 @@ class Problem {
     for (Eigen::Index k = 0; k < nuisances; ++k)
       if (held_shape_[k] >= 0) held(held_shape_[k], forces + k) = 1;
     std::vector<Eigen::MatrixXd> moved;
-    const Eigen::MatrixXd at_markers =
-        AtMarkers(recording_.places(), recording_.model().body->mesh, response.basis());
+    const Eigen::MatrixXd at_markers = recording_.Markers()->rows() * response.basis();
     response.Respond(held, hats, times, [&](int, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
       moved.emplace_back(at_markers * q);
     });
     Eigen::MatrixXd by = Eigen::MatrixXd::Zero(Rows(), forces + nuisances);
     Linearised rows;
     ForEachSeen([&](int frame, int m, Eigen::Index row) {
-      const Eigen::Index index = row / (3 * recording_.MarkerCount());
+      const Eigen::Index index = row / (3 * recording_.PointCount());
       rows.coordinates += 3;
       by.middleRows<3>(row) = moved[index].middleRows<3>(3 * m);
       for (Eigen::Index k = 0; k < nuisances; ++k)
@@ -141,7 +141,7 @@ class Problem {
 
  private:
   Eigen::Index Rows() const {
-    return 3 * recording_.MarkerCount() * static_cast<Eigen::Index>(chosen_.size());
+    return 3 * recording_.PointCount() * static_cast<Eigen::Index>(chosen_.size());
   }
   const Eigen::Matrix3Xd& Measured(int frame) const {
     return recording_.item().recording.markers.positions[recording_.item().frames[frame]];
@@ -150,15 +150,16 @@ class Problem {
   void ForEachSeen(const Visit& visit) const {
     Eigen::Index row = 0;
     for (const int frame : chosen_)
-      for (int m = 0; m < recording_.MarkerCount(); ++m, row += 3)
+      for (int m = 0; m < recording_.PointCount(); ++m, row += 3)
         if (Measured(frame).col(m).allFinite()) visit(frame, m, row);
   }
   Eigen::MatrixXd Whiten(const Eigen::MatrixXd& rows) const {
-    std::vector<char> observed;
+    std::vector<int> observed;
     for (const int frame : chosen_)
-      for (int m = 0; m < recording_.MarkerCount(); ++m)
+      for (int m = 0; m < recording_.PointCount(); ++m)
         observed.push_back(Measured(frame).col(m).allFinite());
-    return Whitened(rows, observed, recording_.MarkerCount(), noise_, place_deviation_);
+    return Whitened(rows, observed, recording_.PointCount(),
+                    MeasurementErrors{noise_, place_deviation_});
   }
 
   const RecordingModel& recording_;

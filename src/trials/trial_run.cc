@@ -40,7 +40,8 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   double in_noise = effect->errors.in_noise;
   if (!effect->refitted) {
     Progress progress(Silent());
-    const EffectRefit refit = Refit(problem, values, effect->scored, {}, &progress);
+    const EffectRefit refit =
+        Refit(problem, values, effect->scored, {}, problem.Linearise(values, false), &progress);
     if (!refit.message.empty()) return;
     calibration = refit.calibration;
     in_noise = refit.errors.in_noise;
@@ -66,9 +67,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
 TrialOutcome RunCase(const std::filesystem::path& folder) {
   const auto began = std::chrono::steady_clock::now();
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
-  const PredictedRecording& first = study.recordings.front();
-  const ReferenceBody reference = MakeReferenceBody(
-      {study.name, first.recording, study.mesh, study.sheet_layers, first.frames.front()});
+  const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
   Progress progress(Silent());
   const Calibration calibration = problem.Fit(problem.Start(), &progress);

@@ -52,9 +52,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   }
   FilmCase(without, folder, /*rough=*/true);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
-  const PredictedRecording& first = study.recordings.front();
-  const ReferenceBody reference = MakeReferenceBody(
-      {study.name, first.recording, study.mesh, study.sheet_layers, first.frames.front()});
+  const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
   Eigen::VectorXd values = problem.Start();
   values[0] = trial.young_modulus;
@@ -74,16 +72,17 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const std::shared_ptr<Effect> effect = MakeHidden(none);
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     directions.push_back({{.effect = effect, .parameter = static_cast<int>(k)}});
-  const LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
   const Eigen::Index known = values.size();
   Eigen::MatrixXd columns(misfit.by.rows(), known + 1);
   columns << misfit.by.leftCols(known), misfit.by.rightCols(amount.size()) * amount;
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
   priors.push_back({});
-  const SeriesNoise noise{trial.noise, trial.noise_correlation_time, study.place_deviation};
-  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise, false),
-                          WhitenedRows(columns, misfit, noise, false), priors);
+  const LinearModel model(
+      WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
+      WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
   std::vector<int> taken;
   for (int k = 0; k < known; ++k) taken.push_back(k);
   const int own = static_cast<int>(known);

@@ -10,8 +10,9 @@ namespace lacuna {
 namespace {
 
 SeriesLayout Irregular() {
-  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<char>(18, 1)};
-  layout.observed[3] = layout.observed[7] = layout.observed[17] = 0;
+  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<int>(18, 1)};
+  layout.count[3] = layout.count[7] = layout.count[17] = 0;
+  layout.count[0] = 4;  // the mean of four
   return layout;
 }
 
@@ -25,9 +26,10 @@ TEST(SeriesNoise, WhitensItsCovariance) {
   Eigen::MatrixXd expected = covariance;
   for (Eigen::Index i = 0; i < layout.Rows(); ++i) {
     for (Eigen::Index j = 0; j < layout.Rows(); ++j) {
-      if (i % 3 != j % 3 || !layout.observed[i] || !layout.observed[j]) continue;
+      if (i % 3 != j % 3 || !layout.count[i] || !layout.count[j]) continue;
       const double apart = std::abs(layout.times[i / 3] - layout.times[j / 3]);
-      covariance(i, j) = 0.09 * std::exp(-apart / 0.2) + 0.49;
+      covariance(i, j) =
+          0.09 * std::exp(-apart / 0.2) / std::sqrt(layout.count[i] * layout.count[j]) + 0.49;
       expected(i, j) = i == j;
     }
   }
@@ -39,7 +41,7 @@ TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
   const std::vector<char> chosen = {1, 1, 1, 0, 1, 0};
   SeriesLayout without = layout;
   for (Eigen::Index row = 0; row < layout.Rows(); ++row)
-    if (!chosen[row / 3]) without.observed[row] = 0;
+    if (!chosen[row / 3]) without.count[row] = 0;
   const Eigen::MatrixXd rows = Eigen::MatrixXd::Random(layout.Rows(), 2);
   const SeriesNoise noise{0.3, 0.2, 0.7};
   EXPECT_EQ(Whitened(rows, layout, noise, chosen), Whitened(rows, without, noise));
@@ -48,7 +50,7 @@ TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
 TEST(SeriesNoise, TellsHowLongNoiseLasts) {
   SeriesLayout layout{40, {}, {}};
   for (int frame = 0; frame < 60; ++frame) layout.times.push_back(0.01 * frame);
-  layout.observed.assign(static_cast<size_t>(layout.Rows()), 1);
+  layout.count.assign(static_cast<size_t>(layout.Rows()), 1);
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (const double memory : {0.0, 0.5}) {

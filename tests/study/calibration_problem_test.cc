@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "study/held_bar.h"
+#include "study/recording_misfit.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -84,7 +84,7 @@ TEST(CalibrationProblem, RecoversWhatWasFilmed) {
 
   EXPECT_LT(fit.rms, 1.3);
   EXPECT_GT(fit.start_rms, 2 * fit.rms);
-  const std::vector<RecordingMisfit> misfits = problem.Misfits(fit.parameters);
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, fit.parameters);
   ASSERT_EQ(misfits.size(), 1u);
   EXPECT_EQ(misfits[0].in_fit.frames, 16);  // 0 to 0.15 s
   EXPECT_EQ(misfits[0].held_out.frames, kFrames - 16);
@@ -131,43 +131,6 @@ TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
   EXPECT_NE(other.parameters, plain.parameters);
 }
 
-// Markers that are not seen, or not in all frames, have a covariance of their own.
-TEST(Whitening, IsByTheInverseRootOfTheCovariance) {
-  constexpr int kOf = 3, kAt = 7, kColumns = 5;  // markers, frames
-  constexpr double kNoise = 0.3, kPlace = 2.0;
-  std::vector<char> observed(kOf * kAt, 1);
-  observed[0] = observed[3 * kOf] = 0;                      // the first twice not
-  for (int f = 0; f < kAt; ++f) observed[f * kOf + 2] = 0;  // the last never
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Random(3 * kOf * kAt, kColumns);
-  for (int k = 0; k < kOf * kAt; ++k)
-    if (!observed[k]) rows.middleRows(3 * k, 3).setZero();
-  const Eigen::MatrixXd white = Whitened(rows, observed, kOf, kNoise, kPlace);
-
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(kColumns, kColumns);
-  for (int m = 0; m < kOf; ++m) {
-    std::vector<Eigen::Index> seen;
-    for (int f = 0; f < kAt; ++f)
-      if (observed[f * kOf + m]) seen.push_back(3 * (f * kOf + m));
-    const Eigen::Index count = static_cast<Eigen::Index>(seen.size());
-    if (count == 0) continue;
-    const Eigen::MatrixXd covariance = kNoise * kNoise * Eigen::MatrixXd::Identity(count, count) +
-                                       kPlace * kPlace * Eigen::MatrixXd::Ones(count, count);
-    const Eigen::MatrixXd root =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(covariance).operatorInverseSqrt();
-    for (int axis = 0; axis < 3; ++axis) {
-      Eigen::MatrixXd own(count, kColumns);
-      for (Eigen::Index k = 0; k < count; ++k) own.row(k) = rows.row(seen[k] + axis);
-      const Eigen::MatrixXd expected = root * own;
-      gram += expected.transpose() * expected;
-    }
-  }
-  EXPECT_LT((white.transpose() * white - gram).norm(), 1e-12 * gram.norm());
-  for (int k = 0; k < kOf * kAt; ++k)
-    EXPECT_EQ(white.middleRows(3 * k, 3).norm() == 0, !observed[k]);
-  // A place that is known for sure takes nothing away.
-  EXPECT_EQ(Whitened(rows, observed, kOf, kNoise, 0), rows / kNoise);
-}
-
 std::string MessageOf(const PredictionStudy& study) {
   try {
     const CalibrationProblem problem(study, BarMesh({2, 1, 1}, 1));
@@ -204,8 +167,8 @@ TEST(MarkerNoise, IsThatOfTheCoordinates) {
     frames.push_back(frame);
   }
   // The median of 57 medians of 198 values each.
-  EXPECT_NEAR(EstimateMarkerNoise(item, frames), kNoise, 0.05 * kNoise);
-  EXPECT_EQ(EstimateMarkerNoise(item, {0, 1}), 0);
+  EXPECT_NEAR(EstimateRecordingNoise(item, frames), kNoise, 0.05 * kNoise);
+  EXPECT_EQ(EstimateRecordingNoise(item, {0, 1}), 0);
 }
 
 }  // namespace

@@ -55,10 +55,8 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
   return markers;
 }
 
-void WriteBarRecording(const std::filesystem::path& folder,
-                       const std::vector<Eigen::Matrix3Xd>& markers) {
-  std::filesystem::create_directories(folder);
-  std::ofstream box(folder / "box.off");
+void WriteBox(const std::filesystem::path& file) {
+  std::ofstream box(file);
   box << "OFF\n8 12 0\n";
   for (int corner = 0; corner < 8; ++corner)
     box << (corner & 1 ? 0.08 : 0) << ' ' << (corner & 2 ? 0.01 : -0.01) << ' '
@@ -66,6 +64,12 @@ void WriteBarRecording(const std::filesystem::path& folder,
   for (const char* face : {"0 2 1", "1 2 3", "4 5 6", "5 7 6", "0 1 4", "1 5 4", "2 6 3", "3 6 7",
                            "0 4 2", "2 4 6", "1 3 5", "3 7 5"})
     box << "3 " << face << '\n';
+}
+
+void WriteBarRecording(const std::filesystem::path& folder,
+                       const std::vector<Eigen::Matrix3Xd>& markers) {
+  std::filesystem::create_directories(folder);
+  WriteBox(folder / "box.off");
 
   std::ofstream csv(folder / "markers.csv");
   csv << "t";

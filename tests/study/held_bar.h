@@ -39,6 +39,9 @@ Eigen::Matrix3Xd BarMarkerPlaces();
 // Positions of the markers in all frames.
 std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth);
 
+// The bar's shape, as an OFF file.
+void WriteBox(const std::filesystem::path& file);
+
 // Writes recording.yaml, markers.csv, load.csv and box.off.
 void WriteBarRecording(const std::filesystem::path& folder,
                        const std::vector<Eigen::Matrix3Xd>& markers);

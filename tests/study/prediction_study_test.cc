@@ -121,10 +121,25 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
               HasSubstr("recordings[0].recording: lacks marker_places"));
 }
 
-TEST_F(ReadingAPredictionStudy, RefusesScans) {
-  const std::string scans = std::string(LACUNA_SOURCE_DIR) + "/experiments/recordings/bend";
-  EXPECT_THAT(MessageAfter({{(folder_ / "recording.yaml").string(), scans}}),
-              HasSubstr("recordings[0].recording: is no marker recording"));
+TEST_F(ReadingAPredictionStudy, TakesScansButNoHeldOneForTheShape) {
+  Replacements scans{{(folder_ / "recording.yaml").string(),
+                      std::string(LACUNA_SOURCE_DIR) + "/experiments/recordings/bend"}};
+  EXPECT_THAT(MessageAfter(scans), HasSubstr("recordings[0].hold: the recording's reference shape "
+                                             "is its first frame, in which the object is held"));
+  scans.insert(kNoHold.begin(), kNoHold.end());
+  const PredictionStudy study = ReadBarStudy(folder_.Path(), scans);
+  ASSERT_NE(study.recordings[0].scans, nullptr);
+  EXPECT_EQ(study.recordings[0].frames.size(), 16u);
+  EXPECT_EQ(study.scan.patches, 150);
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersWhoseGripFollowsAScan) {
+  EXPECT_THAT(
+      MessageAfterInRecording(
+          {{"reference",
+            "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, "
+            "0]}}]\nreference"}}),
+      HasSubstr("tool is to follow the scan, but there are only markers"));
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesAReleaseAfterTheEnd) {

@@ -1,0 +1,64 @@
+// What a fit found: calibration.json.
+#ifndef LACUNA_STUDY_CALIBRATION_RECORD_H_
+#define LACUNA_STUDY_CALIBRATION_RECORD_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fit/calibration.h"
+#include "record/run_record.h"
+#include "study/recording_misfit.h"
+
+namespace lacuna {
+
+struct FittedParameter {
+  std::string name, unit;  // SI
+  bool log_scale = false;
+  ParameterEstimate estimate;
+};
+
+// Of a recording of scans.
+struct FittedScan {
+  Eigen::Matrix3Xd places;  // of the patches on the undeformed object, m
+  double patch_noise = 0;   // m, of a patch's mean in one frame, rms over all that were seen
+  double used = 0;          // share of the frames' points that were compared
+};
+
+struct FittedRecording {
+  std::string name;
+  bool fitted = true;
+  double noise = 0;  // m, the white part, as this recording's own points tell it
+  MisfitMeasure in_fit, held_out;
+  std::optional<FittedScan> scan;  // absent: markers
+};
+
+// calibration/calibration.json
+struct CalibrationRecord {
+  std::filesystem::path experiment;
+  bool usable = false;
+  std::string message;
+  // m, of a marker's coordinate and of a scanned point along the normal, that residuals are weighed
+  // with; 0: there are none.
+  double noise = 0, scan_noise = 0;
+  double start_rms = 0, rms = 0;  // of the whitened residuals, before and after
+  int predictions = 0;
+  std::vector<FittedParameter> parameters;  // the model's, then the recordings'
+  std::vector<FittedRecording> recordings;
+  // What the fit took for granted against its prior: markers far from where the recording has them,
+  // a clock or a hold far from what was allowed. Physics may hide there.
+  std::vector<std::string> strains;
+  MeshRecord mesh;
+};
+
+std::string VerdictName(ParameterEstimate::Verdict verdict);
+
+void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem::path& file);
+// Throws InputError when it is not one.
+CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_CALIBRATION_RECORD_H_

@@ -1,0 +1,65 @@
+#include "study/recording_misfit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double noise) {
+  MisfitMeasure measure;
+  const Misfit& misfit = recording.misfit;
+  const Eigen::Index components = misfit.Components();
+  double squares = 0, weighted = 0;
+  for (size_t f = 0; f < recording.fitted.size(); ++f) {
+    if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
+    ++measure.frames;
+    for (int point = 0; point < misfit.points; ++point) {
+      const Eigen::Index at = static_cast<Eigen::Index>(f) * misfit.points + point;
+      if (misfit.count[at] == 0) continue;
+      const double distance =
+          (misfit.residual.segment(components * at, components) - recording.place_offset.col(point))
+              .norm();
+      squares += distance * distance;
+      weighted += misfit.count[at] * distance * distance;
+      measure.largest = std::max(measure.largest, distance);
+      ++measure.points;
+    }
+  }
+  if (measure.points == 0) return measure;
+  measure.rms = std::sqrt(squares / measure.points);
+  measure.in_noise =
+      std::sqrt(weighted / measure.points) / (std::sqrt(static_cast<double>(components)) * noise);
+  return measure;
+}
+
+}  // namespace
+
+std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values) {
+  problem.SetModel(values);
+  std::vector<RecordingMisfit> all;
+  for (size_t r = 0; r < problem.models().size(); ++r) {
+    const RecordingModel& model = problem.models()[r];
+    const PredictedRecording& item = model.item();
+    const MeasurementErrors errors = problem.ErrorsOf(model);
+    RecordingMisfit recording;
+    recording.name = item.name;
+    recording.misfit = model.Predict(item.frames, problem.NuisanceOf(r, values), {});
+    // Of a recording that is not fitted, only what it shows before it moves tells the places.
+    std::vector<char> tells_places;
+    for (const int frame : recording.misfit.frames) {
+      const double time = item.recording.times[frame];
+      recording.fitted.push_back(item.fitted && time <= item.fit_until);
+      tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
+    }
+    recording.place_offset = CommonError(recording.misfit.residual, recording.misfit.count,
+                                         recording.misfit.points, errors, tells_places);
+    recording.in_fit = Measure(recording, true, errors.noise);
+    recording.held_out = Measure(recording, false, errors.noise);
+    all.push_back(std::move(recording));
+  }
+  return all;
+}
+
+}  // namespace lacuna
