@@ -59,6 +59,15 @@ ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<Li
 
 }  // namespace
 
+LinearModel LinearModel::WithResidual(const Eigen::VectorXd& residual,
+                                      const Eigen::MatrixXd& columns) const {
+  CHECK_EQ(columns.cols(), products_.cols());
+  LinearModel other = *this;
+  other.squares_ = residual.squaredNorm();
+  other.toward_ = columns.transpose() * residual;
+  return other;
+}
+
 LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) const {
   CHECK_GT(variance, 0);
   LinearFit fit;

@@ -35,6 +35,9 @@ class LinearModel {
   LinearModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
               std::vector<LinearPrior> priors);
 
+  // The same columns with another residual.
+  LinearModel WithResidual(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns) const;
+
   Eigen::Index rows() const { return rows_; }
   double squares() const { return squares_; }  // ‖r‖²
 

@@ -150,16 +150,22 @@ Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths) {
 }
 
 double WhiteNoise(const Eigen::MatrixXd& positions) {
-  std::vector<double> of_rows;
-  for (Eigen::Index row = 0; row < positions.rows(); ++row) {
-    std::vector<double> second;
-    for (Eigen::Index f = 1; f + 1 < positions.cols(); ++f) {
-      const double value = positions(row, f - 1) - 2 * positions(row, f) + positions(row, f + 1);
-      if (!std::isnan(value)) second.push_back(std::abs(value));
+  const auto from_differences = [&](const Eigen::VectorXd& weight) {
+    std::vector<double> of_rows;
+    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+      std::vector<double> differences;
+      for (Eigen::Index f = 0; f + weight.size() <= positions.cols(); ++f) {
+        const double value = positions.row(row).segment(f, weight.size()) * weight;
+        if (!std::isnan(value)) differences.push_back(std::abs(value));
+      }
+      if (!differences.empty())
+        of_rows.push_back(Median(std::move(differences)) / (0.6745 * weight.norm()));
     }
-    if (!second.empty()) of_rows.push_back(Median(std::move(second)) / (0.6745 * std::sqrt(6.0)));
-  }
-  return Median(std::move(of_rows));
+    return Median(std::move(of_rows));
+  };
+  const double second = from_differences(Eigen::Vector3d(1, -2, 1));
+  const double fourth = from_differences((Eigen::VectorXd(5) << 1, -4, 6, -4, 1).finished());
+  return fourth < second ? fourth : second;
 }
 
 std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions,

@@ -28,8 +28,9 @@ Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths);
 Eigen::MatrixXd Centred(Eigen::MatrixXd series);
 
 // σ of the white part of measured coordinates (rows): the median of |second differences| over
-// 0.6745 √6, of each row, then the median of the rows. Smooth motion hardly adds to it, and noise
-// that is correlated over frames does not show. NaN without three frames in a row.
+// 0.6745 √6, of each row, then the median of the rows; or the same of fourth differences (√70) where
+// that is less, as they see less of a motion that is quick for the frame rate. Noise that is
+// correlated over frames hardly shows. NaN without three frames in a row.
 double WhiteNoise(const Eigen::MatrixXd& positions);
 
 // Frames over which the points, measured at `positions`, rest.

@@ -17,9 +17,9 @@ using Verdict = Diagnosis::Verdict;
 
 // Evidence below which an effect is not worth a refit, and how far behind the best one it may be
 // where first order need not be trusted.
-constexpr double kNoEvidence = 2;
-constexpr double kCloseBehind = 8;
-constexpr int kMostRefits = 8;
+constexpr double kNoEvidence = 3;
+constexpr double kCloseBehind = 5;
+constexpr int kMostRefits = 6;
 
 nlohmann::json Number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
@@ -54,6 +54,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   EffectRanking ranking = RankEffects(problem, values, progress, options.without);
   diagnosis.scored = ranking.variants;
   diagnosis.errors = ErrorsOf(problem, values);
+  diagnosis.control = ranking.control;
   for (ScoredEffect& effect : ranking.effects) {
     diagnosis.ranking.emplace_back();
     diagnosis.ranking.back().scored = std::move(effect);
@@ -66,7 +67,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
     if (ranked.refitted || done == kMostRefits) return;
     ++done;
     ranked.refitted = true;
-    refits[k] = Refit(problem, values, ranked.scored, ranking.adopted, ranking.misfit, progress);
+    refits[k] = Refit(problem, values, &ranked.scored, ranking.adopted, ranking.misfit, progress);
     ranked.refit_message = refits[k].message;
     ranked.errors = refits[k].errors;
     ranked.calibration = refits[k].calibration;
@@ -80,8 +81,11 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   }
 
   // The noise is what the best of them leaves.
-  const FittedHypothesis present = HypothesisAt(problem, values, ranking.adopted, ranking.misfit);
-  CHECK(present.misfit.usable) << present.misfit.message;
+  const EffectRefit as_it_is =
+      Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress);
+  CHECK(as_it_is.message.empty()) << as_it_is.message;
+  const FittedHypothesis& present = as_it_is.hypothesis;
+  diagnosis.errors.without_nuisances = as_it_is.errors.without_nuisances;
   const auto weigh = [&] {
     const FittedHypothesis* best = &present;
     double least = EvidenceOf(present, ranking.noise).misfit;
@@ -92,13 +96,12 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
       least = misfit;
       best = &refits[k].hypothesis;
     }
-    diagnosis.noise_level =
-        LevelOf(LeftBy(*best, ranking.noise), best->misfit, best->misfit.by.cols());
-    const LinearFit before = EvidenceOf(present, diagnosis.noise_level);
+    diagnosis.noise_level = LevelOf(best->left, best->misfit, best->misfit.by.cols());
+    const HypothesisEvidence before = EvidenceOf(present, diagnosis.noise_level);
     for (size_t k = 0; k < refits.size(); ++k) {
       RankedEffect& ranked = diagnosis.ranking[k];
       if (!ranked.refitted || !refits[k].message.empty()) continue;
-      const LinearFit after = EvidenceOf(refits[k].hypothesis, diagnosis.noise_level);
+      const HypothesisEvidence after = EvidenceOf(refits[k].hypothesis, diagnosis.noise_level);
       ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis.ranking.size());
       ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
     }
@@ -117,8 +120,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
         refit(k);
   }
   const FittedHypothesis& left = *weigh();
-  const Eigen::VectorXd white =
-      WhitenedRows(LeftBy(left, diagnosis.noise_level), left.misfit, 0, false);
+  const Eigen::VectorXd white = WhitenedRows(left.left, left.misfit, 0, false);
   diagnosis.left_in_noise =
       std::sqrt(white.squaredNorm() /
                 static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(left.misfit))));
@@ -154,7 +156,8 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                         {"explained_share", effect.explained},
                         {"in_fit_rms_m", effect.errors.in_fit_rms},
                         {"held_out_rms_m", effect.errors.held_out_rms},
-                        {"held_out_in_noise", effect.errors.in_noise}};
+                        {"held_out_in_noise", effect.errors.in_noise},
+                        {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances}};
     }
     ranking.push_back(entry);
   }
@@ -179,7 +182,6 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                               {"has_held_out", diagnosis.errors.has_held_out},
                               {"control_evidence", diagnosis.control},
                               {"left_in_noise", diagnosis.left_in_noise},
-                              {"unexplained_evidence", diagnosis.unexplained},
                               {"nuisances", nuisances},
                               {"ranking", ranking}};
   WriteFileAtomically(file, all.dump(2) + "\n");

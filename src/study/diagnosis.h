@@ -57,7 +57,6 @@ struct Diagnosis {
   int scored = 0;                         // effects and variants
   double control = 0;        // the evidence that one in twenty controls finds without an effect
   double left_in_noise = 0;  // of the best hypothesis, over all frames, in σ
-  double unexplained = 0;    // evidence for smooth errors in what the best hypothesis leaves
 };
 
 std::string VerdictName(Diagnosis::Verdict verdict);

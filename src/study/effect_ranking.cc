@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "scan/random_bits.h"
+
 namespace lacuna {
 namespace {
 
@@ -107,6 +109,41 @@ Score ScoreOf(const Weighed& weighed, const std::vector<int>& base, const Linear
   }
   if (raw > 0) score.absorbed = std::clamp(1 - visible / raw, 0.0, 1.0);
   return score;
+}
+
+// The largest evidence that all effects find in nineteen of twenty residuals that no effect has
+// made: what `best` leaves, shuffled.
+double ControlEvidence(const Weighed& weighed, const LinearisedMisfit& misfit,
+                       const std::vector<int>& best, const std::vector<int>& base,
+                       const std::vector<std::vector<int>>& effects, double variance) {
+  constexpr int kDraws = 20;
+  const Eigen::VectorXd left =
+      weighed.residual + weighed.columns(Eigen::all, best) * weighed.all.Fit(best, variance).change;
+  std::vector<double> largest;
+  for (uint64_t draw = 0; draw < kDraws; ++draw) {
+    Eigen::VectorXd shuffled = left;
+    for (const LinearisedMisfit::Part& part : misfit.parts) {
+      const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
+      const Eigen::Index series = part.layout.series;
+      const Eigen::Index shift = static_cast<Eigen::Index>(RandomBits({draw, part.recording, 1}) %
+                                                           static_cast<uint64_t>(frames));
+      for (Eigen::Index s = 0; s < series; ++s) {
+        const double sign =
+            RandomBits({draw, part.recording, 2, static_cast<uint64_t>(s)}) % 2 == 0 ? 1 : -1;
+        for (Eigen::Index f = 0; f < frames; ++f)
+          shuffled[part.first_row + f * series + s] =
+              sign * left[part.first_row + (f + shift) % frames * series + s];
+      }
+    }
+    const LinearModel control = weighed.all.WithResidual(shuffled, weighed.columns);
+    const double before = control.Fit(base, variance).log_evidence;
+    double most = 0;
+    for (const std::vector<int>& effect : effects)
+      most = std::max(most, control.Fit(Joined(base, effect), variance).log_evidence - before);
+    largest.push_back(most);
+  }
+  std::sort(largest.begin(), largest.end());
+  return largest[kDraws - 2];
 }
 
 std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
@@ -327,7 +364,12 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
           weighed.all.Collinearity(base, entry.own, other.own, variance) > kLookAlike)
         scored.look_alikes.push_back(other.scored.candidate.type);
   }
+  std::vector<int> best_fit = base;
+  if (!entries.empty() && entries[0].scored.score.evidence > 0)
+    best_fit = Joined(base, entries[0].own);
   for (Entry& entry : entries) ranking.effects.push_back(std::move(entry.scored));
+  ranking.control =
+      ControlEvidence(weighed, misfit, best_fit, base, own, variance) - Price(candidates.size());
   ranking.misfit = misfit;
   ranking.misfit.by.resize(0, 0);
   progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));

@@ -68,7 +68,10 @@ struct EffectRanking {
   NoiseLevel noise;
   LinearisedMisfit misfit;       // at the fitted values, without columns of hypotheses
   double held_out_in_noise = 0;  // of the model with what was adopted
-  int variants = 0;              // scored in all
+  // The evidence that one in twenty controls finds: what the best hypothesis leaves, its frames
+  // moved along and its signs drawn anew, so that no effect is in it.
+  double control = 0;
+  int variants = 0;  // scored in all
 };
 
 // Of the study fitted to `values` (CalibrationProblem::parameters), of the whole catalogue but the

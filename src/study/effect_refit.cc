@@ -34,6 +34,14 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
   return kept;
 }
 
+std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
+  for (LinearPrior& prior : priors) {
+    prior.mean = 0;
+    prior.positive = false;
+  }
+  return priors;
+}
+
 }  // namespace
 
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
@@ -69,33 +77,70 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   Eigen::MatrixXd& by = hypothesis.misfit.by;
-  const Eigen::Index own = by.cols();
-  by.conservativeResize(Eigen::NoChange, own + adopted.by.cols());
+  hypothesis.parameters = by.cols();
+  by.conservativeResize(Eigen::NoChange, hypothesis.parameters + adopted.by.cols());
   by.rightCols(adopted.by.cols()) = adopted.by;
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
+  hypothesis.left = hypothesis.misfit.residual;
+  if (adopted.by.cols() > 0) {
+    std::vector<int> all;
+    for (Eigen::Index k = 0; k < adopted.by.cols(); ++k) all.push_back(static_cast<int>(k));
+    const LinearFit fit = LinearModel(WhitenedRows(hypothesis.left, same, 0, false),
+                                      WhitenedRows(adopted.by, same, 0, false), adopted.priors)
+                              .Fit(all, 1);
+    hypothesis.left += adopted.by * fit.change;
+  }
   return hypothesis;
 }
 
-namespace {
-
-LinearFit FitAll(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::MatrixXd columns = WhitenedRows(misfit.by, misfit, noise.correlation_time, false);
+  const Eigen::VectorXd left = WhitenedRows(hypothesis.left, misfit, noise.correlation_time, false);
   std::vector<int> all;
-  for (Eigen::Index k = 0; k < misfit.by.cols(); ++k) all.push_back(static_cast<int>(k));
-  return LinearModel(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-                     WhitenedRows(misfit.by, misfit, noise.correlation_time, false),
-                     hypothesis.priors)
-      .Fit(all, noise.variance);
+  double prior_cost = 0;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    all.push_back(static_cast<int>(k));
+    const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
+    if (k < hypothesis.parameters && std::isfinite(prior.deviation))
+      prior_cost += std::pow(prior.mean / prior.deviation, 2);
+  }
+  // The determinant is that of the linear model, whatever its residual.
+  const LinearFit nothing =
+      LinearModel(Eigen::VectorXd::Zero(left.size()), columns, WithoutMeans(hypothesis.priors))
+          .Fit(all, noise.variance);
+  HypothesisEvidence evidence;
+  evidence.misfit = left.squaredNorm();
+  evidence.log_evidence =
+      nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
+  return evidence;
 }
 
-}  // namespace
-
-LinearFit EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
-  return FitAll(hypothesis, noise);
-}
-
-Eigen::VectorXd LeftBy(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
-  return hypothesis.misfit.residual + hypothesis.misfit.by * FitAll(hypothesis, noise).change;
+FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
+  FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
+  if (!hypothesis.misfit.usable) return hypothesis;
+  std::vector<int> all;
+  for (Eigen::Index k = 0; k < hypothesis.misfit.by.cols(); ++k) all.push_back(static_cast<int>(k));
+  const LinearFit fit =
+      LinearModel(WhitenedRows(hypothesis.misfit.residual, same, 0, false),
+                  WhitenedRows(hypothesis.misfit.by, same, 0, false), hypothesis.priors)
+          .Fit(all, 1);
+  Eigen::VectorXd moved = values;
+  for (size_t k = 0; k < problem.parameters().size(); ++k) {
+    const CalibratedParameter& parameter = problem.parameters()[k];
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    const double by = fit.change[at];
+    moved[at] =
+        std::clamp(parameter.log_scale ? values[at] * std::exp(by / values[at]) : values[at] + by,
+                   parameter.min, parameter.max);
+  }
+  FittedHypothesis next = HypothesisAt(problem, moved, adopted, same);
+  if (!next.misfit.usable) return hypothesis;
+  const NoiseLevel white;
+  return EvidenceOf(next, white).log_evidence > EvidenceOf(hypothesis, white).log_evidence
+             ? next
+             : hypothesis;
 }
 
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
@@ -142,9 +187,10 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& sco
 }
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect& effect, const AdoptedNuisances& adopted,
+                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, Progress* progress) {
-  const PredictionStudy study = WithEffect(problem.study(), effect);
+  const PredictionStudy study =
+      effect != nullptr ? WithEffect(problem.study(), *effect) : problem.study();
   const CalibrationProblem with(study, problem.body()->mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
   const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;
@@ -182,10 +228,10 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     }
     return start;
   };
-  progress->Begin("refit " + effect.candidate.type, 0);
+  progress->Begin(effect != nullptr ? "refit " + effect->candidate.type : "refit", 0);
   Eigen::VectorXd start = start_from(values);
-  const Eigen::VectorXd expected = start_from(effect.fitted);
-  bool sound = true;
+  const Eigen::VectorXd expected = start_from(effect != nullptr ? effect->fitted : values);
+  bool sound = effect != nullptr;
   for (Eigen::Index k = 0; k < shared; ++k)
     if (parameters[k].log_scale && !(expected[k] > 0.2 * start[k])) sound = false;
   if (sound) {
@@ -211,11 +257,20 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
+    const Eigen::VectorXd amounts =
+        refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
+    refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
-    if (!refit.hypothesis.misfit.usable) refit.message = refit.hypothesis.misfit.message;
+    const LinearisedMisfit fitted =
+        with.Linearise(refit.calibration.parameters, false, {}, &misfit);
+    if (!refit.hypothesis.misfit.usable || !fitted.usable) {
+      refit.message = fitted.usable ? refit.hypothesis.misfit.message : fitted.message;
+    } else {
+      refit.errors.without_nuisances = HeldOutInNoise(
+          WhitenedRows(fitted.residual + adopted.by * amounts, misfit, 0, false), misfit);
+    }
   }
   problem.SetModel(values);  // the refit has changed effects that both models share
   return refit;

@@ -15,7 +15,9 @@ namespace lacuna {
 struct ModelErrors {
   double in_fit_rms = 0, held_out_rms = 0;  // m, of marker distances
   double in_noise = 0;                      // held out, in σ
-  bool has_held_out = false;                // false: the fitted frames stand for them
+  // Of the fitted recordings, with what was adopted taken away; held out, in σ.
+  double without_nuisances = 0;
+  bool has_held_out = false;  // false: the fitted frames stand for them
 };
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
 
@@ -23,16 +25,26 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 struct FittedHypothesis {
   LinearisedMisfit misfit;          // columns: the problem's parameters, then what was adopted
   std::vector<LinearPrior> priors;  // of the columns
+  Eigen::Index parameters = 0;      // how many of the columns are the problem's
+  Eigen::VectorXd left;             // what it leaves with the best amounts of what was adopted, m
 };
 
-// ln p of all frames of the fitted recordings (linear_evidence.h), up to what all hypotheses share.
-LinearFit EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
-// What the hypothesis leaves, rows in m.
-Eigen::VectorXd LeftBy(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
+// ln p of all frames of the fitted recordings, up to what all hypotheses share, with the parameters
+// where they are (linear_evidence.h has them at their best to first order: that would reward a fit
+// that has not converged).
+struct HypothesisEvidence {
+  double log_evidence = 0;
+  double misfit = 0;  // ‖whitened left‖²
+};
+HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
 
 // Compared with what `same` was compared with.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                               const AdoptedNuisances& adopted, const LinearisedMisfit& same);
+// The same after one more step to first order, which takes the held-out frames in too, where that
+// makes the evidence of all frames larger.
+FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same);
 
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
@@ -45,10 +57,11 @@ struct EffectRefit {
 // calls plausible.
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& effect);
 
-// From where first order expects the best parameters, or from `values` where that is nearer. Leaves
-// the study's effects at `values`. `misfit`: of the model as it is. Throws Interrupted.
+// From where first order expects the best parameters, or from `values` where that is nearer. Null
+// `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
+// Leaves the study's effects at `values`. `misfit`: of the model as it is. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect& effect, const AdoptedNuisances& adopted,
+                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, Progress* progress);
 
 }  // namespace lacuna

@@ -18,9 +18,10 @@ constexpr double kShift = 1e-3;  // m, by how much a grip, a frame, a registrati
 constexpr double kTurn = 0.02;   // rad
 // By how much frames may be mistimed, in parts of their distance.
 constexpr double kJitter = 0.1;
-// The error of P2 elements and of second-order steps that is left after refining once, in parts of
-// the change that the refinement made, and how well that is known.
-constexpr double kToTheLimit = 1.3, kLimitDeviation = 0.4;
+// What refining without end would change, in parts of the change that refining once makes, and how
+// well that is known: of second-order steps 4/3; of elements 1.3 where the motion is smooth, 3
+// where a clamped edge spoils their order.
+constexpr LinearPrior kStepLimit = {1.33, 0.3, false}, kMeshLimit = {1.7, 0.8, false};
 constexpr double kVolumeRatio = 3;
 // More frames than this, and single frames are too small a part to be looked at one by one.
 constexpr size_t kMostFrames = 400;
@@ -144,24 +145,24 @@ std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem&
                                                        const LinearisedMisfit& misfit) {
   std::vector<NuisanceCandidate> candidates;
   const auto add = [&](const std::string& name, const std::string& what, const std::string& advice,
-                       const LinearisedMisfit& refined) {
+                       const LinearPrior& limit, const LinearisedMisfit& refined) {
     if (!refined.usable || refined.residual.size() != misfit.residual.size()) return;
     NuisanceCandidate candidate{name, what, advice, 0, refined.residual - misfit.residual, {}};
-    candidate.priors = {{kToTheLimit, kLimitDeviation, false}};
+    candidate.priors = {limit};
     candidates.push_back(std::move(candidate));
   };
   PredictionStudy fine = problem.WithGivenNoise();
   fine.mesh.tets.max_volume /= kVolumeRatio;
   try {
     const ReferenceBody reference = MakeReferenceBody(fine);
-    add("mesh", "the size of the elements", "choose a smaller mesh.max_volume",
+    add("mesh", "the size of the elements", "choose a smaller mesh.max_volume", kMeshLimit,
         CalibrationProblem(fine, reference.mesh).Linearise(values, false));
   } catch (const InputError&) {
     // A shape that cannot be meshed more finely says nothing about its mesh.
   }
   PredictionStudy slow = problem.WithGivenNoise();
   slow.time_step /= 2;
-  add("time_step", "the length of the step", "choose a smaller motion.time_step",
+  add("time_step", "the length of the step", "choose a smaller motion.time_step", kStepLimit,
       CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false));
   problem.SetModel(values);  // the refined models share its effects
   return candidates;

@@ -16,6 +16,9 @@
 namespace lacuna {
 namespace {
 
+// Markers rest where their distances stay within this many times those of noise, so many frames.
+constexpr double kRestThreshold = 2.5;
+constexpr int kFewestAtRest = 8;
 constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
 
 double ShareUsed(const Observed& observed) {
@@ -244,8 +247,19 @@ double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<
                        static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
-  const double noise = WhiteNoise(rows);
-  return std::isnan(noise) ? 0 : noise;
+  const double white = WhiteNoise(rows);
+  if (std::isnan(white)) return 0;
+  Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
+  for (size_t k = 0; k < frames.size(); ++k)
+    times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
+  std::vector<double> deviations;
+  for (const StaticSpan& rest :
+       StaticSpans(times, rows, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
+    if (!std::isnan(rest.deviation)) deviations.push_back(rest.deviation);
+  if (deviations.empty()) return white;
+  std::nth_element(deviations.begin(), deviations.begin() + deviations.size() / 2,
+                   deviations.end());
+  return deviations[deviations.size() / 2];
 }
 
 }  // namespace lacuna

@@ -90,8 +90,9 @@ class RecordingModel {
   std::vector<Nuisance> nuisances_;
 };
 
-// The white part of a recording's noise, m, in these frames (ascending). Of markers: from the
-// second differences of their coordinates, the median; 0 of fewer than three frames. Of a scan: of
+// A recording's noise, m, in these frames (ascending). Of markers: of a coordinate, from how they
+// scatter while they rest; where they never do, the white part of it (WhiteNoise); 0 of fewer than
+// three frames. Of a scan: of
 // a point along the normal (EstimateScanNoise).
 double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames);
 

@@ -18,8 +18,13 @@ constexpr double kNamed = 5;
 constexpr double kDecisive = 3;
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
-// Evidence for smooth errors above which what is left is no noise.
-constexpr double kStructured = 5;
+// An effect may make the held-out error larger by this factor at most, which is chance.
+constexpr double kNoWorse = 1.03;
+// Nuisances are known to first order: an effect may live on what that leaves out, so its evidence
+// must be more than this part of theirs that are in the model, and a nuisance with more than that
+// part of the effect's is its rival.
+constexpr double kFirstOrderDoubt = 0.1;
+constexpr double kFirstOrderRival = 0.5;
 // Where the best effect leaves more than noise, it must have explained this share to be named.
 constexpr double kMostOfIt = 0.85;
 // A finer discretisation would change this share of the error.
@@ -99,15 +104,19 @@ void Decide(Diagnosis* diagnosis) {
         "parameters can do: more motion, other loads or less noise are needed";
     return;
   }
-  const bool is_noise =
-      diagnosis->left_in_noise <= kAtNoise && diagnosis->unexplained <= kStructured;
+  const bool is_noise = diagnosis->left_in_noise <= kAtNoise;
   std::vector<const RankedEffect*> refitted;
   for (const RankedEffect& effect : diagnosis->ranking)
-    if (effect.refitted && effect.refit_message.empty()) refitted.push_back(&effect);
+    if (effect.refitted && effect.refit_message.empty() &&
+        effect.errors.without_nuisances <= kNoWorse * diagnosis->errors.without_nuisances)
+      refitted.push_back(&effect);
   std::stable_sort(refitted.begin(), refitted.end(),
                    [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
   const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
-  if (evidence < std::max(kNamed, diagnosis->control)) {
+  double in_the_model = 0;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
+    if (nuisance.adopted) in_the_model += std::max(0.0, nuisance.evidence);
+  if (evidence < std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model})) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);
     return;
   }
@@ -130,7 +139,8 @@ void Decide(Diagnosis* diagnosis) {
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances)
-    if (!nuisance.adopted && nuisance.evidence > evidence - kDecisive)
+    if (!nuisance.adopted &&
+        nuisance.evidence > std::min(evidence - kDecisive, kFirstOrderRival * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
   const std::string drop = fmt::format(
       "the {} error falls from {:.3f} mm ({:.1f} σ) to {:.3f} mm ({:.1f} σ), the odds for it are "

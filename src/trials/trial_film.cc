@@ -23,9 +23,9 @@ constexpr int kFrames = 50;
 constexpr double kSpacing = 0.01;    // s
 constexpr double kRelease = 0.1237;  // s
 constexpr double kFitUntil = 0.381;  // s
-constexpr double kClamp = 0.002;     // m, how far the clamp reaches
-constexpr double kTrueVolume = 1.5e-7, kModelVolume = 1e-6, kCoarseVolume = 4e-6;  // m³, tetrahedra
-constexpr double kTrueStep = 0.002, kModelStep = 0.005;                            // s
+constexpr double kFace = 1e-5;       // m: the clamp and the hand hold the faces at the ends
+constexpr double kTrueVolume = 2e-7, kModelVolume = 1e-6, kCoarseVolume = 4e-6;  // m³, tetrahedra
+constexpr double kTrueStep = 0.001, kModelStep = 0.002;                          // s
 constexpr int kMarkers = 8;
 constexpr double kPlaceError = 1e-4;  // m, per axis
 constexpr double kDensity = 1000;     // kg/m³
@@ -79,13 +79,13 @@ std::vector<Eigen::Matrix3Xd> Film(const TrialCase& trial, int recording, bool r
     model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.80665}}));
   for (const HiddenEffect& hidden : trial.hidden) model.effects.push_back(MakeHidden(hidden));
   const Eigen::Matrix3Xd& nodes = model.body->mesh.nodes;
-  const Eigen::VectorXi clamped = NodesBetween(nodes, -1, kClamp + trial.clamp_error + 1e-9);
+  const Eigen::VectorXi clamped = NodesBetween(nodes, -1, trial.clamp_error + kFace);
   const Eigen::Matrix3Xd rest = nodes(Eigen::all, clamped);
   model.grips = {{clamped, [rest, recording](double time) -> Eigen::Matrix3Xd {
                     return rest.colwise() + BaseMotion(recording, time);
                   }}};
   const Eigen::VectorXd share = BoundaryShares(
-      *model.body, NodesBetween(nodes, trial.true_size[0] - kClamp, trial.true_size[0] + 1));
+      *model.body, NodesBetween(nodes, trial.true_size[0] - kFace, trial.true_size[0] + 1));
   PredictionOptions options;
   options.start_time = kRelease;
   options.time_step = rough ? kModelStep : kTrueStep;
@@ -179,7 +179,7 @@ void WriteRecording(const TrialCase& trial, int recording,
       "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
       "path: {{file: base.csv, time: t, x: x, y: y, z: z, time_unit: s, length_unit: m}}}}\n"
       "reference: {{from: mesh, file: box.off}}\n",
-      kClamp);
+      kFace);
   WriteFileAtomically(folder / "recording.yaml", yaml);
 }
 
@@ -206,7 +206,7 @@ void FilmCase(const TrialCase& trial, const std::filesystem::path& folder, bool 
     yaml += fmt::format(
         "  - recording: {}\n    fit_until: {} s\n    hold:\n      release: {} s\n      region: "
         "{{half_space: {{point: [{} m, 0 m, 0 m], normal: [1, 0, 0]}}}}\n",
-        name, kFitUntil, kRelease, trial.size[0] - kClamp);
+        name, kFitUntil, kRelease, trial.size[0] - kFace);
   }
   WriteFileAtomically(folder / "experiment.yaml", yaml);
 }

@@ -37,14 +37,14 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   const RankedEffect* effect = Find(diagnosis, hidden.type);
   if (effect == nullptr) return;
   Calibration calibration = effect->calibration;
-  double in_noise = effect->errors.in_noise;
+  double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
     Progress progress(Silent());
     const EffectRefit refit =
-        Refit(problem, values, effect->scored, {}, problem.Linearise(values, false), &progress);
+        Refit(problem, values, &effect->scored, {}, problem.Linearise(values, false), &progress);
     if (!refit.message.empty()) return;
     calibration = refit.calibration;
-    in_noise = refit.errors.in_noise;
+    in_noise = refit.errors.without_nuisances;
   } else if (!effect->refit_message.empty()) {
     return;
   }
@@ -86,7 +86,6 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   outcome.named = diagnosis.effects;
   outcome.control = diagnosis.control;
   outcome.left = diagnosis.left_in_noise;
-  outcome.unexplained = diagnosis.unexplained;
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
     // A refit counts for more than first order does.
@@ -103,10 +102,10 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
   const TrialCase trial = LoadCase(folder / "truth.json");
-  outcome.error_before = diagnosis.errors.in_noise * problem.noise() / trial.noise;
+  outcome.error_before = diagnosis.errors.without_nuisances * problem.noise() / trial.noise;
   if (!outcome.named.empty())
     if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
-      outcome.error_best = best->errors.in_noise * problem.noise() / trial.noise;
+      outcome.error_best = best->errors.without_nuisances * problem.noise() / trial.noise;
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   return outcome;
 }
@@ -122,7 +121,6 @@ void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file)
                               {"second_evidence", outcome.second_evidence},
                               {"control", outcome.control},
                               {"left", outcome.left},
-                              {"unexplained", outcome.unexplained},
                               {"has_truth", outcome.has_truth},
                               {"error_after", outcome.error_after},
                               {"relative_error", outcome.relative_error},
@@ -146,7 +144,6 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
     outcome.second_evidence = json.at("second_evidence");
     outcome.control = json.at("control");
     outcome.left = json.at("left");
-    outcome.unexplained = json.at("unexplained");
     outcome.has_truth = json.at("has_truth");
     outcome.error_after = json.at("error_after");
     outcome.relative_error = json.at("relative_error");

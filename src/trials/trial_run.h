@@ -18,7 +18,7 @@ struct TrialOutcome {
       ranked;               // all effects, by evidence (that of the refit where there is one)
   double error_before = 0;  // held out, in multiples of the case's noise
   double error_best = 0;    // with the first one named; 0: none was
-  double evidence = 0, second_evidence = 0, control = 0, left = 0, unexplained = 0;
+  double evidence = 0, second_evidence = 0, control = 0, left = 0;
   // Of the first hidden effect, fitted; false where it is not in the library or its fit failed.
   bool has_truth = false;
   double error_after = 0;     // held out, in multiples of the noise
