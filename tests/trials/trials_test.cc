@@ -1,0 +1,161 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "scan/recording.h"
+#include "support/temporary_folder.h"
+#include "trials/trial_report.h"
+#include "trials/trial_run.h"
+#include "trials/trial_suite.h"
+#include "trials/workers.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+TrialSuite SmallSuite() {
+  return ReadTrialSuite(Config::Parse(R"(schema_version: 1
+name: small
+seed: 11
+controls: 2
+hard_controls: 4
+effects: [drag]
+factors: [1, 4]
+recordings: [1]
+removed: [drag]
+pairs: 0
+)",
+                                      "small.yaml"));
+}
+
+TEST(TrialSuite, HasEveryGroupAndIsTheSameAgain) {
+  const std::vector<TrialCase> cases = CasesOf(SmallSuite()), again = CasesOf(SmallSuite());
+  ASSERT_EQ(cases.size(), 2u + 4u + 2u + 1u);
+  std::vector<std::string> nuisances;
+  for (size_t k = 0; k < cases.size(); ++k) {
+    EXPECT_EQ(cases[k].seed, again[k].seed);
+    EXPECT_EQ(cases[k].young_modulus, again[k].young_modulus);
+    nuisances.push_back(cases[k].nuisance);
+  }
+  for (const char* nuisance : {"grip", "bad_frame", "coarse_mesh", "time_jitter"})
+    EXPECT_THAT(nuisances, Contains(nuisance));
+  EXPECT_EQ(cases[6].hidden[0].factor, 1);
+  EXPECT_EQ(cases[7].hidden[0].factor, 4);
+  EXPECT_EQ(cases[8].group, "removed");
+}
+
+TEST(TrialSuite, RefusesAnEffectThatIsNone) {
+  try {
+    ReadTrialSuite(
+        Config::Parse("schema_version: 1\nname: x\nseed: 1\neffects: [levity]\n", "x.yaml"));
+    FAIL() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("levity"));
+  }
+}
+
+TEST(Trials, FindAStrongDragAndKeepWhatCameOfIt) {
+  const TemporaryFolder folder;
+  TrialSuite suite = SmallSuite();
+  suite.controls = suite.hard_controls = 0;
+  suite.factors = {4};
+  suite.removed.clear();
+  const std::vector<TrialCase> cases = CasesOf(suite);
+  ASSERT_EQ(cases.size(), 1u);
+  ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
+  const std::filesystem::path own = folder / cases[0].name;
+  const TrialCase sealed = LoadCase(own / "truth.json");
+  EXPECT_EQ(sealed.hidden[0].type, "drag");
+  EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³: it is felt in air
+
+  EXPECT_EQ(RunTrials(folder.Path(), 1), 0);
+  const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+  ASSERT_FALSE(outcome.ranked.empty());
+  // Drag and mass damping are each other's look-alikes: the right one leads or is declared.
+  EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");
+  EXPECT_TRUE(outcome.verdict == "missing" || outcome.verdict == "ambiguous") << outcome.verdict;
+  ASSERT_TRUE(outcome.has_truth);
+  EXPECT_LT(outcome.error_after, outcome.error_before);
+  // 4 × 5 standard deviations: a twentieth by the noise alone, the model's errors beside it.
+  EXPECT_LT(outcome.relative_error, 0.3);
+
+  const TrialReport report = ReportTrials(folder.Path());
+  ASSERT_EQ(report.tallies.size(), 1u);
+  EXPECT_EQ(report.tallies[0].cases, 1);
+  EXPECT_EQ(report.tallies[0].fitted, 1);
+  EXPECT_TRUE(report.unfinished.empty());
+}
+
+// A case with an outcome, made up.
+void Write(const std::filesystem::path& folder, const TrialCase& trial,
+           const TrialOutcome& outcome) {
+  MakeFolder(folder / trial.name);
+  SaveCase(trial, folder / trial.name / "truth.json");
+  SaveOutcome(outcome, folder / trial.name / "outcome.json");
+}
+
+TEST(TrialReport, CountsRightWrongAndDeclared) {
+  const TemporaryFolder folder;
+  TrialSuite suite = SmallSuite();
+  suite.controls = 1;
+  suite.hard_controls = 0;
+  suite.factors = {2, 2, 2};
+  std::vector<TrialCase> cases = CasesOf(suite);
+  TrialOutcome outcome;
+  outcome.verdict = "missing";
+  outcome.named = {"gravity"};
+  Write(folder.Path(), cases[0], outcome);  // a false alarm
+  outcome.named = {"drag"};
+  outcome.ranked = {"drag", "mass_damping"};
+  outcome.has_truth = true;
+  outcome.error_after = 1.1;
+  outcome.relative_error = 0.1;
+  outcome.covered = {1};
+  Write(folder.Path(), cases[1], outcome);  // right
+  outcome.verdict = "ambiguous";
+  outcome.named = {"mass_damping", "drag"};
+  outcome.ranked = {"mass_damping", "drag"};
+  outcome.error_after = 1.3;
+  outcome.covered = {0};
+  Write(folder.Path(), cases[2], outcome);  // declared
+  outcome.verdict = "missing";
+  outcome.named = {"mass_damping"};
+  outcome.ranked = {"mass_damping", "gravity"};
+  Write(folder.Path(), cases[3], outcome);  // wrong
+  Write(folder.Path(), cases[4], outcome);  // of the library without it: a false name
+
+  const TrialReport report = ReportTrials(folder.Path());
+  ASSERT_EQ(report.tallies.size(), 3u);  // control, one_effect, removed
+  const TrialTally& control = report.tallies[0];
+  EXPECT_EQ(control.wrong, 1);
+  const TrialTally& effect = report.tallies[1];
+  EXPECT_EQ(effect.cases, 3);
+  EXPECT_EQ(effect.top1, 1);
+  EXPECT_EQ(effect.top2, 2);
+  EXPECT_EQ(effect.wrong, 1);
+  EXPECT_EQ(effect.at_noise, 1);
+  EXPECT_EQ(effect.covered, 1);
+  EXPECT_EQ(effect.intervals, 3);
+  EXPECT_EQ(report.tallies[2].wrong, 1);
+  EXPECT_EQ(report.confusion.at("drag").at("mass_damping"), 1);
+  EXPECT_THAT(ReportInWords(report), HasSubstr("drag (removed)"));
+}
+
+TEST(Claim, HoldsAFileOnce) {
+  const TemporaryFolder folder;
+  {
+    const Claim first(folder / "claimed"), second(folder / "claimed");
+    EXPECT_TRUE(first.holds());
+    EXPECT_FALSE(second.holds());
+  }
+  EXPECT_TRUE(Claim(folder / "claimed").holds());
+}
+
+}  // namespace
+}  // namespace lacuna
