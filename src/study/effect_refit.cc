@@ -15,7 +15,7 @@ namespace {
 // How far beyond the plausible range a refit may go, in parts of that range.
 constexpr double kMargin = 0.1;
 // A rival need not be at its very best to be told from one that fits.
-constexpr int kIterations = 8;
+constexpr int kIterations = 25;
 constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.

@@ -248,7 +248,7 @@ double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<
   for (size_t k = 0; k < frames.size(); ++k)
     rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
   const double white = WhiteNoise(rows);
-  if (std::isnan(white)) return 0;
+  if (!(white > 0)) return 0;
   Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
