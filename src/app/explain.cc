@@ -13,6 +13,7 @@
 #include "app/effect_examples.h"
 #include "core/error.h"
 #include "core/suggestion.h"
+#include "core/text_layout.h"
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
 #include "effects/vector_parameters.h"
@@ -22,24 +23,9 @@ namespace {
 
 constexpr size_t kLineWidth = 96;  // characters
 
-// Of UTF-8: bytes that begin a character.
-size_t Width(const std::string& text) {
-  return static_cast<size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) >> 6) != 2; }));
-}
-
 void PrintWrapped(const std::string& text, size_t indent) {
-  std::istringstream words(text);
-  std::string line;
-  const auto print = [&] { fmt::print("{:{}}{}\n", "", indent, line); };
-  for (std::string word; words >> word;) {
-    if (!line.empty() && indent + Width(line) + 1 + Width(word) > kLineWidth) {
-      print();
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  if (!line.empty()) print();
+  const std::string margin(indent, ' ');
+  if (!text.empty()) fmt::print("{}", Wrapped(text, margin, margin, kLineWidth));
 }
 
 void PrintSection(const std::string& heading, const std::string& text) {

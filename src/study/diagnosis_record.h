@@ -1,0 +1,66 @@
+// What a diagnosis said, as plain data: diagnosis.json, read by what prints it or goes on from it.
+#ifndef LACUNA_STUDY_DIAGNOSIS_RECORD_H_
+#define LACUNA_STUDY_DIAGNOSIS_RECORD_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "study/effect_refit.h"
+
+namespace lacuna {
+
+// One parameter of an effect's amplitude, in its unit (SI). Infinite: the data does not tell it.
+struct RecordedSize {
+  std::string parameter, unit;
+  double expected = 0, deviation = 0;
+  double detectable = 0;  // the smallest that these recordings could have shown
+};
+
+// An effect in the best of its variants (Score, RankedEffect).
+struct RecordedEffect {
+  std::string type, variant;
+  double evidence = 0;           // ln of the odds against the model as it is, to first order
+  double explained = 0;          // share of the squared misfit
+  double absorbed = 1;           // share that the fitted parameters can do as well
+  double expected_in_noise = 0;  // of held-out frames, σ
+  std::vector<RecordedSize> sizes;
+  std::vector<std::string> look_alikes;
+  // After the refit, where there was one.
+  bool refitted = false;
+  std::string refit_message;  // why it is not usable; empty: it is
+  double refit_evidence = 0;
+  ModelErrors errors;
+
+  bool HasUsableRefit() const { return refitted && refit_message.empty(); }
+};
+
+struct RecordedNuisance {
+  std::string name, what;
+  double evidence = 0, explained = 0;
+  bool adopted = false;  // taken into the model
+};
+
+struct DiagnosisRecord {
+  std::string verdict;               // "missing", "adequate", …
+  std::vector<std::string> effects;  // that it names, the best first
+  std::string explanation, experiment;
+  double noise = 0;             // m
+  double correlation_time = 0;  // s, of the noise
+  double variance_factor = 1;   // of the noise against what was given
+  double control = 0;           // the evidence that one in twenty controls finds without an effect
+  double left_in_noise = 0;     // σ, of the best hypothesis
+  ModelErrors errors;           // of the model as it is
+  std::vector<RecordedNuisance> nuisances;
+  std::vector<RecordedEffect> ranking;
+};
+
+// "missing {drag}"
+std::string VerdictWithNames(const DiagnosisRecord& diagnosis);
+
+// Throws InputError when it is not one.
+DiagnosisRecord ReadDiagnosisFile(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_DIAGNOSIS_RECORD_H_
