@@ -37,8 +37,13 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   Progress progress;
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   const EffectRanking ranking = RankEffects(problem, fitted.values, &progress);
-  const std::filesystem::path file =
-      WriteExtendedExperiment(fitted, run, FindScored(ranking, type));
+  const ScoredEffect& effect = FindScored(ranking, type);
+  const std::string unseen = WhyUnseen(effect);
+  if (!unseen.empty())
+    throw InputError(
+        fmt::format("{}: {}; to fit it all the same, write it into the experiment's `effects`",
+                    run.string(), unseen));
+  const std::filesystem::path file = WriteExtendedExperiment(fitted, run, effect);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
   const CalibrationRecord record = RunCalibration(study, &progress);
   fmt::print("\nbefore\n");

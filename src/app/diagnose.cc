@@ -8,6 +8,7 @@
 #include "app/diagnosis_report.h"
 #include "study/diagnosis_run.h"
 #include "study/extension_rounds.h"
+#include "study/recorded_motion.h"
 
 namespace lacuna {
 namespace {
@@ -46,6 +47,8 @@ int RunUntilDone(const DiagnoseArguments& arguments) {
 int RunDiagnose(const DiagnoseArguments& arguments) {
   if (arguments.until_done) return RunUntilDone(arguments);
   const FittedRun fitted = OpenRun(arguments.run);
+  const std::string warning = RestWarning(fitted.study);
+  if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
   DiagnosisOptions options;
   options.refits = arguments.refits;
   Progress progress;

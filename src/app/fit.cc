@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/fit_report.h"
 #include "study/calibration_run.h"
+#include "study/recorded_motion.h"
 
 namespace lacuna {
 namespace {
@@ -17,6 +18,8 @@ int Fit(const std::string& file) {
   for (const PredictedRecording& item : study.recordings)
     for (const std::string& warning : item.recording.warnings)
       fmt::print(stderr, "warning: {}: {}\n", item.name, warning);
+  const std::string warning = RestWarning(study);
+  if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
   Progress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   PrintCalibration(record);

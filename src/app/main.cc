@@ -25,6 +25,7 @@ constexpr char kFooter[] = R"(Start here:
   lacuna reconstruct experiments/bend.yaml     scans -> model with forces; results/bend
   lacuna fit experiments/silicone_beam.yaml    predict, and fit the model's parameters
   lacuna compare results/silicone_beam         where and when that model fails
+  lacuna diagnose results/silicone_beam        which physical effect it lacks
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
   lacuna effects                               what physics a model can have

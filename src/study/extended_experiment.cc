@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "effects/effect_text.h"
@@ -55,6 +57,27 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
   const std::filesystem::path file = parent / (name + ".yaml");
   WriteFileAtomically(file, text);
   return file;
+}
+
+std::string WhyUnseen(const ScoredEffect& effect) {
+  const CandidateEffect& candidate = effect.candidate;
+  const EffectCard& card = candidate.effect->Card();
+  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
+    const ParameterCard& parameter = card.parameters[candidate.amplitude[k]];
+    if (effect.score.detectable[static_cast<Eigen::Index>(k)] < PlausibleScale(parameter))
+      return "";
+  }
+  const ParameterCard& first = card.parameters[candidate.amplitude.front()];
+  const double detectable = effect.score.detectable.minCoeff();
+  const std::string unit = first.dimension.unit;
+  if (!std::isfinite(detectable)) {
+    return fmt::format("{} does nothing in these recordings that the fitted parameters cannot do",
+                       card.type);
+  }
+  return fmt::format(
+      "{} would have to be larger than is plausible to show in these recordings: {} of {:.2g} {}, "
+      "against {:.2g} {} at most",
+      card.type, first.name, detectable, unit, PlausibleScale(first), unit);
 }
 
 }  // namespace lacuna

@@ -3,6 +3,7 @@
 #define LACUNA_STUDY_EXTENDED_EXPERIMENT_H_
 
 #include <filesystem>
+#include <string>
 
 #include "study/calibration_run.h"
 #include "study/effect_ranking.h"
@@ -16,6 +17,10 @@ namespace lacuna {
 std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
                                               const std::filesystem::path& run,
                                               const ScoredEffect& effect);
+
+// Why no fit could tell the effect in these recordings, its plausible sizes being too small for
+// them; empty: it could.
+std::string WhyUnseen(const ScoredEffect& effect);
 
 }  // namespace lacuna
 

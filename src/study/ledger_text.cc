@@ -88,7 +88,8 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
   }
   if (model.diagnosis) {
     const DiagnosisRecord& diagnosis = *model.diagnosis;
-    text += margin + (has_more ? "│\n" : "\n");
+    const std::string blank = has_more ? margin + "│" : margin;
+    text += blank.substr(0, blank.find_last_not_of(' ') + 1) + "\n";
     text += Wrapped(VerdictWithNames(diagnosis) + ": " + diagnosis.explanation, own, own + "  ");
     if (!diagnosis.experiment.empty())
       text += Wrapped("what would tell: " + diagnosis.experiment, own, own + "  ");
@@ -110,6 +111,17 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
   return text;
 }
 
+std::string Total(const LedgerModel& model) {
+  return fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * model.errors.held_out_rms, model.errors.in_noise);
+}
+
+// The effects that lead from the first model to this one.
+std::string AddedUpTo(const Ledger& ledger, const LedgerModel& model) {
+  if (model.parent < 0) return "nothing that could be named";
+  const LedgerModel& parent = ledger.models[static_cast<size_t>(model.parent)];
+  return (parent.parent < 0 ? "" : AddedUpTo(ledger, parent) + ", ") + model.added;
+}
+
 }  // namespace
 
 std::string LedgerInWords(const Ledger& ledger) {
@@ -119,16 +131,14 @@ std::string LedgerInWords(const Ledger& ledger) {
   std::string text = PaddedRight(first.name, 35) +
                      Error(first.errors.held_out_rms, first.errors.in_noise) + "   " + which +
                      "\n" + Branch(ledger, 0, "");
-  const auto total = [&](const LedgerModel& model) {
-    return fmt::format("{:.3f} mm or {:.1f} σ", 1e3 * model.errors.held_out_rms,
-                       model.errors.in_noise);
-  };
   text += "\n";
-  if (!ledger.ending.empty()) text += Wrapped(ledger.ending, "", "");
-  text +=
-      Wrapped(fmt::format("The best model, {}, misses the {} frames by {}; the first one by {}.",
-                          best.name, which, total(best), total(first)),
-              "", "");
+  if (!ledger.ending.empty()) text += Wrapped(ledger.ending, "", "") + "\n";
+  const auto row = [&](const char* name, const std::string& value) {
+    text += PaddedRight(name, 24) + value + "\n";
+  };
+  row(first.errors.has_held_out ? "held-out error before" : "error before", Total(first));
+  row("what was missing", AddedUpTo(ledger, best));
+  row(first.errors.has_held_out ? "held-out error after" : "error after", Total(best));
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "effects/catalogue.h"
+#include "study/recorded_motion.h"
 
 namespace lacuna {
 namespace {
@@ -80,6 +81,18 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
   }
 }
 
+void RequireGripPaths(const Config& config, const PredictedRecording& item) {
+  const double first = item.recording.times[item.frames.front()];
+  const double last = item.recording.times[item.frames.back()];
+  for (const RecordedGrip& grip : item.recording.grips) {
+    const Eigen::Index end = grip.times.size() - 1;
+    if (grip.motion == GripMotion::kGiven && (grip.times[0] > first || grip.times[end] < last))
+      config.Fail("recording",
+                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                              grip.file.string(), grip.times[0], grip.times[end], first, last));
+  }
+}
+
 PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
                                       const ScanSettings& scan, bool tells_the_shape) {
   PredictedRecording item;
@@ -108,6 +121,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", kFewest));
   CheckObserved(config, item, tells_the_shape);
   RequireStaticStart(config, item);
+  RequireGripPaths(config, item);
   for (const MeasuredForce& force : item.recording.forces) {
     const double first = item.recording.times[item.frames.front()];
     const double last = item.recording.times[item.frames.back()];
@@ -120,6 +134,21 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
                               force.file.string(), force.times[0], force.times[end], first, last));
   }
   return item;
+}
+
+// Markers that rest where they sit on the undeformed object tell nothing.
+void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
+  if (!IsAtRest(study)) return;
+  double deformation = 0;
+  for (const PredictedRecording& item : study.recordings)
+    if (item.fitted) deformation = std::max(deformation, RestDeformation(item));
+  constexpr double kCertain = 3;  // standard deviations of a marker's place
+  if (deformation > kCertain * study.place_deviation) return;
+  config.Fail("recordings",
+              fmt::format("nothing moves in the frames that are fitted, and no marker is farther "
+                          "than {:.2g} mm from its place on the undeformed object "
+                          "(place_deviation is {:.2g} mm): there is nothing to fit a model to",
+                          1e3 * deformation, 1e3 * study.place_deviation));
 }
 
 const ParameterCard& CardOf(const ModelParameter& parameter) {
@@ -245,6 +274,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   if (std::none_of(study.recordings.begin(), study.recordings.end(),
                    [](const PredictedRecording& item) { return item.fitted; }))
     config.Fail("recordings", "none of them is fitted");
+  RequireSomethingToFit(config, study);
   const auto& density = study.recordings.front().recording.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);

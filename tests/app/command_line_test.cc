@@ -87,7 +87,8 @@ TEST(CommandLine, AnAbsentFileIsNamed) {
 }
 
 TEST(CommandLine, ValidatesTheBundledExperimentsAndScenes) {
-  for (const char* file : {"bend.yaml", "scenes/bend.yaml", "scenes/twist.yaml", "recordings/bend"})
+  for (const char* file : {"bend.yaml", "hidden_effect.yaml", "scenes/bend.yaml",
+                           "scenes/twist.yaml", "recordings/bend"})
     EXPECT_EQ(Lacuna("validate " + Experiment(file)).status, 0) << file;
   EXPECT_THAT(Lacuna("validate " + Experiment("bend.yaml") + " --show").said,
               HasSubstr("young_modulus"));
@@ -155,6 +156,64 @@ TEST(CommandLine, CompareWantsARunOfFit) {
   EXPECT_THAT(ending.said, HasSubstr("is not a run"));
   EXPECT_THAT(ending.said, HasSubstr("lacuna fit"));
   EXPECT_EQ(Lacuna("compare").status, 2);
+}
+
+TEST(CommandLine, DiagnoseIsToldHowFarToGo) {
+  EXPECT_THAT(Lacuna("diagnose --help").said, HasSubstr("--until-done"));
+  // What only makes sense with --until-done.
+  EXPECT_EQ(Lacuna("diagnose /nowhere --follow-best").status, 2);
+  EXPECT_EQ(Lacuna("diagnose /nowhere --most 2").status, 2);
+  const Ending ending = Lacuna("diagnose /nowhere --until-done");
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("/nowhere"));
+}
+
+// The bundled recording of a hidden effect, with a coarse model.
+TEST(CommandLine, DiagnosesTheBundledRecordingAndKeepsALedger) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "coarse.yaml")
+      << "use: " << Experiment("hidden_effect.yaml") << "\noutput: run\n"
+      << "mesh: {max_volume: 4000 mm^3, order: 2, preserve_surface: false}\n"
+      << "motion: {time_step: 6 ms}\n";
+  const Ending fit = Lacuna("fit " + (folder / "coarse.yaml").string());
+  ASSERT_EQ(fit.status, 0) << fit.said;
+  const std::string command =
+      "diagnose " + (folder / "run").string() + " --refits 1 --until-done --most 0";
+  const Ending first = Lacuna(command);
+  ASSERT_EQ(first.status, 0) << first.said;
+  EXPECT_THAT(first.said, HasSubstr("held-out error before"));
+  EXPECT_THAT(first.said, HasSubstr("tried  viscoelastic_branch"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/ledger.json"));
+  EXPECT_THAT(Lacuna(command).said, HasSubstr("read back"));
+}
+
+// The same bar, held for as long as it is filmed.
+TEST(CommandLine, WhatNeedsMotionIsNotAddedToABarAtRest) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(Experiment("recordings/hidden_effect/recording_1"), folder / "held");
+  std::ifstream moving(folder / "held/markers.csv");
+  std::string header, row;
+  std::getline(moving, header);
+  std::getline(moving, row);
+  moving.close();
+  std::ofstream still(folder / "held/markers.csv");
+  still << header << "\n";
+  for (int frame = 0; frame < 10; ++frame)
+    still << 0.01 * frame << row.substr(row.find(',')) << "\n";
+  still.close();
+  std::ofstream(folder / "rest.yaml")
+      << "use: " << Experiment("hidden_effect.yaml") << "\noutput: run\nnoise: 0.1 mm\n"
+      << "mesh: {max_volume: 4000 mm^3, order: 2, preserve_surface: false}\n"
+      << "fit: {parameters: [{name: young_modulus}]}\n"
+      << "recordings: [{recording: held, hold: {release: 0.09 s, region: {half_space: "
+         "{point: [69.4374 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}]\n";
+  const Ending fit = Lacuna("fit " + (folder / "rest.yaml").string());
+  ASSERT_EQ(fit.status, 0) << fit.said;
+  EXPECT_THAT(fit.said, HasSubstr("warning: nothing moves in the frames that are fitted"));
+  const Ending add = Lacuna("add " + (folder / "run").string() + " drag");
+  EXPECT_EQ(add.status, 2);
+  EXPECT_THAT(add.said, HasSubstr("run: drag "));
+  EXPECT_FALSE(std::filesystem::exists(folder / "hidden_effect+drag"));
 }
 
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {

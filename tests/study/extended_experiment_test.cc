@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
+#include "effects/catalogue.h"
 #include "study/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -54,6 +56,20 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   ASSERT_EQ(extended.fitted.size(), 2u);
   EXPECT_EQ(extended.fitted[1].prior.name, "mass_damping.alpha");
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
+}
+
+TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
+  ScoredEffect scored;
+  scored.candidate.type = "drag";
+  scored.candidate.effect = MakeEffect("drag", {{"coefficient", 0}});
+  scored.candidate.amplitude = {0};
+  const double largest = PlausibleScale(scored.candidate.effect->Card().parameters[0]);
+  scored.score.detectable = Eigen::VectorXd::Constant(1, 0.5 * largest);
+  EXPECT_EQ(WhyUnseen(scored), "");
+  scored.score.detectable[0] = 2 * largest;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("larger than is plausible"));
+  scored.score.detectable[0] = INFINITY;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("drag does nothing in these recordings"));
 }
 
 TEST(ExtendedExperiment, ARunWhoseExperimentHasChangedIsNotOpened) {

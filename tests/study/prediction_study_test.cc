@@ -6,8 +6,10 @@
 
 #include <fstream>
 #include <limits>
+#include <random>
 
 #include "study/held_bar.h"
+#include "study/recorded_motion.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -162,6 +164,33 @@ TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
                                         "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
                                         "reference"}}),
               HasSubstr("does not tell where pull acts"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAGripWhosePathDoesNotCoverTheFrames) {
+  const std::string grip =
+      "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}, path: "
+      "{file: load.csv, time: t, x: x, y: y, z: z}}]\nreference";
+  EXPECT_THAT(MessageAfterInRecording({{"reference", grip}}),
+              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersThatRestWhereTheySitAnyway) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1e-4);  // m
+  auto markers = Moving(0);
+  for (auto& frame : markers)
+    for (double& coordinate : frame.reshaped()) coordinate += noise(random);
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter({}),
+              HasSubstr("recordings: nothing moves in the frames that are fitted"));
+
+  // At rest elsewhere they tell at least what statics can, but no more.
+  for (auto& frame : markers) frame.array() += 0.01;
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_EQ(MessageAfter({}), "nothing was refused");
+  EXPECT_THAT(RestWarning(ReadBarStudy(folder_.Path())), HasSubstr("anything else that needs"));
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  EXPECT_EQ(RestWarning(ReadBarStudy(folder_.Path())), "");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {

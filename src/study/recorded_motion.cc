@@ -1,0 +1,80 @@
+#include "study/recorded_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "study/predicted_motion.h"
+
+namespace lacuna {
+namespace {
+
+// Standard deviations of the white noise beyond which a coordinate's scatter is motion. That of the
+// largest of a hundred coordinates at rest is below 1.5, of noise that is correlated from frame to
+// frame somewhat larger.
+constexpr double kMoves = 2;
+
+std::vector<int> FittedFrames(const PredictedRecording& item) {
+  std::vector<int> frames;
+  for (const int frame : item.frames)
+    if (item.recording.times[frame] <= item.fit_until) frames.push_back(frame);
+  return frames;
+}
+
+// Mean and standard deviation of one coordinate over the frames that show it.
+struct Spread {
+  double mean = 0, deviation = 0;
+};
+Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, Eigen::Index axis,
+                Eigen::Index marker) {
+  double sum = 0, squares = 0, seen = 0;
+  for (const int frame : frames) {
+    const double value = item.recording.markers.positions[frame](axis, marker) -
+                         item.recording.marker_places(axis, marker);
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++seen;
+  }
+  if (seen == 0) return {};
+  const double mean = sum / seen;
+  return {mean, std::sqrt(std::max(0.0, squares / seen - mean * mean))};
+}
+
+}  // namespace
+
+bool IsAtRest(const PredictedRecording& item) {
+  if (item.scans != nullptr) return false;
+  const std::vector<int> frames = FittedFrames(item);
+  // Rounding of the mean square must not look like motion where there is no noise.
+  constexpr double kRounding = 1e-9;  // m
+  const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
+  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if (SpreadOf(item, frames, axis, marker).deviation > least) return false;
+  return true;
+}
+
+bool IsAtRest(const PredictionStudy& study) {
+  return std::all_of(study.recordings.begin(), study.recordings.end(),
+                     [](const PredictedRecording& item) { return !item.fitted || IsAtRest(item); });
+}
+
+std::string RestWarning(const PredictionStudy& study) {
+  if (!IsAtRest(study)) return "";
+  return "nothing moves in the frames that are fitted: they tell of stiffness and of constant "
+         "loads, but not of mass, damping, drag or anything else that needs motion";
+}
+
+double RestDeformation(const PredictedRecording& item) {
+  const std::vector<int> frames = FittedFrames(item);
+  double largest = 0;
+  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker) {
+    Eigen::Vector3d mean;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      mean[axis] = SpreadOf(item, frames, axis, marker).mean;
+    largest = std::max(largest, mean.norm());
+  }
+  return largest;
+}
+
+}  // namespace lacuna

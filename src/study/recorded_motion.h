@@ -1,0 +1,25 @@
+// Whether recordings show anything at all: what is to be said of them before a long computation.
+#ifndef LACUNA_STUDY_RECORDED_MOTION_H_
+#define LACUNA_STUDY_RECORDED_MOTION_H_
+
+#include <string>
+
+#include "study/prediction_study.h"
+
+namespace lacuna {
+
+// Whether the markers stay in place, over the frames that are fitted, as far as their noise lets
+// one see. Never of scans, whose points are not the same from frame to frame.
+bool IsAtRest(const PredictedRecording& item);
+// Of all recordings that are fitted.
+bool IsAtRest(const PredictionStudy& study);
+// What a user should know of a study at rest; empty where something moves.
+std::string RestWarning(const PredictionStudy& study);
+
+// Of markers at rest: how far the farthest is on average from its place on the undeformed object,
+// m.
+double RestDeformation(const PredictedRecording& item);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_RECORDED_MOTION_H_
