@@ -168,22 +168,24 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                          {"evidence", nuisance.evidence},
                          {"explained_share", nuisance.explained},
                          {"adopted", nuisance.adopted}});
-  const nlohmann::json all = {{"schema_version", 2},
-                              {"verdict", VerdictName(diagnosis.verdict)},
-                              {"effects", diagnosis.effects},
-                              {"explanation", diagnosis.explanation},
-                              {"experiment", diagnosis.experiment},
-                              {"noise_m", diagnosis.noise},
-                              {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
-                              {"noise_variance_factor", diagnosis.noise_level.variance},
-                              {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
-                              {"held_out_rms_m", diagnosis.errors.held_out_rms},
-                              {"held_out_in_noise", diagnosis.errors.in_noise},
-                              {"has_held_out", diagnosis.errors.has_held_out},
-                              {"control_evidence", diagnosis.control},
-                              {"left_in_noise", diagnosis.left_in_noise},
-                              {"nuisances", nuisances},
-                              {"ranking", ranking}};
+  const nlohmann::json all = {
+      {"schema_version", 2},
+      {"verdict", VerdictName(diagnosis.verdict)},
+      {"effects", diagnosis.effects},
+      {"explanation", diagnosis.explanation},
+      {"experiment", diagnosis.experiment},
+      {"noise_m", diagnosis.noise},
+      {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
+      {"noise_variance_factor", diagnosis.noise_level.variance},
+      {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
+      {"held_out_rms_m", diagnosis.errors.held_out_rms},
+      {"held_out_in_noise", diagnosis.errors.in_noise},
+      {"held_out_in_noise_without_nuisances", diagnosis.errors.without_nuisances},
+      {"has_held_out", diagnosis.errors.has_held_out},
+      {"control_evidence", diagnosis.control},
+      {"left_in_noise", diagnosis.left_in_noise},
+      {"nuisances", nuisances},
+      {"ranking", ranking}};
   WriteFileAtomically(file, all.dump(2) + "\n");
 }
 

@@ -39,6 +39,7 @@ RecordedEffect EffectFrom(const json& entry) {
     effect.errors.in_fit_rms = refit.at("in_fit_rms_m");
     effect.errors.held_out_rms = refit.at("held_out_rms_m");
     effect.errors.in_noise = refit.at("held_out_in_noise");
+    effect.errors.without_nuisances = refit.at("held_out_in_noise_without_nuisances");
   }
   return effect;
 }
@@ -55,7 +56,8 @@ DiagnosisRecord FromJson(const json& value) {
   record.control = value.at("control_evidence");
   record.left_in_noise = value.at("left_in_noise");
   record.errors = {value.at("in_fit_rms_m"), value.at("held_out_rms_m"),
-                   value.at("held_out_in_noise"), value.at("has_held_out")};
+                   value.at("held_out_in_noise"), value.at("held_out_in_noise_without_nuisances"),
+                   value.at("has_held_out")};
   for (const json& entry : value.at("nuisances"))
     record.nuisances.push_back({entry.at("nuisance"), entry.at("what"), entry.at("evidence"),
                                 entry.at("explained_share"), entry.at("adopted")});
