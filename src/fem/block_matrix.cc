@@ -71,6 +71,16 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern)
 
 void BlockMatrix::SetZero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
+Eigen::MatrixXd BlockMatrix::operator*(const Eigen::MatrixXd& x) const {
+  Eigen::MatrixXd product(x.rows(), x.cols());
+  Eigen::VectorXd image;
+  for (Eigen::Index k = 0; k < x.cols(); ++k) {
+    Multiply(x.col(k), &image);
+    product.col(k) = image;
+  }
+  return product;
+}
+
 void BlockMatrix::Multiply(const Eigen::VectorXd& x, Eigen::VectorXd* y) const {
   CHECK_EQ(x.size(), 3 * pattern_->nodes);
   CHECK_NE(&x, y) << "the product cannot overwrite its argument";

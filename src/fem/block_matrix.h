@@ -46,6 +46,8 @@ class BlockMatrix {
 
   // y = A x, threaded over rows; x and y of length 3·nodes, node-major.
   void Multiply(const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
+  // The same for each column of x.
+  Eigen::MatrixXd operator*(const Eigen::MatrixXd& x) const;
 
  private:
   std::shared_ptr<const BlockPattern> pattern_;

@@ -22,16 +22,6 @@ Eigen::MatrixXd Massed(const Body& body, const Eigen::MatrixXd& columns) {
   return product;
 }
 
-Eigen::MatrixXd Product(const BlockMatrix& matrix, const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd product(columns.rows(), columns.cols());
-  Eigen::VectorXd image;
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    matrix.Multiply(columns.col(k), &image);
-    product.col(k) = image;
-  }
-  return product;
-}
-
 class TangentsAlong {
  public:
   TangentsAlong(const Model& model, double time_step)
@@ -45,7 +35,7 @@ class TangentsAlong {
   Eigen::MatrixXd Apply(const TrajectoryState& state, const TangentWeights& weights,
                         const Eigen::MatrixXd& columns) {
     Assemble(state, weights, false);
-    return Product(matrix_, columns);
+    return matrix_ * columns;
   }
 
   // K⁻¹ right on the free nodes; where K is not definite, with its stand-in. Nothing where that

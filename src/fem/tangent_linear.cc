@@ -26,17 +26,6 @@ Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd c
   return columns;
 }
 
-// matrix · column, for each column.
-Eigen::MatrixXd Product(const BlockMatrix& matrix, const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd product(columns.rows(), columns.cols());
-  Eigen::VectorXd image;
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    matrix.Multiply(columns.col(k), &image);
-    product.col(k) = image;
-  }
-  return product;
-}
-
 // An effect with memory that some perturbation or the model itself has.
 struct Memory {
   std::shared_ptr<const Effect> effect;
@@ -242,7 +231,7 @@ struct TangentLinear::Implementation {
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       const Eigen::MatrixXd step = SolveFree(right);
       solution += step;
-      right -= Product(tangent, step);
+      right -= tangent * step;
       for (size_t i = 0; i < fixed.size(); ++i)
         if (fixed[i]) right.middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
       if (right.norm() <= wanted) return solution;
@@ -279,14 +268,14 @@ struct TangentLinear::Implementation {
       BlockMatrix effects(model.body->pattern);
       for (size_t j = 0; j < model.effects.size(); ++j)
         model.effects[j]->AddTangents(equation.At(end, j), {.velocity = rate}, false, &effects);
-      right -= Product(effects, position_history);
+      right -= effects * position_history;
       effects.SetZero();
       for (size_t j = 0; j < model.effects.size(); ++j)
         model.effects[j]->AddTangents(equation.At(end, j), {.acceleration = 1}, false, &effects);
-      right -= Product(effects, carried);
+      right -= effects * carried;
     }
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
-    if (!gripped.isZero(0)) right -= Product(tangent, gripped);
+    if (!gripped.isZero(0)) right -= tangent * gripped;
 
     TangentLinearSummary summary;
     const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, std::move(right));
