@@ -298,7 +298,12 @@ Calibration CalibrationProblem::FitOver(double horizon, const Eigen::VectorXd& s
     if (!HasScans() || calibration.estimates.empty()) return calibration;
     const double moved = LargestChange(parameters_, calibration, values);
     values = calibration.parameters;
-    if (moved < kSettled) return calibration;
+    if (moved < kSettled) {
+      // A round need not have converged to the last digit when all of it changed so little.
+      calibration.usable = true;
+      calibration.message.clear();
+      return calibration;
+    }
     iterations += std::max(calibration.iterations, 1);
   }
   calibration.usable = false;

@@ -116,8 +116,12 @@ ModelErrors ErrorsOf(const CalibrationRecord& record) {
     held_out.Add(recording.held_out);
   }
   const Sum& judged = held_out.points > 0 ? held_out : in_fit;
-  return {in_fit.Mean(in_fit.square), judged.Mean(judged.square), judged.Mean(judged.in_noise),
-          held_out.points > 0};
+  ModelErrors errors;
+  errors.in_fit_rms = in_fit.Mean(in_fit.square);
+  errors.held_out_rms = judged.Mean(judged.square);
+  errors.in_noise = errors.without_nuisances = judged.Mean(judged.in_noise);
+  errors.has_held_out = held_out.points > 0;
+  return errors;
 }
 
 std::vector<ParameterMove> MovesBetween(const CalibrationRecord& before,

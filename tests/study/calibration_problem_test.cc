@@ -142,7 +142,9 @@ std::string MessageOf(const PredictionStudy& study) {
 
 TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
   const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, BarMarkerPlaces()));
+  // At rest, 2 mm from where the undeformed bar has the markers.
+  const Eigen::Matrix3Xd moved = BarMarkerPlaces().array() + 0.002;
+  WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
   EXPECT_THAT(MessageOf(ReadBarStudy(folder.Path(), {{"noise: 0.05 mm\n", ""}})),
               testing::HasSubstr("noise: cannot be estimated"));
   EXPECT_THAT(
@@ -164,6 +166,7 @@ TEST(MarkerNoise, IsThatOfTheCoordinates) {
     for (double& coordinate : positions.reshaped()) coordinate += noise(random);
     if (frame % 3 == 0) positions.col(4).setConstant(std::nan(""));
     item.recording.markers.positions.push_back(positions);
+    item.recording.times.push_back(0.01 * frame);
     frames.push_back(frame);
   }
   // The median of 57 medians of 198 values each.

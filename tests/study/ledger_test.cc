@@ -48,7 +48,7 @@ RecordedEffect Tried(const std::string& type, double held_out_rms) {
   RecordedEffect effect;
   effect.type = type;
   effect.refitted = true;
-  effect.errors = {held_out_rms, held_out_rms, 1e4 * held_out_rms, true};
+  effect.errors = {held_out_rms, held_out_rms, 1e4 * held_out_rms, 1e4 * held_out_rms, true};
   return effect;
 }
 

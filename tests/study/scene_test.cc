@@ -155,11 +155,11 @@ MechanicalEnergy EnergyAt(const Scene& scene, const SceneMotion& motion, size_t 
 
 TEST(DropScene, FallsFreelyStaysAboveTheFloorAndReboundsWithLessEnergy) {
   const TemporaryFolder folder;
-  const Scene scene = ReadEdited("drop.yaml", {{"edge_length: 8 mm", "edge_length: 14 mm"},
-                                               {"max_volume: 250 mm^3", "max_volume: 1000 mm^3"},
-                                               {"frames: 18", "frames: 11"},
-                                               {"cameras.yaml",
-                                                "cameras.yaml\n  width: 64\n  height: 48"}});
+  const Scene scene =
+      ReadEdited("drop.yaml", {{"edge_length: 8 mm", "edge_length: 14 mm"},
+                               {"max_volume: 250 mm^3", "max_volume: 1000 mm^3"},
+                               {"frames: 18", "frames: 11"},
+                               {"cameras.yaml", "cameras.yaml\n  width: 64\n  height: 48"}});
   const SceneMotion motion = Simulate(scene);
   ASSERT_TRUE(motion.IsUsable()) << motion.message;
   const Eigen::VectorXd share = motion.body->node_mass / motion.body->node_mass.sum();
