@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   lacuna::AddCompare(&app, &command);
   lacuna::AddDiagnose(&app, &command);
   lacuna::AddAdd(&app, &command);
+  lacuna::AddTable1(&app, &command);
   lacuna::AddSimulate(&app, &command);
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);

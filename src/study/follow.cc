@@ -1,6 +1,7 @@
 #include "study/follow.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,8 +44,9 @@ struct Correspondence {
 class Follower {
  public:
   Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
-           const std::vector<FrameState>& states, FollowedMotion* motion)
-      : study_(study), states_(states), motion_(*motion) {
+           const std::vector<FrameState>& states, const TrackedFrames* tracked,
+           FollowedMotion* motion)
+      : study_(study), states_(states), tracked_(tracked), motion_(*motion) {
     motion_.noise = NoiseOf(study, states);
     model_ = {motion_.body, study.effects, {}};
     grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
@@ -89,10 +91,7 @@ class Follower {
     FollowedFrame frame;
     frame.time = state.time;
     const Eigen::Matrix3Xd before = AsPoints(history_.position);
-    const DisplacementField motion = RegisteredMotion(k);
-    const Eigen::Matrix3Xd shift = motion.IsEmpty()
-                                       ? Eigen::Matrix3Xd::Zero(3, before.cols()).eval()
-                                       : motion.Evaluate(before);
+    const Eigen::Matrix3Xd shift = RegisteredShift(k, before);
     frame.pseudo_force = PseudoForce(shift, time_step);
     grips_->Extend(state.time, before, before + shift, state.tracked);
 
@@ -167,14 +166,23 @@ class Follower {
     return {surface.vertices, VertexNormals(surface)};
   }
 
-  // The motion from state k − 1 to state k (the paper's displacement field between consecutive
-  // surfaces). Before the first state stands the simulated surface.
-  DisplacementField RegisteredMotion(size_t k) {
-    const PointCloud from =
-        k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(AsPoints(history_.position));
+  // The motion of `nodes` from state k − 1 to state k (the paper's displacement field between
+  // consecutive surfaces). Before the first state stands the simulated surface.
+  Eigen::Matrix3Xd RegisteredShift(size_t k, const Eigen::Matrix3Xd& nodes) {
+    if (tracked_ != nullptr) {
+      const Eigen::Matrix3Xd& rest = motion_.body->mesh.nodes;
+      return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
+    }
+    const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
     // Motions go on: the last one is where the search for the next begins.
     last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
-    return last_motion_;
+    if (last_motion_.IsEmpty()) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
+    return last_motion_.Evaluate(nodes);
+  }
+
+  Eigen::Matrix3Xd TrackedTarget() const {
+    const Eigen::Matrix3Xd& rest = motion_.body->boundary.surface.vertices;
+    return rest + tracked_->DisplacementAt(frame_, rest);
   }
 
   // A registration that has not quite settled still guides, with a warning; one that failed moves
@@ -229,6 +237,10 @@ class Follower {
 
   Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
     if (IsTracked(state)) return {};
+    if (tracked_ != nullptr) {
+      return {TrackedTarget(),
+              tracked_->DeviationAt(frame_, motion_.body->boundary.surface.vertices)};
+    }
     const PointCloud surface = RegistrationPoints(nodes);
     const Alignment aligned = Registered(surface, StatePoints(state));
     return {surface.points + aligned.displacement, aligned.standard_deviation};
@@ -263,6 +275,7 @@ class Follower {
   Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
                                         const FrameState& state) const {
     const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
+    if (tracked_ != nullptr) return TrackedTarget() - vertices;
     const Alignment aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
     return aligned.field.IsEmpty() ? Eigen::Matrix3Xd::Zero(3, vertices.cols()).eval()
                                    : aligned.field.Evaluate(vertices);
@@ -270,6 +283,7 @@ class Follower {
 
   const ReconstructionStudy& study_;
   const std::vector<FrameState>& states_;
+  const TrackedFrames* tracked_;
   FollowedMotion& motion_;
   size_t frame_ = 0;  // the one being followed
   Model model_;
@@ -306,10 +320,12 @@ nlohmann::json ReadJson(const std::filesystem::path& file) {
 }  // namespace
 
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
-                            const std::vector<FrameState>& states, Progress* progress) {
+                            const std::vector<FrameState>& states, Progress* progress,
+                            const TrackedFrames* tracked) {
   FollowedMotion motion;
+  CHECK(tracked == nullptr || (FirstFrameIsReference(study) && states.front().tracked.cols() == 0));
   motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
-  Follower follower(study, reference, states, &motion);
+  Follower follower(study, reference, states, tracked, &motion);
   progress->Begin("forces", static_cast<int64_t>(states.size()));
   size_t first = 0;
   if (FirstFrameIsReference(study)) {

@@ -12,6 +12,7 @@
 #include "study/frame_states.h"
 #include "study/reconstruction.h"
 #include "study/reference.h"
+#include "study/tracked_frames.h"
 
 namespace lacuna {
 
@@ -41,9 +42,11 @@ struct FollowedMotion {
 
 // Simulates the body from frame to frame. In each: register the simulated surface to the next state
 // by CPD, fit the forces to the registered displacements and the scanned points (Eq. 1), and take
-// the step under them.
+// the step under them. `tracked`: registrations of the same states, taken in place of CPD; only for
+// scans whose first frame is the reference shape (CHECK).
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
-                            const std::vector<FrameState>& states, Progress* progress);
+                            const std::vector<FrameState>& states, Progress* progress,
+                            const TrackedFrames* tracked = nullptr);
 
 void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder);
 FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,

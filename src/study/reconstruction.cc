@@ -173,18 +173,22 @@ std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) 
 }  // namespace
 
 ReconstructionStudy ReadReconstruction(const Config& config) {
-  ReconstructionStudy study;
   if (config.Has("recordings") && !config.Has("recording"))
     config.Fail("recordings",
                 "makes this an experiment for `lacuna fit`, which predicts; a "
                 "reconstruction has one `recording`");
+  return ReadReconstruction(config, LoadRecording(config.Path("recording")));
+}
+
+ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording) {
+  ReconstructionStudy study;
   config.Integer("schema_version", 1, 1);
   study.name = config.Text("name");
   if (config.Has("output") && config.Text("output").empty())
     config.Fail("output", "is empty; expected a folder");
   study.output = config.Path("output", "../results/" + study.name);
   study.seed = static_cast<uint64_t>(config.Integer("seed", 0, 1 << 30, 1));
-  study.recording = LoadRecording(config.Path("recording"));
+  study.recording = recording;
   study.frames = ReadFrames(config, study.recording);
   if (const auto filter = config.OptionalChild("filter")) study.filter = ReadFilter(*filter);
   if (const auto surface = config.OptionalChild("surface")) {

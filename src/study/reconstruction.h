@@ -90,6 +90,9 @@ struct ReconstructionStudy {
 
 // Reads and checks everything that can be checked before the computation. Throws InputError.
 ReconstructionStudy ReadReconstruction(const Config& config);
+// The same for a given recording, which `config` then does not name; keys that the caller has read
+// before count as known.
+ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording);
 
 // Runs what is not yet in the run directory. Throws InputError for input that turns out unusable
 // (file and frame named) and Interrupted; numerical outcomes stand in the record.

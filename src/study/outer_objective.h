@@ -1,0 +1,62 @@
+// The paper's objective: how well a body with the parameters (q, v, y, p) can follow a recording.
+//
+//   P(q, v, y, p) = |D_anim| = Σ_k |D_k|                   (Transue & Choi 2015, Eq. 2, section 8)
+//
+// of the body that TetGen makes of S_0 with q and v, has the moduli y and p, and follows the frames
+// under forces fitted anew in each.
+#ifndef LACUNA_STUDY_OUTER_OBJECTIVE_H_
+#define LACUNA_STUDY_OUTER_OBJECTIVE_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "record/run_record.h"
+#include "study/frame_states.h"
+#include "study/reconstruction.h"
+#include "study/tracked_frames.h"
+
+namespace lacuna {
+
+struct OuterParameters {
+  double radius_edge_ratio = 2;  // q
+  double max_volume = 0;         // v, m³
+  double young_modulus = 0;      // y, Pa
+  double poisson_ratio = 0;      // p
+};
+
+// What stays the same in all evaluations of a search. The members must outlive it.
+struct OuterProblem {
+  const ReconstructionStudy& study;  // but for the four parameters
+  const std::vector<FrameState>& states;
+  const TrackedFrames& tracked;  // its points are the fixed sampling of the surface
+  // S_0 is remeshed to triangles as large as the faces of a regular tetrahedron of volume v before
+  // TetGen keeps them, so that v decides the size of the mesh at its surface, too. Otherwise TetGen
+  // gets S_0 as it was reconstructed, and splits what v and q ask for (mesh.preserve_surface).
+  bool remesh_surface = true;
+  bool registration_in_loop = false;  // CPD of each simulated surface, as in the paper
+  // S_0 is turned by this angle about an oblique axis before TetGen sees it, and its mesh turned
+  // back, rad: another mesh of the same quality.
+  double turn = 0;
+};
+
+struct OuterEvaluation {
+  bool usable = false;
+  std::string failure;  // one line: TetGen refused, or which frame could not be followed
+  // |D_anim|, m: over the vertices of the simulated surface, whose number changes with q and v.
+  double residual_sum = kNotMeasured;
+  // The residual's mean over the frames and the fixed sampling, m. D there comes from the tracked
+  // points themselves, or, with registration in the loop, by linear interpolation between vertices.
+  double residual_per_point = kNotMeasured;
+  double scan_distance = kNotMeasured;  // mean over scan points and frames, m; no correspondence
+  double force = kNotMeasured;          // mean over the frames of the net force's length, N
+  int nodes = 0, tets = 0, surface_points = 0;
+  double seconds = 0;  // wall time; the one number here that is not repeatable
+};
+
+// Throws Interrupted; whatever else goes wrong with these parameters is a failed evaluation.
+OuterEvaluation EvaluateOuter(const OuterProblem& problem, const OuterParameters& parameters);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_OUTER_OBJECTIVE_H_
