@@ -1,7 +1,6 @@
 // The motion of a recording's first surface through all of its states, by CPD, once for all meshes.
 //
-// CPD between the simulated surface and each state costs more than the rest of a frame together.
-// An outer search therefore registers S_0 to every S_k once; the displacement is a field over the
+// S_0 is registered to every S_k once, whatever is simulated; the displacement is a field over the
 // undeformed space, and any mesh of S_0 reads its own vertices' places from it. What this leaves
 // out: align(p, S) of Eq. 1 no longer depends on where the simulation is, so that it keeps what CPD
 // is off along the surface, where alignment in the loop would slide along.
