@@ -28,23 +28,19 @@ double FromFree(const CalibratedParameter& parameter, double free) {
   return parameter.log_scale ? std::exp(free) : free;
 }
 
-// What Ceres works with: u, unbounded, in typical changes of φ. Near a bound φ(u) bends, so that no
-// step leaves the bounds and none has to be cut short:
-//   both bounds  φ = middle + half tanh((u − middle)/half)      one bound  φ = bound ± soft(± (u −
-//   bound))
-// with soft(t) = ln(1 + eᵗ). Far from the bounds u is φ.
+// What Ceres works with: u, unbounded, in typical changes of φ. Near a bound φ(u) turns back, so
+// that no step leaves the bounds, none has to be cut short, and none ends where nothing can move it
+// any more (as in Minuit: James & Roos, Comput. Phys. Commun. 10, 1975):
+//   both bounds  φ = middle + half sin((u − middle)/half)
+//   one bound    φ = low − 1 + √((u − low)² + 1)             and likewise from above
 struct Free {
-  double low, high, typical;  // of φ/typical
+  double low, high;  // of φ/typical
 
   explicit Free(const CalibratedParameter& parameter)
       : low(parameter.log_scale && parameter.min <= 0
                 ? -std::numeric_limits<double>::infinity()
                 : ToFree(parameter, parameter.min) / parameter.typical),
-        high(ToFree(parameter, parameter.max) / parameter.typical),
-        typical(parameter.typical) {}
-
-  static double Soft(double t) { return t > 30 ? t : std::log1p(std::exp(t)); }
-  static double InverseSoft(double s) { return s > 30 ? s : std::log(std::expm1(s)); }
+        high(ToFree(parameter, parameter.max) / parameter.typical) {}
 
   // φ/typical, and its derivative by u.
   std::pair<double, double> At(double u) const {
@@ -52,12 +48,13 @@ struct Free {
     if (has_low && has_high) {
       const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
       if (half == 0) return {middle, 0};
-      const double t = std::tanh((u - middle) / half);
-      return {middle + half * t, 1 - t * t};
+      const double t = (u - middle) / half;
+      return {middle + half * std::sin(t), std::cos(t)};
     }
-    if (has_low) return {low + Soft(u - low), 1 / (1 + std::exp(low - u))};
-    if (has_high) return {high - Soft(high - u), 1 / (1 + std::exp(u - high))};
-    return {u, 1};
+    if (!has_low && !has_high) return {u, 1};
+    const double inside = has_low ? u - low : high - u;
+    const double root = std::sqrt(inside * inside + 1);
+    return {has_low ? low + (root - 1) : high - (root - 1), inside / root};
   }
 
   // u of φ/typical; a value at a bound is taken a little inside, where it can still move.
@@ -66,11 +63,12 @@ struct Free {
     if (has_low && has_high) {
       const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
       if (half == 0) return middle;
-      return middle + half * std::atanh(std::clamp((scaled - middle) / half, -kInside, kInside));
+      return middle + half * std::asin(std::clamp((scaled - middle) / half, -kInside, kInside));
     }
-    if (has_low) return low + InverseSoft(std::max(scaled - low, 1 - kInside));
-    if (has_high) return high - InverseSoft(std::max(high - scaled, 1 - kInside));
-    return scaled;
+    if (!has_low && !has_high) return scaled;
+    const double inside = std::max(has_low ? scaled - low : high - scaled, 1 - kInside) + 1;
+    const double root = std::sqrt(inside * inside - 1);
+    return has_low ? low + root : high - root;
   }
 };
 
@@ -314,6 +312,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
                                                              1, first.residual.size()));
     solver.parameter_tolerance = 1e-6;
+    // Steps are in typical changes: one that overshoots is shortened at once.
+    solver.initial_trust_region_radius = 100;
     solver.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);

@@ -18,7 +18,7 @@ constexpr double kShortHorizon = 0.25;
 // Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
 // wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
 // its posterior deviation.
-constexpr int kIterationsOfRound = 4;
+constexpr int kIterationsOfRound = 12;
 constexpr double kSettled = 0.1;
 // Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
 constexpr double kFewestMatched = 0.5;
