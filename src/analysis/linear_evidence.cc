@@ -29,8 +29,7 @@ struct ScaledInformation {
 
 LinearModel::LinearModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
                          std::vector<LinearPrior> priors)
-    : rows_(residual.size()),
-      squares_(residual.squaredNorm()),
+    : squares_(residual.squaredNorm()),
       toward_(columns.transpose() * residual),
       products_(columns.transpose() * columns),
       priors_(std::move(priors)) {

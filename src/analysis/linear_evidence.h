@@ -38,9 +38,6 @@ class LinearModel {
   // The same columns with another residual.
   LinearModel WithResidual(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns) const;
 
-  Eigen::Index rows() const { return rows_; }
-  double squares() const { return squares_; }  // ‖r‖²
-
   // With the chosen columns only. `variance`: v ≥ 0 of what is noise. A change that its prior wants
   // positive and that comes out negative is set to 0; its evidence is that of the prior cut in
   // half, exact for one such parameter and taken parameter by parameter for several.
@@ -60,7 +57,6 @@ class LinearModel {
                       const std::vector<int>& b, double variance) const;
 
  private:
-  Eigen::Index rows_ = 0;
   double squares_ = 0;
   Eigen::VectorXd toward_;    // Aᵀ r
   Eigen::MatrixXd products_;  // Aᵀ A

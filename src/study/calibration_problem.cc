@@ -143,22 +143,40 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                                       double horizon,
-                                       const std::vector<MisfitDirection>& more) const {
+                                       double horizon) const {
   Correspondences found;
-  return PredictWith(values, with_jacobian, horizon, more, &found);
+  return PredictWith(values, with_jacobian, horizon, &found);
+}
+
+std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
+    size_t recording, const std::vector<MisfitDirection>& further) const {
+  std::vector<MisfitDirection> directions = DirectionsOf(study_.fitted);
+  directions.insert(directions.end(), further.begin(), further.end());
+  for (const auto& nuisance : models_[recording].nuisances())
+    directions.push_back(nuisance.direction);
+  return directions;
+}
+
+Eigen::MatrixXd CalibrationProblem::ColumnsOf(size_t recording,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& by,
+                                              Eigen::Index further) const {
+  const Eigen::Index own = static_cast<Eigen::Index>(models_[recording].nuisances().size());
+  const Eigen::Index places = by.cols() - further - own;
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(by.rows(), static_cast<Eigen::Index>(parameters_.size()) + further);
+  columns.leftCols(static_cast<Eigen::Index>(study_.fitted.size())) =
+      SumOverPlaces(study_.fitted, by.leftCols(places));
+  columns.rightCols(further) = by.middleCols(places, further);
+  columns.middleCols(first_nuisance_[recording], own) = by.rightCols(own);
+  return columns;
 }
 
 Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool with_jacobian,
-                                           double horizon, const std::vector<MisfitDirection>& more,
-                                           Correspondences* correspondences) const {
+                                           double horizon, Correspondences* correspondences) const {
   ThrowIfInterrupted();
   SetModel(values);
   Prediction all;
   all.usable = true;
-  const Eigen::Index shared = static_cast<Eigen::Index>(study_.fitted.size());
-  const Eigen::Index extra = static_cast<Eigen::Index>(more.size());
-  const Eigen::Index columns = static_cast<Eigen::Index>(parameters_.size()) + extra;
   std::vector<Eigen::VectorXd> residuals;
   std::vector<Eigen::MatrixXd> jacobians;
   Eigen::Index rows = 0;
@@ -172,11 +190,7 @@ Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool w
     const double start = model.item().StartTime();
     std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
     std::vector<MisfitDirection> directions;
-    if (with_jacobian) {
-      directions = DirectionsOf(study_.fitted);
-      directions.insert(directions.end(), more.begin(), more.end());
-      for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
-    }
+    if (with_jacobian) directions = DirectionsFor(r, {});
     Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions,
                                   seek ? nullptr : &(*correspondences)[r]);
     all.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
@@ -191,17 +205,10 @@ Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool w
     };
     residuals.emplace_back(whitened(misfit.residual));
     rows += misfit.residual.size();
-    if (!with_jacobian) continue;
-    const Eigen::Index own = static_cast<Eigen::Index>(model.nuisances().size());
-    const Eigen::Index places = misfit.by.cols() - extra - own;
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(misfit.residual.size(), columns);
-    jacobian.leftCols(shared) = SumOverPlaces(study_.fitted, misfit.by.leftCols(places));
-    jacobian.rightCols(extra) = misfit.by.middleCols(places, extra);
-    jacobian.middleCols(first_nuisance_[r], own) = misfit.by.rightCols(own);
-    jacobians.push_back(whitened(jacobian));
+    if (with_jacobian) jacobians.push_back(whitened(ColumnsOf(r, misfit.by, 0)));
   }
   all.residual.resize(rows);
-  if (with_jacobian) all.jacobian.resize(rows, columns);
+  if (with_jacobian) all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size()));
   Eigen::Index row = 0;
   for (size_t k = 0; k < residuals.size(); ++k) {
     all.residual.segment(row, residuals[k].size()) = residuals[k];
@@ -217,7 +224,6 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
   ThrowIfInterrupted();
   SetModel(values);
   LinearisedMisfit all;
-  const Eigen::Index shared = static_cast<Eigen::Index>(study_.fitted.size());
   const Eigen::Index extra = static_cast<Eigen::Index>(directions.size());
   const Eigen::Index columns = static_cast<Eigen::Index>(parameters_.size()) + extra;
   for (size_t r = 0; r < models_.size(); ++r) {
@@ -226,11 +232,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
     if (first_nuisance_[r] < 0) continue;
     // The clock comes last: its derivative is the speed, with the sign turned.
     std::vector<MisfitDirection> wanted;
-    if (with_jacobian) {
-      wanted = DirectionsOf(study_.fitted);
-      wanted.insert(wanted.end(), directions.begin(), directions.end());
-      for (const auto& nuisance : model.nuisances()) wanted.push_back(nuisance.direction);
-    }
+    if (with_jacobian) wanted = DirectionsFor(r, directions);
     wanted.push_back({.perturbation = {}, .is_clock = true});
     Misfit misfit =
         model.Predict(item.frames, NuisanceOf(r, values), wanted,
@@ -258,12 +260,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
     all.residual.tail(rows) = misfit.residual;
     if (with_jacobian) {
       all.by.conservativeResizeLike(Eigen::MatrixXd::Zero(part.first_row + rows, columns));
-      const Eigen::Index own = static_cast<Eigen::Index>(model.nuisances().size());
-      const Eigen::Index places = misfit.by.cols() - 1 - extra - own;
-      auto by = all.by.bottomRows(rows);
-      by.leftCols(shared) = SumOverPlaces(study_.fitted, misfit.by.leftCols(places));
-      by.rightCols(extra) = misfit.by.middleCols(places, extra);
-      by.middleCols(first_nuisance_[r], own) = misfit.by.middleCols(places + extra, own);
+      all.by.bottomRows(rows) = ColumnsOf(r, misfit.by.leftCols(misfit.by.cols() - 1), extra);
     }
     all.parts.push_back(std::move(part));
   }
@@ -288,8 +285,7 @@ Calibration CalibrationProblem::FitOver(double horizon, const Eigen::VectorXd& s
     calibration = Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction =
-              PredictWith(at, with_jacobian, horizon, {}, &correspondences);
+          const Prediction prediction = PredictWith(at, with_jacobian, horizon, &correspondences);
           progress->Report(++*evaluations,
                            prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
           return prediction;

@@ -64,12 +64,10 @@ class CalibrationProblem {
   void SetModel(const Eigen::VectorXd& values) const;
 
   // The whitened misfit over the fitted frames not later than `horizon` seconds after the start of
-  // each recording, with derivatives by the parameters and by `more` (columns after them; the same
-  // for each recording). Scanned points go with the places of the surface nearest to them in this
-  // prediction. Not usable where most points of a scan have none.
+  // each recording, with derivatives by the parameters. Scanned points go with the places of the
+  // surface nearest to them in this prediction. Not usable where most points of a scan have none.
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                     double horizon = std::numeric_limits<double>::infinity(),
-                     const std::vector<MisfitDirection>& more = {}) const;
+                     double horizon = std::numeric_limits<double>::infinity()) const;
 
   // `directions` are those of each recording alike; without a Jacobian only the residual is there.
   // Compared with what `same`, where given, was compared with.
@@ -87,8 +85,14 @@ class CalibrationProblem {
   // Of each fitted recording, what its frames are compared with; empty: found while predicting.
   using Correspondences = std::vector<std::vector<Observed>>;
   Prediction PredictWith(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
-                         const std::vector<MisfitDirection>& more,
                          Correspondences* correspondences) const;
+  // What a recording's Misfit is differentiated by: the places of the study's parameters,
+  // `further`, the recording's own nuisances; and those columns as ∂/∂(parameters), then by
+  // `further` of them.
+  std::vector<MisfitDirection> DirectionsFor(size_t recording,
+                                             const std::vector<MisfitDirection>& further) const;
+  Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
+                            Eigen::Index further) const;
   Calibration FitOver(double horizon, const Eigen::VectorXd& start,
                       const CalibrationOptions& options, Progress* progress,
                       int* evaluations) const;

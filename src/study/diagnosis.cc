@@ -25,8 +25,6 @@ nlohmann::json Number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
 
-double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
-
 }  // namespace
 
 std::string VerdictName(Verdict verdict) {

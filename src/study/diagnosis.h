@@ -52,8 +52,8 @@ struct Diagnosis {
   double noise = 0;                  // m
   NoiseLevel noise_level;
   ModelErrors errors;                     // of the present model
-  std::vector<RankedEffect> ranking;      // refitted ones first, by evidence
-  std::vector<ScoredNuisance> nuisances;  // by evidence
+  std::vector<RankedEffect> ranking;      // by first order's evidence
+  std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
   int scored = 0;                         // effects and variants
   double control = 0;        // the evidence that one in twenty controls finds without an effect
   double left_in_noise = 0;  // of the best hypothesis, over all frames, in σ

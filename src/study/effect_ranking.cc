@@ -21,8 +21,6 @@ constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
 constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
 
-double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
-
 std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
   std::vector<int> range(static_cast<size_t>(count));
   std::iota(range.begin(), range.end(), static_cast<int>(first));
@@ -164,6 +162,8 @@ double Duration(const PredictionStudy& study) {
 
 }  // namespace
 
+double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
+
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values) {
   std::vector<LinearPrior> priors;
@@ -276,7 +276,10 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
 
   // What no effect explains is taken for noise.
   const auto left_by = [&](const std::vector<int>& chosen) -> Eigen::VectorXd {
-    const LinearFit fit = Weigh(misfit, hypotheses, 0).all.Fit(chosen, 1);
+    const LinearFit fit =
+        LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
+                    WhitenedRows(hypotheses.by, misfit, 0, false), hypotheses.priors)
+            .Fit(chosen, 1);
     return misfit.residual + hypotheses.by(Eigen::all, chosen) * fit.change;
   };
   const Eigen::VectorXd left = left_by(Range(0, hypotheses.by.cols()));
@@ -346,7 +349,6 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   }
 
   ranking.variants = static_cast<int>(candidates.size());
-  ranking.held_out_in_noise = ExpectedHeldOut(weighed, base, variance, misfit);
   const std::vector<int> adopted(base.begin() + known, base.end());
   ranking.adopted.by = hypotheses.by(Eigen::all, adopted);
   for (const int k : adopted) ranking.adopted.priors.push_back(hypotheses.priors[k]);

@@ -20,6 +20,9 @@ namespace lacuna {
 // cases of five: what "detectable" means.
 inline constexpr double kStandsOut = 5;
 
+// Of having tried so many rivals, as a logarithm of odds.
+double Price(size_t rivals);
+
 // What first order says about one hypothesis.
 struct Score {
   double evidence = 0;        // ln of the odds against the model as it is, less the price of trying
@@ -62,12 +65,11 @@ struct AdoptedNuisances {
 };
 
 struct EffectRanking {
-  std::vector<ScoredEffect> effects;  // by evidence, the best first
-  std::vector<ScoredNuisance> nuisances;
+  std::vector<ScoredEffect> effects;      // by evidence, the best first
+  std::vector<ScoredNuisance> nuisances;  // discretisation, grips, measurement
   AdoptedNuisances adopted;
   NoiseLevel noise;
-  LinearisedMisfit misfit;       // at the fitted values, without columns of hypotheses
-  double held_out_in_noise = 0;  // of the model with what was adopted
+  LinearisedMisfit misfit;  // at the fitted values, without columns of hypotheses
   // The evidence that one in twenty controls finds: what the best hypothesis leaves, its frames
   // moved along and its signs drawn anew, so that no effect is in it.
   double control = 0;

@@ -70,6 +70,9 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
   return errors;
 }
 
+namespace {
+
+// Compared with what `same` was compared with.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                               const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   FittedHypothesis hypothesis;
@@ -92,6 +95,8 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   }
   return hypothesis;
 }
+
+}  // namespace
 
 HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
@@ -116,6 +121,10 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   return evidence;
 }
 
+namespace {
+
+// The same after one more step to first order, which takes the held-out frames in too, where that
+// makes the evidence of all frames larger.
 FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                    const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
@@ -142,6 +151,8 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eige
              ? next
              : hypothesis;
 }
+
+}  // namespace
 
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
   PredictionStudy with = study;

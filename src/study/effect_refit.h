@@ -38,14 +38,6 @@ struct HypothesisEvidence {
 };
 HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
 
-// Compared with what `same` was compared with.
-FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted, const LinearisedMisfit& same);
-// The same after one more step to first order, which takes the held-out frames in too, where that
-// makes the evidence of all frames larger.
-FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same);
-
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
   Calibration calibration;
