@@ -80,6 +80,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
     for (std::string type; std::getline(stream, type);) options.without.push_back(type);
   }
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
+  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
 
   TrialOutcome outcome;
   outcome.verdict = VerdictName(diagnosis.verdict);

@@ -27,7 +27,8 @@ struct TrialOutcome {
   double seconds = 0;
 };
 
-// Fits and diagnoses <folder>/<case> as its experiment says. The truth is opened only afterwards.
+// Fits and diagnoses <folder>/<case> as its experiment says, and writes diagnosis.json there. The
+// truth is opened only afterwards.
 TrialOutcome RunCase(const std::filesystem::path& folder);
 
 // outcome.json
