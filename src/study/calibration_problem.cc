@@ -15,6 +15,9 @@ namespace {
 
 // Share of the fitted time that is fitted first.
 constexpr double kShortHorizon = 0.25;
+// A fit that leaves more than so many σ is tried from these parts of the moduli's start values.
+constexpr double kFarOff = 2;
+constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
 // Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
 // wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
 // its posterior deviation.
@@ -309,8 +312,7 @@ Calibration CalibrationProblem::FitOver(double horizon, const Eigen::VectorXd& s
   return calibration;
 }
 
-Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress,
-                                    const CalibrationOptions& options) const {
+double CalibrationProblem::LongestFitted() const {
   double longest = 0;
   for (const RecordingModel& model : models_) {
     const std::vector<int> frames = model.FittedFrames();
@@ -318,6 +320,12 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
     if (frames.empty()) continue;
     longest = std::max(longest, times[frames.back()] - model.item().StartTime());
   }
+  return longest;
+}
+
+Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress,
+                                    const CalibrationOptions& options) const {
+  const double longest = LongestFitted();
   Calibration calibration;
   Eigen::VectorXd values = start;
   int evaluations = 0;
@@ -334,6 +342,45 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
   calibration.start_rms =
       before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
   SetModel(values);
+  return calibration;
+}
+
+Calibration CalibrationProblem::FitFromStart(Progress* progress) const {
+  Calibration calibration = Fit(Start(), progress);
+  if (calibration.usable && calibration.rms <= kFarOff) return calibration;
+  const auto is_modulus = [&](size_t k) {
+    return parameters_[k].log_scale && study_.fitted[k].unit == "Pa";
+  };
+  int evaluations = calibration.predictions;
+  double least = calibration.usable ? calibration.rms : std::numeric_limits<double>::infinity();
+  Eigen::VectorXd nearest;
+  for (const double factor : kOtherStarts) {
+    Eigen::VectorXd start = Start();
+    for (size_t k = 0; k < study_.fitted.size(); ++k)
+      if (is_modulus(k)) start[static_cast<Eigen::Index>(k)] *= factor;
+    if (start == Start()) return calibration;
+    progress->Begin(fmt::format("fit, moduli from {:g} of their start", factor), 0);
+    const Calibration first =
+        FitOver(kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
+    const Prediction whole =
+        first.estimates.empty() ? Prediction{} : Predict(first.parameters, false);
+    const double left =
+        whole.usable ? RootMeanSquare(whole.residual) : std::numeric_limits<double>::infinity();
+    progress->End(first.message);
+    if (left >= least) continue;
+    least = left;
+    nearest = first.parameters;
+  }
+  if (nearest.size() > 0) {
+    Calibration other = Fit(nearest, progress);
+    if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
+      evaluations += other.predictions;
+      other.start_rms = calibration.start_rms;
+      calibration = std::move(other);
+    }
+  }
+  calibration.predictions = evaluations;
+  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
   return calibration;
 }
 

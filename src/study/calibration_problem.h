@@ -81,6 +81,10 @@ class CalibrationProblem {
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
                   const CalibrationOptions& options = {}) const;
 
+  // From Start(). A fit from far away may end where it is off by a period of a vibration: where it
+  // leaves far more than noise, the moduli are started from elsewhere too, and the best is kept.
+  Calibration FitFromStart(Progress* progress) const;
+
  private:
   // Of each fitted recording, what its frames are compared with; empty: found while predicting.
   using Correspondences = std::vector<std::vector<Observed>>;
@@ -93,6 +97,7 @@ class CalibrationProblem {
                                              const std::vector<MisfitDirection>& further) const;
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
+  double LongestFitted() const;  // s, of any recording after its start
   Calibration FitOver(double horizon, const Eigen::VectorXd& start,
                       const CalibrationOptions& options, Progress* progress,
                       int* evaluations) const;

@@ -15,7 +15,7 @@ namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 2;
+constexpr int kCalibrationVersion = 3;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -25,7 +25,7 @@ struct CalibrationStage {
 CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& reference,
                             Progress* progress) {
   const CalibrationProblem problem(study, reference.mesh);
-  const Calibration calibration = problem.Fit(problem.Start(), progress);
+  const Calibration calibration = problem.FitFromStart(progress);
   CalibrationStage stage;
   CalibrationRecord& record = stage.record;
   // So that the folder of runs can be moved together with the experiments.

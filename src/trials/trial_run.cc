@@ -70,7 +70,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   const ReferenceBody reference = MakeReferenceBody(study);
   const CalibrationProblem problem(study, reference.mesh);
   Progress progress(Silent());
-  const Calibration calibration = problem.Fit(problem.Start(), &progress);
+  const Calibration calibration = problem.FitFromStart(&progress);
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
   // Only which effect is to be kept from the library is known of the truth before.

@@ -21,7 +21,7 @@ Calibration FitOf(const CalibrationProblem& problem) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  return problem.Fit(problem.Start(), &progress);
+  return problem.FitFromStart(&progress);
 }
 
 TEST(CalibrationProblem, JacobianAgreesWithDifferences) {

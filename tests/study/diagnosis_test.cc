@@ -32,7 +32,7 @@ Diagnosis DiagnoseBar(const HeldBarTruth& truth,
   const TetMesh mesh = BarMesh({6, 1, 1}, 2);
   const CalibrationProblem problem(study, mesh);
   Progress progress(Silent());
-  const Calibration calibration = problem.Fit(problem.Start(), &progress);
+  const Calibration calibration = problem.FitFromStart(&progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   return Diagnose(problem, calibration.parameters, {}, &progress);
 }

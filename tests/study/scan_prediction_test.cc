@@ -30,7 +30,7 @@ Calibration FitOf(const CalibrationProblem& problem) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  return problem.Fit(problem.Start(), &progress);
+  return problem.FitFromStart(&progress);
 }
 
 std::string MessageOf(const std::function<void()>& action) {

@@ -25,7 +25,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const Calibration calibration = problem.Fit(problem.Start(), &progress);
+  const Calibration calibration = problem.FitFromStart(&progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   problem.SetModel(calibration.parameters);
   const RecordingModel& model = problem.models()[0];
