@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -12,6 +14,7 @@
 #include "scan/random_bits.h"
 #include "study/candidates.h"
 #include "study/effect_ranking.h"
+#include "study/nuisance_candidates.h"
 #include "study/reference.h"
 #include "trials/trial_film.h"
 #include "trials/workers.h"
@@ -40,7 +43,8 @@ TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
   return trial;
 }
 
-// The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case.
+// The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
+// from what a grip that is off, an unknown force of the hand and the discretisation could do.
 double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
                   const std::filesystem::path& folder) {
   TrialCase without = trial;
@@ -72,20 +76,31 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const std::shared_ptr<Effect> effect = MakeHidden(none);
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     directions.push_back({{.effect = effect, .parameter = static_cast<int>(k)}});
+  const GripNuisances grips(problem);
+  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
   LinearisedMisfit misfit = problem.Linearise(values, true, directions);
-  for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
+  for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   const Eigen::Index known = values.size();
-  Eigen::MatrixXd columns(misfit.by.rows(), known + 1);
-  columns << misfit.by.leftCols(known), misfit.by.rightCols(amount.size()) * amount;
+  std::vector<NuisanceCandidate> nuisances =
+      grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
+  for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
+    nuisances.push_back(std::move(nuisance));
+  Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
-  priors.push_back({});
+  const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
+    columns.rightCols(more.cols()) = more;
+    priors.insert(priors.end(), its_priors.begin(), its_priors.end());
+  };
+  for (const NuisanceCandidate& nuisance : nuisances) add(nuisance.by, nuisance.priors);
+  const int own = static_cast<int>(columns.cols());
+  add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
   const LinearModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
       WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
-  std::vector<int> taken;
-  for (int k = 0; k < known; ++k) taken.push_back(k);
-  const int own = static_cast<int>(known);
+  std::vector<int> taken(own);
+  std::iota(taken.begin(), taken.end(), 0);
   return kStandsOut / std::sqrt(model.Remaining(taken, {own}, {own}, 1)(0, 0));
 }
 
