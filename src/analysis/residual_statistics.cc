@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/series_noise.h"
+
 namespace lacuna {
 namespace {
 
@@ -57,6 +59,12 @@ StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& posi
   }
   if (rows == 0) return span;
   span.deviation = std::sqrt(squares / freedom);
+  std::vector<Eigen::Index> complete;
+  for (Eigen::Index row = 0; row < positions.rows(); ++row)
+    if (positions.row(row).segment(first, last - first + 1).allFinite()) complete.push_back(row);
+  if (!complete.empty())
+    span.deviation = DeviationAboutTrend(times.segment(first, last - first + 1),
+                                         positions(complete, Eigen::seq(first, last)));
   span.drift = std::sqrt(3 * slopes / rows);
   return span;
 }

@@ -2,8 +2,10 @@
 
 #include <glog/logging.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lacuna {
 namespace {
@@ -13,6 +15,7 @@ constexpr int kLags = 8;  // of the long-run variance
 constexpr size_t kFewestFrames = 8;
 // Noise that remembers more than this of a frame in the next could not be told from motion.
 constexpr double kLargestCorrelation = 0.9;
+constexpr double kCorrelationStep = 0.05;
 
 }  // namespace
 
@@ -59,6 +62,43 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout
     }
   }
   return white;
+}
+
+double DeviationAboutTrend(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows) {
+  const Eigen::Index count = times.size();
+  CHECK_EQ(rows.cols(), count);
+  CHECK_GE(count, 3);
+  const double spacing = (times[count - 1] - times[0]) / static_cast<double>(count - 1);
+  // Columns: a constant, the time, the series.
+  Eigen::MatrixXd seen(count, 2 + rows.rows());
+  seen << Eigen::VectorXd::Ones(count), times.array() - times[0],
+      (rows.colwise() - rows.col(0)).transpose();
+  const double series = static_cast<double>(rows.rows());
+  const double freedom = series * static_cast<double>(count - 2);
+  double most = -std::numeric_limits<double>::infinity(), deviation = 0;
+  for (double correlation = 0; correlation < kLargestCorrelation; correlation += kCorrelationStep) {
+    Eigen::MatrixXd white = seen;
+    double log_determinant = 0;
+    for (Eigen::Index f = 1; f < count; ++f) {
+      const double memory =
+          correlation > 0 ? std::pow(correlation, (times[f] - times[f - 1]) / spacing) : 0;
+      white.row(f) = (seen.row(f) - memory * seen.row(f - 1)) / std::sqrt(1 - memory * memory);
+      log_determinant += std::log(1 - memory * memory);
+    }
+    const auto line = white.leftCols<2>();
+    const auto y = white.rightCols(rows.rows());
+    const Eigen::Matrix2d normal = line.transpose() * line;
+    const Eigen::MatrixXd toward = line.transpose() * y;
+    const double squares =
+        y.squaredNorm() - (toward.array() * (normal.inverse() * toward).array()).sum();
+    if (!(squares > 0)) return 0;
+    const double likelihood = -0.5 * (freedom * std::log(squares / freedom) +
+                                      series * (log_determinant + std::log(normal.determinant())));
+    if (likelihood <= most) continue;
+    most = likelihood;
+    deviation = std::sqrt(squares / freedom);
+  }
+  return deviation;
 }
 
 SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout& layout) {

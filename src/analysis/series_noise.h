@@ -46,6 +46,11 @@ struct SeriesStatistics {
 };
 SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout& layout);
 
+// σ of such noise about a straight line of each row (rows × times, every entry seen), by restricted
+// maximum likelihood over σ and τ (Patterson & Thompson, Biometrika 58, 1971): the plain deviation
+// of a short record is too small, as slow noise passes for a trend. Needs three times.
+double DeviationAboutTrend(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows);
+
 // τ of the process whose neighbouring frames have that correlation; 0 where it is not positive.
 double CorrelationTime(const SeriesStatistics& statistics);
 

@@ -70,5 +70,26 @@ TEST(SeriesNoise, TellsHowLongNoiseLasts) {
   }
 }
 
+TEST(SeriesNoise, DeviationOfAShortRecordIsNotTooSmallForItsMemory) {
+  // 13 frames of noise that keeps 0.45 of itself, on lines of any slope: the plain deviation about
+  // a line is 11 % too small.
+  constexpr double kDeviation = 2e-4, kMemory = 0.45;
+  constexpr int kFrames = 13, kSeries = 2000;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(kFrames, 3, 3.12);
+  Eigen::MatrixXd rows(kSeries, kFrames);
+  for (int s = 0; s < kSeries; ++s) {
+    double value = normal(random);
+    for (int f = 0; f < kFrames; ++f) {
+      if (f > 0) value = kMemory * value + std::sqrt(1 - kMemory * kMemory) * normal(random);
+      rows(s, f) = 0.3 * s + 1e-3 * s * times[f] + kDeviation * value;
+    }
+  }
+  // The chance error of 2000 series is 1 %; correlations are tried in steps of 0.05.
+  EXPECT_NEAR(DeviationAboutTrend(times, rows), kDeviation, 0.02 * kDeviation);
+  EXPECT_EQ(DeviationAboutTrend(times, Eigen::MatrixXd::Zero(2, kFrames)), 0);
+}
+
 }  // namespace
 }  // namespace lacuna
