@@ -21,6 +21,12 @@ constexpr double kNoEvidence = 3;
 constexpr double kCloseBehind = 5;
 constexpr int kMostRefits = 6;
 
+double InNoise(const FittedHypothesis& hypothesis) {
+  const Eigen::VectorXd white = WhitenedRows(hypothesis.left, hypothesis.misfit, 0, false);
+  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(hypothesis.misfit));
+  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+}
+
 nlohmann::json Number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
 }
@@ -102,6 +108,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
       const HypothesisEvidence after = EvidenceOf(refits[k].hypothesis, diagnosis.noise_level);
       ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis.ranking.size());
       ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
+      ranked.left_in_noise = InNoise(refits[k].hypothesis);
     }
     return best;
   };
@@ -117,11 +124,8 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
                      diagnosis.ranking[k].scored.candidate.type) > 0)
         refit(k);
   }
-  const FittedHypothesis& left = *weigh();
-  const Eigen::VectorXd white = WhitenedRows(left.left, left.misfit, 0, false);
-  diagnosis.left_in_noise =
-      std::sqrt(white.squaredNorm() /
-                static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(left.misfit))));
+  diagnosis.left_in_noise = InNoise(*weigh());
+  diagnosis.present_in_noise = InNoise(present);
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   return diagnosis;
@@ -152,6 +156,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
       entry["refit"] = {{"message", effect.refit_message},
                         {"evidence", effect.evidence},
                         {"explained_share", effect.explained},
+                        {"left_in_noise", effect.left_in_noise},
                         {"in_fit_rms_m", effect.errors.in_fit_rms},
                         {"held_out_rms_m", effect.errors.held_out_rms},
                         {"held_out_in_noise", effect.errors.in_noise},
@@ -182,6 +187,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
       {"has_held_out", diagnosis.errors.has_held_out},
       {"control_evidence", diagnosis.control},
       {"left_in_noise", diagnosis.left_in_noise},
+      {"present_in_noise", diagnosis.present_in_noise},
       {"nuisances", nuisances},
       {"ranking", ranking}};
   WriteFileAtomically(file, all.dump(2) + "\n");

@@ -38,8 +38,9 @@ struct RankedEffect {
   bool refitted = false;
   std::string refit_message;  // why it is not usable; empty: it is
   ModelErrors errors;
-  double evidence = 0;   // ln of the odds against the model as it is
-  double explained = 0;  // share of the squared misfit that went
+  double evidence = 0;       // ln of the odds against the model as it is
+  double explained = 0;      // share of the squared misfit that went
+  double left_in_noise = 0;  // over all frames, adopted nuisances at their best, in σ
   Calibration calibration;
 };
 
@@ -55,8 +56,10 @@ struct Diagnosis {
   std::vector<RankedEffect> ranking;      // by first order's evidence
   std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
   int scored = 0;                         // effects and variants
-  double control = 0;        // the evidence that one in twenty controls finds without an effect
-  double left_in_noise = 0;  // of the best hypothesis, over all frames, in σ
+  double control = 0;  // the evidence that one in twenty controls finds without an effect
+  // Over all frames, adopted nuisances at their best, in σ: of the present model, and of the best
+  // hypothesis.
+  double present_in_noise = 0, left_in_noise = 0;
 };
 
 std::string VerdictName(Diagnosis::Verdict verdict);
