@@ -72,12 +72,22 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern)
 void BlockMatrix::SetZero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 Eigen::MatrixXd BlockMatrix::operator*(const Eigen::MatrixXd& x) const {
-  Eigen::MatrixXd product(x.rows(), x.cols());
-  Eigen::VectorXd image;
-  for (Eigen::Index k = 0; k < x.cols(); ++k) {
-    Multiply(x.col(k), &image);
-    product.col(k) = image;
-  }
+  CHECK_EQ(x.rows(), 3 * pattern_->nodes);
+  // Row by row, so that one block meets all columns at once.
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Rows of_nodes = x;
+  Rows product(x.rows(), x.cols());
+  ParallelFor(pattern_->nodes, kRowsPerBlock, [&](int64_t i) {
+    auto sum = product.middleRows<3>(3 * i);
+    sum.setZero();
+    for (int k = pattern_->row_begin[i]; k < pattern_->row_begin[i + 1]; ++k) {
+      const auto block = Block(k);
+      const auto node = of_nodes.middleRows<3>(3 * pattern_->column[k]);
+      for (int a = 0; a < 3; ++a)
+        sum.row(a) +=
+            block(a, 0) * node.row(0) + block(a, 1) * node.row(1) + block(a, 2) * node.row(2);
+    }
+  });
   return product;
 }
 

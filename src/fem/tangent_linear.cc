@@ -189,6 +189,28 @@ struct TangentLinear::Implementation {
     effect.SetParameters(values);
   }
 
+  // right −= (weighted tangents of the model's effects) change; most effects have none but by
+  // position.
+  void AddTangentForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                        const TangentWeights& weights, const Eigen::MatrixXd& change,
+                        Eigen::MatrixXd* right) const {
+    BlockMatrix effects(model.body->pattern);
+    for (size_t j = 0; j < model.effects.size(); ++j)
+      model.effects[j]->AddTangents(equation.At(end, j), weights, false, &effects);
+    const double* values = effects.values();
+    if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
+                    [](double value) { return value == 0; }))
+      return;
+    *right -= effects * change;
+  }
+
+  std::vector<Eigen::Index> GripPerturbations() const {
+    std::vector<Eigen::Index> found;
+    for (Eigen::Index k = 0; k < Count(); ++k)
+      if (perturbations[k].grip) found.push_back(k);
+    return found;
+  }
+
   // The sensitivities of the gripped nodes; 0 elsewhere.
   Eigen::MatrixXd GripColumns(const StepEquation& equation, const Eigen::VectorXd& at) const {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(position.rows(), Count());
@@ -265,17 +287,14 @@ struct TangentLinear::Implementation {
               ? Eigen::MatrixXd(rate * rate * position_history + rate * velocity_history)
               : Eigen::MatrixXd::Zero(position.rows(), Count());
       right += ScaledRows(model.body->node_mass, carried);
-      BlockMatrix effects(model.body->pattern);
-      for (size_t j = 0; j < model.effects.size(); ++j)
-        model.effects[j]->AddTangents(equation.At(end, j), {.velocity = rate}, false, &effects);
-      right -= effects * position_history;
-      effects.SetZero();
-      for (size_t j = 0; j < model.effects.size(); ++j)
-        model.effects[j]->AddTangents(equation.At(end, j), {.acceleration = 1}, false, &effects);
-      right -= effects * carried;
+      AddTangentForces(equation, end, {.velocity = rate}, position_history, &right);
+      AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
     }
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
-    if (!gripped.isZero(0)) right -= tangent * gripped;
+    const std::vector<Eigen::Index> moved_by_grips = GripPerturbations();
+    if (!moved_by_grips.empty())
+      right(Eigen::all, moved_by_grips) -=
+          tangent * Eigen::MatrixXd(gripped(Eigen::all, moved_by_grips));
 
     TangentLinearSummary summary;
     const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, std::move(right));
