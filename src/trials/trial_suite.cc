@@ -22,25 +22,41 @@
 namespace lacuna {
 namespace {
 
+// Draws of a case until its effect is plausible in the size that it must have to be seen.
+constexpr int kMostAttempts = 8;
+
 const std::vector<std::string>& Nuisances() {
   static const std::vector<std::string> nuisances = {"grip", "bad_frame", "coarse_mesh",
                                                      "time_jitter"};
   return nuisances;
 }
 
-TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
-                     const std::vector<std::string>& types, double factor, int recordings,
-                     size_t number) {
-  const uint64_t seed = RandomBits({suite.seed, number});
-  std::string name = fmt::format("{:04}-{}", number, group);
-  for (const std::string& type : types) name += "-" + type;
-  TrialCase trial = DrawCase(fmt::format("{}-{:g}x-{}rec", name, factor, recordings), group, seed,
-                             recordings, "");
+TrialCase DrawEffectCase(const std::string& name, const std::string& group,
+                         const std::vector<std::string>& types, double factor, int recordings,
+                         uint64_t seed) {
+  TrialCase trial = DrawCase(name, group, seed, recordings, "");
   for (const std::string& type : types) {
     trial.hidden.push_back(DrawHidden(type, trial, RandomBits({seed, trial.hidden.size()})));
     trial.hidden.back().factor = factor;
   }
   return trial;
+}
+
+TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
+                     const std::vector<std::string>& types, double factor, int recordings,
+                     size_t number) {
+  std::string name = fmt::format("{:04}-{}", number, group);
+  for (const std::string& type : types) name += "-" + type;
+  return DrawEffectCase(fmt::format("{}-{:g}x-{}rec", name, factor, recordings), group, types,
+                        factor, recordings, RandomBits({suite.seed, number}));
+}
+
+// The same case of another seed.
+TrialCase DrawnAgain(const TrialCase& trial) {
+  std::vector<std::string> types;
+  for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
+  return DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
+                        trial.recordings, RandomBits({trial.seed, 1}));
 }
 
 // The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
@@ -114,6 +130,22 @@ bool IsPlausible(const HiddenEffect& hidden) {
   return true;
 }
 
+// Gives the hidden effects their sizes and films the case. Returns why it cannot; empty: it did.
+std::string Film(TrialCase* trial, const std::filesystem::path& folder) {
+  try {
+    for (HiddenEffect& hidden : trial->hidden) {
+      const double size = hidden.factor * Detectable(*trial, hidden, folder);
+      for (const std::string& name : hidden.amplitude) hidden.parameters[name] *= size;
+      if (!std::isfinite(size) || !IsPlausible(hidden))
+        return fmt::format("{} would have to be {:g} times its unit", hidden.type, size);
+    }
+    FilmCase(*trial, folder);
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 TrialSuite ReadTrialSuite(const Config& config) {
@@ -156,10 +188,6 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
   for (int k = 0; k < suite.hard_controls; ++k)
     control("hard_control", Nuisances()[(k / suite.recordings.size()) % Nuisances().size()], k);
   const int largest = *std::max_element(suite.factors.begin(), suite.factors.end());
-  for (const std::string& type : suite.effects)
-    for (const int factor : suite.factors)
-      for (const int recordings : suite.recordings)
-        cases.push_back(EffectCase(suite, "one_effect", {type}, factor, recordings, cases.size()));
   for (const std::string& type : suite.removed)
     for (const int recordings : suite.recordings)
       cases.push_back(EffectCase(suite, "removed", {type}, largest, recordings, cases.size()));
@@ -170,6 +198,10 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
     cases.push_back(EffectCase(suite, "pair", {suite.effects[first], suite.effects[second]},
                                largest, suite.recordings.back(), cases.size()));
   }
+  for (const int factor : suite.factors)
+    for (const std::string& type : suite.effects)
+      for (const int recordings : suite.recordings)
+        cases.push_back(EffectCase(suite, "one_effect", {type}, factor, recordings, cases.size()));
   return cases;
 }
 
@@ -178,21 +210,16 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   if (std::filesystem::exists(own / "truth.json")) return true;
   if (std::filesystem::exists(own / "skipped.txt")) return false;
   MakeFolder(own);
-  for (HiddenEffect& hidden : trial.hidden) {
-    const double size = hidden.factor * Detectable(trial, hidden, own);
-    for (const std::string& name : hidden.amplitude) hidden.parameters[name] *= size;
-    if (!std::isfinite(size) || !IsPlausible(hidden)) {
-      WriteFileAtomically(
-          own / "skipped.txt",
-          fmt::format("{} would have to be {:g} times its unit\n", hidden.type, size));
+  std::string reasons;
+  for (int attempt = 1;; ++attempt) {
+    const std::string reason = Film(&trial, own);
+    if (reason.empty()) break;
+    reasons += reason + "\n";
+    if (trial.hidden.empty() || attempt == kMostAttempts) {
+      WriteFileAtomically(own / "skipped.txt", reasons);
       return false;
     }
-  }
-  try {
-    FilmCase(trial, own);
-  } catch (const InputError& problem) {
-    WriteFileAtomically(own / "skipped.txt", std::string(problem.what()) + "\n");
-    return false;
+    trial = DrawnAgain(trial);
   }
   if (trial.group == "removed") {
     std::string types;

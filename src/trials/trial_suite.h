@@ -30,8 +30,8 @@ TrialSuite ReadTrialSuite(const Config& config);
 std::vector<TrialCase> CasesOf(const TrialSuite& suite);
 
 // Makes a case in <folder>/<case>: sizes its hidden effects, films it and writes truth.json last. A
-// case that is there already stays. Returns false where the effect would have to be larger than is
-// plausible to be seen: such a case is written down as impossible (skipped.txt) and not filmed.
+// case that is there already stays. Where an effect would have to be larger than is plausible to be
+// seen the case is drawn again; after some draws it is given up (skipped.txt) and false returned.
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder);
 
 // All cases of a suite that are not there yet. Returns what ShareOut does.
