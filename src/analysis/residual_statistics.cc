@@ -187,7 +187,13 @@ std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::M
     // A frame that shares no point with the first tells nothing of motion: it ends the span.
     while (end < frames && RmsBetween(positions, first, end) <= threshold) ++end;
     if (end - first >= fewest) {
-      spans.push_back(MeasureSpan(times, positions, first, end - 1));
+      // Motion begins and ends slowly, within the threshold.
+      const int margin = std::max(0, std::min((end - first) / 6, (end - first - 3) / 2));
+      StaticSpan span = MeasureSpan(times, positions, first + (first > 0 ? margin : 0),
+                                    end - 1 - (end < frames ? margin : 0));
+      span.first = first;
+      span.last = end - 1;
+      spans.push_back(span);
       first = end;
     } else {
       ++first;

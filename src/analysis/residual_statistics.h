@@ -40,7 +40,8 @@ struct StaticSpan {
   double drift = kUnknown;      // m/s, rms over the points of that line's slope
 };
 // The spans, one after the other, of at least `fewest` (≥ 3) frames in which the rms over the
-// points of the distance from the span's first frame stays within `threshold`.
+// points of the distance from the span's first frame stays within `threshold`. Where a span borders
+// on motion the sixth of it next to that is not measured.
 std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions,
                                     double threshold, int fewest);
 

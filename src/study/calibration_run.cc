@@ -29,8 +29,10 @@ CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& r
   CalibrationStage stage;
   CalibrationRecord& record = stage.record;
   // So that the folder of runs can be moved together with the experiments.
-  record.experiment = std::filesystem::absolute(study.file)
-                          .lexically_proximate(std::filesystem::absolute(study.output));
+  record.experiment =
+      std::filesystem::absolute(study.file)
+          .lexically_normal()
+          .lexically_proximate(std::filesystem::absolute(study.output).lexically_normal());
   record.usable = calibration.usable;
   record.message = calibration.message;
   record.noise = problem.noise();

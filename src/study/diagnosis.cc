@@ -21,6 +21,11 @@ constexpr double kNoEvidence = 3;
 constexpr double kCloseBehind = 5;
 constexpr int kMostRefits = 6;
 
+// A model that leaves more than so many σ is far from the truth: it is looked at early, too, before
+// it has gone astray, over this part of the fitted time.
+constexpr double kFarOff = 3;
+constexpr double kEarly = 0.25;
+
 double InNoise(const FittedHypothesis& hypothesis) {
   const Eigen::VectorXd white = WhitenedRows(hypothesis.left, hypothesis.misfit, 0, false);
   const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(hypothesis.misfit));
@@ -29,6 +34,20 @@ double InNoise(const FittedHypothesis& hypothesis) {
 
 nlohmann::json Number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+
+// The study until soon after the start of each fitted recording.
+PredictionStudy EarlyPart(const CalibrationProblem& problem) {
+  PredictionStudy early = problem.WithGivenNoise();
+  for (PredictedRecording& item : early.recordings) {
+    const std::vector<double>& times = item.recording.times;
+    const double start = item.StartTime();
+    const double end =
+        start + kEarly * (std::min(item.fit_until, times[item.frames.back()]) - start);
+    std::erase_if(item.frames, [&](int frame) { return times[frame] > end; });
+  }
+  std::erase_if(early.recordings, [](const PredictedRecording& item) { return !item.fitted; });
+  return early;
 }
 
 }  // namespace
@@ -64,6 +83,13 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
     diagnosis.ranking.back().scored = std::move(effect);
   }
 
+  const EffectRefit as_it_is =
+      Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress);
+  CHECK(as_it_is.message.empty()) << as_it_is.message;
+  const FittedHypothesis& present = as_it_is.hypothesis;
+  diagnosis.errors.without_nuisances = as_it_is.errors.without_nuisances;
+  diagnosis.present_in_noise = InNoise(present);
+
   std::vector<EffectRefit> refits(diagnosis.ranking.size());
   int done = 0;
   const auto refit = [&](size_t k) {
@@ -84,12 +110,30 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
     if (static_cast<int>(k) < options.refits || evidence > most - kCloseBehind) refit(k);
   }
 
+  if (diagnosis.present_in_noise > kFarOff) {
+    const PredictionStudy early = EarlyPart(problem);
+    const CalibrationProblem of_early(early, problem.body()->mesh);
+    const Calibration first = of_early.FitFromStart(progress);
+    std::vector<ScoredEffect> found;
+    if (first.parameters.size() == values.size())
+      found = RankEffects(of_early, first.parameters, progress, options.without).effects;
+    problem.SetModel(values);
+    for (size_t k = 0; k < found.size() && static_cast<int>(k) < options.refits; ++k) {
+      if (found[k].score.evidence < kNoEvidence) break;
+      for (size_t at = 0; at < diagnosis.ranking.size(); ++at) {
+        ScoredEffect& scored = diagnosis.ranking[at].scored;
+        if (scored.candidate.type != found[k].candidate.type || diagnosis.ranking[at].refitted)
+          continue;
+        // Its place, direction or time and its size as they are found early.
+        const ScoredEffect late = std::exchange(scored, found[k]);
+        refit(at);
+        scored.score = late.score;
+        scored.look_alikes = late.look_alikes;
+      }
+    }
+  }
+
   // The noise is what the best of them leaves.
-  const EffectRefit as_it_is =
-      Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress);
-  CHECK(as_it_is.message.empty()) << as_it_is.message;
-  const FittedHypothesis& present = as_it_is.hypothesis;
-  diagnosis.errors.without_nuisances = as_it_is.errors.without_nuisances;
   const auto weigh = [&] {
     const FittedHypothesis* best = &present;
     double least = EvidenceOf(present, ranking.noise).misfit;
@@ -125,7 +169,6 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
         refit(k);
   }
   diagnosis.left_in_noise = InNoise(*weigh());
-  diagnosis.present_in_noise = InNoise(present);
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   return diagnosis;

@@ -16,6 +16,7 @@ namespace {
 constexpr double kMargin = 0.1;
 // A rival need not be at its very best to be told from one that fits.
 constexpr int kIterations = 25;
+constexpr double kFarOff = 2;     // σ: a refit that leaves more may have ended at the wrong place
 constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
@@ -250,21 +251,37 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     if (near.usable && (!far.usable || near.residual.norm() < far.residual.norm()))
       start = expected;
   }
-  for (size_t k = 0; k < parameters.size(); ++k)
-    parameters[k].start = start[static_cast<Eigen::Index>(k)];
 
   EffectRefit refit;
   int evaluations = 0;
-  refit.calibration = Calibrate(
-      parameters,
-      [&](const Eigen::VectorXd& at, bool with_jacobian) {
-        const Prediction prediction = predict(at, with_jacobian);
-        progress->Report(++evaluations,
-                         prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
-        return prediction;
-      },
-      {.max_iterations = kIterations, .cost_tolerance = kTolerance});
+  const auto calibrate_from = [&](const Eigen::VectorXd& from) {
+    for (size_t k = 0; k < parameters.size(); ++k)
+      parameters[k].start = from[static_cast<Eigen::Index>(k)];
+    return Calibrate(parameters,
+                     [&](const Eigen::VectorXd& at, bool with_jacobian) {
+                       const Prediction prediction = predict(at, with_jacobian);
+                       progress->Report(++evaluations, prediction.usable
+                                                           ? RootMeanSquare(prediction.residual)
+                                                           : std::nan(""));
+                       return prediction;
+                     },
+                     {.max_iterations = kIterations, .cost_tolerance = kTolerance});
+  };
+  refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
+  if (effect != nullptr && !(refit.calibration.usable && refit.calibration.rms <= kFarOff)) {
+    // The model without the effect was fitted to what it cannot do: begin where that did.
+    const Calibration afresh = with.FitFromStart(progress);
+    if (afresh.parameters.size() == own) {
+      start.head(own) = afresh.parameters;
+      progress->Begin("refit " + effect->candidate.type + " from there", 0);
+      const Calibration other = calibrate_from(start);
+      progress->End(other.usable ? "" : other.message);
+      if (!other.estimates.empty() &&
+          (refit.calibration.estimates.empty() || other.rms < refit.calibration.rms))
+        refit.calibration = other;
+    }
+  }
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {

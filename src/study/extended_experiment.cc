@@ -36,7 +36,8 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
   const std::filesystem::path folder = std::filesystem::absolute(run).lexically_normal();
   const std::filesystem::path parent =
       folder.filename().empty() ? folder.parent_path().parent_path() : folder.parent_path();
-  const std::filesystem::path experiment = std::filesystem::absolute(fitted.study.file);
+  const std::filesystem::path experiment =
+      std::filesystem::absolute(fitted.study.file).lexically_normal();
   const PredictionStudy study = WithEffect(fitted.study, effect);
   const std::string name = fitted.study.name + "+" + effect.candidate.type;
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/residual_statistics.h"
 #include "fem/prescribed_force.h"
@@ -252,14 +253,12 @@ double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<
   Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
-  std::vector<double> deviations;
+  // A body that has almost come to rest makes a span's deviation larger, never smaller.
+  double least = std::numeric_limits<double>::infinity();
   for (const StaticSpan& rest :
        StaticSpans(times, rows, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
-    if (!std::isnan(rest.deviation)) deviations.push_back(rest.deviation);
-  if (deviations.empty()) return white;
-  std::nth_element(deviations.begin(), deviations.begin() + deviations.size() / 2,
-                   deviations.end());
-  return deviations[deviations.size() / 2];
+    if (!std::isnan(rest.deviation)) least = std::min(least, rest.deviation);
+  return std::isfinite(least) ? least : white;
 }
 
 }  // namespace lacuna

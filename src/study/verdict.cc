@@ -13,19 +13,25 @@ namespace {
 
 using Verdict = Diagnosis::Verdict;
 
-// Logarithms of odds: to be named at all, and to be preferred to a rival.
+// Logarithms of odds: to be named at all.
 constexpr double kNamed = 5;
-constexpr double kDecisive = 3;
+// And to be preferred to a rival: the model that both are added to is not perfect, and what it is
+// off by makes the better of two that explain about the same by chance. So the lead must be a part
+// of the evidence itself, and never needs to be more than the last of these.
+constexpr double kLeastLead = 3, kLeadShare = 0.4, kMostLead = 20;
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
 // An effect may make the held-out error larger by this factor at most, which is chance.
 constexpr double kNoWorse = 1.03;
 // Nuisances are known to first order: an effect may live on what that leaves out, so its evidence
-// must be more than this part of theirs that are in the model, and a nuisance with more than that
-// part of the effect's is its rival.
+// must be more than this part of theirs that are in the model. A grip that yields or reaches
+// further changes the frequencies, which first order follows for a short time only: it is a rival
+// with this part of the effect's evidence. The others are rigid motions and times, which it follows
+// well.
 constexpr double kFirstOrderDoubt = 0.1;
-constexpr double kFirstOrderRival = 0.5;
-// Where the best effect leaves more than noise, it must have explained this share to be named.
+constexpr double kGripRival = 0.5, kOtherRival = 0.98;
+// Where the best effect leaves more than noise, it must have explained this share of what is more
+// than noise to be named.
 constexpr double kMostOfIt = 0.85;
 // A finer discretisation would change this share of the error.
 constexpr double kMeshMatters = 0.25;
@@ -56,6 +62,12 @@ const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::st
   for (const RankedEffect& effect : ranking)
     if (effect.scored.candidate.type == type) return &effect;
   return nullptr;
+}
+
+// Share of the squared misfit beyond that of noise that went, both misfits in σ.
+double ExcessExplained(double before, double after) {
+  if (before <= 1) return 1;
+  return std::clamp((before * before - after * after) / (before * before - 1), 0.0, 1.0);
 }
 
 bool IsDiscretisation(const NuisanceCandidate& nuisance) {
@@ -121,27 +133,30 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const RankedEffect& best = *refitted.front();
-  if (!is_noise && best.explained < kMostOfIt) {
+  const double excess = ExcessExplained(diagnosis->present_in_noise, best.left_in_noise);
+  if (best.left_in_noise > kAtNoise && excess < kMostOfIt) {
     diagnosis->verdict = Verdict::kNotInLibrary;
     diagnosis->explanation = fmt::format(
-        "{} explains most, {:.0f} % of the misfit, but what it leaves, {:.1f} σ, is not noise: it "
-        "may be doing another effect's work",
-        Titles({best.scored.candidate.type}), 100 * best.explained, diagnosis->left_in_noise);
+        "{} explains most, {:.0f} % of what is more than noise, but what it leaves, {:.1f} σ, is "
+        "not noise: it may be doing another effect's work",
+        Titles({best.scored.candidate.type}), 100 * excess, best.left_in_noise);
     return;
   }
+  const double lead = std::clamp(kLeadShare * evidence, kLeastLead, kMostLead);
   diagnosis->effects = {best.scored.candidate.type};
   for (size_t k = 1; k < refitted.size(); ++k)
-    if (refitted[k]->evidence > evidence - kDecisive)
+    if (refitted[k]->evidence > evidence - lead)
       diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
   // Look-alikes that were not refitted cannot be ruled out either.
   for (const std::string& other : best.scored.look_alikes) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
-  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
-    if (!nuisance.adopted &&
-        nuisance.evidence > std::min(evidence - kDecisive, kFirstOrderRival * evidence))
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
+    const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : kOtherRival;
+    if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
+  }
   const std::string drop = fmt::format(
       "the {} error falls from {:.3f} mm ({:.1f} σ) to {:.3f} mm ({:.1f} σ), the odds for it are "
       "e^{:.0f}",
