@@ -58,6 +58,24 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
 }
 
+TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
+  // Its folder of runs is then "../results/…" of no folder that has a name.
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  std::filesystem::create_directory(folder / "experiments");
+  std::ofstream(folder / "experiments/bar.yaml") << BarExperiment(
+      folder.Path(), {{"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"}});
+  std::filesystem::current_path(folder / "experiments");
+  const PredictionStudy study = ReadPredictionStudy(Config::Load("bar.yaml"));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  EXPECT_TRUE(RunCalibration(study, &progress).usable);
+  EXPECT_NO_THROW(OpenRun(study.output));
+  std::filesystem::current_path(before);
+}
+
 TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
   ScoredEffect scored;
   scored.candidate.type = "drag";
