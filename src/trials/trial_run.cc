@@ -10,10 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/claim.h"
 #include "core/error.h"
+#include "core/workers.h"
 #include "study/diagnosis.h"
 #include "study/reference.h"
-#include "trials/workers.h"
 
 namespace lacuna {
 namespace {
@@ -161,14 +162,17 @@ int RunTrials(const std::filesystem::path& folder, int workers) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
   std::sort(cases.begin(), cases.end());
-  return ShareOut(cases.size(), workers, [&](size_t k) {
+  const auto keep_failure = [&](size_t k, const std::string& reason) {
+    WriteFileAtomically(cases[k] / "failed.txt", reason + "\n");
+  };
+  return ShareOut(cases.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
     const std::filesystem::path& own = cases[k];
     const Claim claim(own / "claimed");
     if (!claim.holds() || std::filesystem::exists(own / "outcome.json")) return;
     try {
       SaveOutcome(RunCase(own), own / "outcome.json");
     } catch (const InputError& problem) {
-      WriteFileAtomically(own / "failed.txt", std::string(problem.what()) + "\n");
+      keep_failure(k, problem.what());
     }
   });
 }

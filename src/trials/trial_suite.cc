@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "core/atomic_file.h"
+#include "core/claim.h"
 #include "core/error.h"
+#include "core/workers.h"
 #include "effects/catalogue.h"
 #include "scan/random_bits.h"
 #include "study/candidates.h"
@@ -17,7 +19,6 @@
 #include "study/nuisance_candidates.h"
 #include "study/reference.h"
 #include "trials/trial_film.h"
-#include "trials/workers.h"
 
 namespace lacuna {
 namespace {
@@ -234,7 +235,7 @@ int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int
   const std::vector<TrialCase> cases = CasesOf(suite);
   MakeFolder(folder);
   for (const TrialCase& trial : cases) MakeFolder(folder / trial.name);
-  return ShareOut(cases.size(), workers, [&](size_t k) {
+  return ShareOut(cases.size(), {.workers = workers}, [&](size_t k) {
     const Claim claim(folder / cases[k].name / "claimed");
     if (claim.holds()) MakeCase(cases[k], folder);
   });

@@ -11,7 +11,6 @@
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
 #include "trials/trial_suite.h"
-#include "trials/workers.h"
 
 namespace lacuna {
 namespace {
@@ -145,16 +144,6 @@ TEST(TrialReport, CountsRightWrongAndDeclared) {
   EXPECT_EQ(report.tallies[2].wrong, 1);
   EXPECT_EQ(report.confusion.at("drag").at("mass_damping"), 1);
   EXPECT_THAT(ReportInWords(report), HasSubstr("drag (removed)"));
-}
-
-TEST(Claim, HoldsAFileOnce) {
-  const TemporaryFolder folder;
-  {
-    const Claim first(folder / "claimed"), second(folder / "claimed");
-    EXPECT_TRUE(first.holds());
-    EXPECT_FALSE(second.holds());
-  }
-  EXPECT_TRUE(Claim(folder / "claimed").holds());
 }
 
 }  // namespace

@@ -1,0 +1,184 @@
+#include "core/changed_yaml.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
+#include "core/yaml_document.h"
+
+namespace lacuna {
+namespace {
+
+// "effects[0].eta" → effects, [0, eta. Empty: it is no field's name.
+std::vector<std::string> StepsOf(const std::string& field) {
+  std::vector<std::string> steps;
+  size_t at = 0;
+  while (at < field.size()) {
+    const bool index = field[at] == '[';
+    const size_t end = std::min(field.find_first_of(index ? "]" : ".[", at), field.size());
+    if (end == at || (index && end == field.size())) return {};
+    steps.push_back(field.substr(at, end - at));
+    at = end + (index ? 1 : 0);
+    if (at < field.size() && field[at] == '.' && ++at == field.size()) return {};
+  }
+  return steps;
+}
+
+// How often a mapping or list stands in the tree: more than once where it has an alias.
+int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
+  if (tree.is(wanted)) return 1;
+  int count = 0;
+  if (tree.IsMap())
+    for (const auto& entry : tree) count += Occurrences(entry.second, wanted);
+  if (tree.IsSequence())
+    for (const auto& item : tree) count += Occurrences(item, wanted);
+  return count;
+}
+
+// Of the step "[3".
+std::optional<size_t> IndexIn(const YAML::Node& list, const std::string& step) {
+  size_t index = 0;
+  const char* end = step.data() + step.size();
+  const auto [stop, error] = std::from_chars(step.data() + 1, end, index);
+  if (error != std::errc() || stop != end || !list.IsSequence() || index >= list.size())
+    return std::nullopt;
+  return index;
+}
+
+// Puts an entry into a tree.
+class Change {
+ public:
+  Change(const std::string& field, const YAML::Node& root) : field_(field), root_(root) {}
+
+  void Put(const YAML::Node& value) {
+    const std::vector<std::string> steps = StepsOf(field_);
+    if (steps.empty()) Fail("is no field; expected one like mesh.max_volume or effects[0].eta");
+    YAML::Node at;
+    at.reset(root_);
+    for (size_t k = 0; k + 1 < steps.size(); ++k) at.reset(Below(at, steps[k]));
+    const std::string& last = steps.back();
+    if (last[0] == '[') {
+      const auto index = IndexIn(at, last);
+      if (!index) Fail(path_ + " has no item " + last + "]");
+      at[*index] = value;
+      return;
+    }
+    if (!at.IsMap()) Fail(path_ + " is no mapping");
+    at.remove(last);
+    if (!value.IsNull()) at.force_insert(last, value);
+  }
+
+ private:
+  // The mapping or list below `at`, made where it is absent.
+  YAML::Node Below(YAML::Node at, const std::string& step) {
+    YAML::Node next;
+    if (step[0] == '[') {
+      const auto index = IndexIn(at, step);
+      if (!index) Fail(path_ + " has no item " + step + "]");
+      next.reset(at[*index]);
+      path_ += step + "]";
+    } else {
+      if (!at.IsMap()) Fail(path_ + " is no mapping");
+      path_ += (path_.empty() ? "" : ".") + step;
+      const YAML::Node found = std::as_const(at)[step];
+      if (!found || found.IsNull()) {
+        at.remove(step);
+        at.force_insert(step, YAML::Node(YAML::NodeType::Map));
+      }
+      next.reset(at[step]);
+    }
+    if (Occurrences(root_, next) > 1)
+      Fail(path_ + " stands in several places of the file (an alias); write it out there");
+    return next;
+  }
+
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw InputError(field_ + ": " + message);
+  }
+
+  const std::string& field_;
+  const YAML::Node& root_;
+  std::string path_;
+};
+
+YAML::Node ParseValue(const YamlChange& change) {
+  try {
+    return YAML::Load(change.value);
+  } catch (const YAML::ParserException& problem) {
+    throw InputError(
+        fmt::format("{}: \"{}\" is not valid YAML: {}", change.field, change.value, problem.msg));
+  }
+}
+
+// Rewrites the relative paths of a file and its changes.
+class PathMover {
+ public:
+  PathMover(const YamlDocument& document, const std::vector<YamlChange>& changes,
+            const std::set<std::string>& keys, const std::filesystem::path& folder)
+      : document_(document),
+        changes_(changes),
+        keys_(keys),
+        folder_(std::filesystem::weakly_canonical(folder)) {}
+
+  void Move(YAML::Node node, const std::string& field) const {
+    if (node.IsSequence())
+      for (size_t k = 0; k < node.size(); ++k) Move(node[k], fmt::format("{}[{}]", field, k));
+    if (!node.IsMap()) return;
+    for (auto entry : node) {
+      const std::string key = entry.first.Scalar();
+      const std::string below = field.empty() ? key : field + "." + key;
+      if (keys_.contains(key) && entry.second.IsScalar()) {
+        entry.second = Moved(entry.second.Scalar(), FileOf(below));
+      } else {
+        Move(entry.second, below);
+      }
+    }
+  }
+
+ private:
+  std::filesystem::path FileOf(const std::string& field) const {
+    std::filesystem::path file = document_.FileOf(field);
+    for (const YamlChange& change : changes_) {
+      const size_t length = change.field.size();
+      if (field.starts_with(change.field) &&
+          (field.size() == length || field[length] == '.' || field[length] == '['))
+        file = change.file;
+    }
+    return file;
+  }
+
+  std::string Moved(const std::string& given, const std::filesystem::path& file) const {
+    std::string missing;
+    const std::filesystem::path path = ExpandEnvironment(given, &missing);
+    if (!missing.empty() || path.empty() || path.is_absolute()) return given;
+    return std::filesystem::weakly_canonical(file.parent_path() / path)
+        .lexically_proximate(folder_)
+        .string();
+  }
+
+  const YamlDocument& document_;
+  const std::vector<YamlChange>& changes_;
+  const std::set<std::string>& keys_;
+  const std::filesystem::path folder_;
+};
+
+}  // namespace
+
+std::string ChangedYaml(const std::filesystem::path& file, const std::vector<YamlChange>& changes,
+                        const std::set<std::string>& path_keys,
+                        const std::filesystem::path& folder) {
+  const YamlDocument document = ParseYaml(ReadText(file), file.string());
+  for (const YamlChange& change : changes)
+    Change(change.field, *document.root).Put(ParseValue(change));
+  PathMover(document, changes, path_keys, folder).Move(*document.root, "");
+  YAML::Emitter emitter;
+  emitter << *document.root;
+  return std::string(emitter.c_str()) + "\n";
+}
+
+}  // namespace lacuna

@@ -1,0 +1,66 @@
+#include "core/claim.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+// The whole file, for one alone.
+struct flock WholeFile() {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+std::string Self() {
+  std::array<char, 256> host{};
+  if (gethostname(host.data(), host.size() - 1) != 0) return fmt::format("process {}", getpid());
+  return fmt::format("{}, process {}", host.data(), getpid());
+}
+
+}  // namespace
+
+Claim::Claim(const std::filesystem::path& file)
+    : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  const auto fail = [&](const char* what) {
+    const int error = errno;
+    if (descriptor_ >= 0) close(descriptor_);
+    throw InputError({file.string()}, fmt::format("cannot be {}: {}", what, std::strerror(error)));
+  };
+  if (descriptor_ < 0) fail("written");
+  struct flock lock = WholeFile();
+  holds_ = fcntl(descriptor_, F_OFD_SETLK, &lock) == 0;
+  if (!holds_ && errno != EAGAIN && errno != EACCES) fail("locked");
+  const std::string self = Self();
+  if (holds_ && (ftruncate(descriptor_, 0) != 0 ||
+                 write(descriptor_, self.data(), self.size()) != static_cast<ssize_t>(self.size())))
+    fail("written");
+}
+
+Claim::~Claim() { close(descriptor_); }
+
+std::string HolderOf(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return "";
+  struct flock lock = WholeFile();
+  std::string holder;
+  if (fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK) {
+    std::array<char, 512> text{};
+    const ssize_t count = read(descriptor, text.data(), text.size());
+    // Between the lock and what is written into the file, its holder has no name yet.
+    holder = count > 0 ? std::string(text.data(), static_cast<size_t>(count)) : "another process";
+  }
+  close(descriptor);
+  return holder;
+}
+
+}  // namespace lacuna
