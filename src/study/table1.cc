@@ -1,6 +1,7 @@
 #include "study/table1.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <fstream>
@@ -172,7 +173,7 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
     if (seed == 1) {
       if (&configuration == &study.configurations.front())
         AskMore(study, options, problem, folder, key, result, progress);
-      if (search.found.IsUsable()) {
+      if (options.in_loop && search.found.IsUsable()) {
         problem.registration_in_loop = true;
         const auto& at = search.found.parameters;
         search.worst_in_loop = Kept(problem, at[search.worst], place / "in_loop.jsonl", key);
@@ -182,6 +183,17 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
     outcome.searches.push_back(std::move(search));
   }
   result->seeds.push_back(std::move(outcome));
+}
+
+// What the scene's recordings will be, as far as an experiment can be checked against it.
+Recording AnnouncedRecording(const Scene& scene) {
+  Recording recording;
+  recording.name = scene.name;
+  recording.density = scene.density;
+  for (int k = 0; k < scene.frames; ++k) recording.times.push_back(k / scene.frame_rate);
+  for (const SceneLoad& load : scene.loads)
+    if (load.measured) recording.forces.push_back({load.region.name, load.region, {}, {}, {}});
+  return recording;
 }
 
 }  // namespace
@@ -197,18 +209,24 @@ Table1Study ReadTable1(const std::filesystem::path& folder) {
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InputError(SourcePosition{folder.string()}, "holds no .yaml file");
 
+  std::vector<Config> configs;
+  for (const auto& [row, file] : files) configs.push_back(Config::Load(file));
+  return ReadTable1(configs);
+}
+
+Table1Study ReadTable1(const std::vector<Config>& files) {
+  CHECK(!files.empty());
   Table1Study study;
   std::filesystem::path scene_file;
-  for (const auto& [row, file] : files) {
-    const Config config = Config::Load(file);
-    config.Integer("row", 1, 1000);
+  for (const Config& config : files) {
+    if (config.Has("row")) config.Integer("row", 1, 1000);
     Table1Configuration configuration{
         config.Text("name"), config, ReadOuterSearch(config.Child("search")), {}};
     if (config.Has("paper_drop"))
       configuration.paper_drop = config.Number("paper_drop", {0, 1, false, false});
     const std::filesystem::path scene = std::filesystem::weakly_canonical(config.Path("scene"));
     if (!scene_file.empty() && scene != scene_file)
-      config.Fail("scene", "differs from that of " + files.front().second.string());
+      config.Fail("scene", "differs from that of " + files.front().File().string());
     scene_file = scene;
     study.configurations.push_back(std::move(configuration));
   }
@@ -219,6 +237,8 @@ Table1Study ReadTable1(const std::filesystem::path& folder) {
   const Config material = scene.Child("material");
   study.true_young_modulus = material.Quantity("young_modulus", kPressure, kPositive);
   study.true_poisson_ratio = material.Number("poisson_ratio", kAnyValue);
+  const Recording announced = AnnouncedRecording(study.scene);
+  for (const Config& config : files) ReadReconstruction(config, announced);
   return study;
 }
 
@@ -226,7 +246,7 @@ Table1Result RunTable1(const Table1Study& study, const Table1Options& options, P
   MakeFolder(options.output);
   Recordings recordings(study, options.output, progress);
   Table1Result result;
-  for (int seed = 1; seed <= options.seeds; ++seed)
+  for (int seed = options.first_seed; seed < options.first_seed + options.seeds; ++seed)
     RunSeed(study, options, seed, recordings.Folder(seed), &result, progress);
   return result;
 }

@@ -37,12 +37,16 @@ struct Table1Study {
 // Reads every .yaml file in `folder`. Throws InputError for a file that cannot be used, or when two
 // of them name different scenes.
 Table1Study ReadTable1(const std::filesystem::path& folder);
+// The same of files that are loaded already, in this order; `row` may be absent.
+Table1Study ReadTable1(const std::vector<Config>& files);
 
 struct Table1Options {
   std::filesystem::path output = "results/table1";
-  int seeds = 1;
+  int first_seed = 1;
+  int seeds = 1;        // so many, from first_seed on
   int turns = 8;        // meshes from which the first seed's mesh noise is told; 0: not asked
   bool profile = true;  // |D_anim| over the modulus, forces fitted and known, first seed
+  bool in_loop = true;  // the ends of each search again with CPD in the loop, first seed
 };
 
 // A search of one configuration and seed, with the paper's way of measuring its ends.
