@@ -23,7 +23,8 @@ using ::testing::IsEmpty;
 const std::map<std::string, int> kLayers = {
     {"core", 1},    {"geometry", 2},     {"search", 2}, {"scan", 3},  {"surface", 3},
     {"meshing", 3}, {"registration", 3}, {"record", 3}, {"fem", 4},   {"analysis", 4},
-    {"effects", 5}, {"fit", 5},          {"report", 5}, {"study", 6}, {"trials", 7}, {"app", 8},
+    {"effects", 5}, {"fit", 5},          {"report", 5}, {"study", 6}, {"sweep", 7},
+    {"trials", 7},  {"app", 8},
 };
 
 // Yesterday's run can be explained without running it again.

@@ -1,0 +1,129 @@
+#include "sweep/sweep_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kSchemaVersion = 1;
+
+// Reads a file of ours; whatever is wrong with it names the file.
+template <typename Read>
+auto ReadJson(const std::filesystem::path& file, const Read& read) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file.string()}, "cannot be opened");
+  try {
+    const auto json = nlohmann::ordered_json::parse(stream);
+    if (json.at("schema_version") != kSchemaVersion)
+      throw InputError({file.string()}, "was written by another version of Lacuna");
+    return read(json);
+  } catch (const nlohmann::json::exception& problem) {
+    throw InputError({file.string()}, problem.what());
+  }
+}
+
+void Write(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  WriteFileAtomically(file, json.dump(2) + "\n");
+}
+
+}  // namespace
+
+std::string Describe(const SweepCase& entry) {
+  std::string text = entry.experiment;
+  for (size_t k = 0; k < entry.changes.size(); ++k)
+    text += fmt::format("{} {} = {}", k == 0 ? " with" : ",", entry.changes[k].field,
+                        entry.changes[k].value);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+void SaveIdentity(const SweepIdentity& identity, const std::filesystem::path& folder) {
+  Write(folder / "sweep.json", {{"schema_version", kSchemaVersion},
+                                {"name", identity.name},
+                                {"command", NameOf(identity.command)}});
+}
+
+SweepIdentity LoadIdentity(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "sweep.json";
+  if (!std::filesystem::exists(file))
+    throw InputError({folder.string()},
+                     "is no sweep (it has no sweep.json); `lacuna sweep plan` "
+                     "makes one");
+  return ReadJson(file, [&](const auto& json) {
+    const std::string command = json.at("command");
+    for (const auto& [name, value] : SweepCommands())
+      if (name == command) return SweepIdentity{json.at("name"), value};
+    throw InputError({file.string()}, "has an unknown command: " + command);
+  });
+}
+
+void SaveCase(const SweepCase& entry, const std::filesystem::path& case_folder) {
+  nlohmann::ordered_json changes = nlohmann::ordered_json::object();
+  for (const CaseChange& change : entry.changes) changes[change.field] = change.value;
+  Write(case_folder / "case.json", {{"schema_version", kSchemaVersion},
+                                    {"number", entry.number},
+                                    {"experiment", entry.experiment},
+                                    {"changes", changes},
+                                    {"seeds", entry.settings.seeds},
+                                    {"turns", entry.settings.turns}});
+}
+
+std::vector<SweepCase> LoadCases(const std::filesystem::path& folder) {
+  std::vector<SweepCase> cases;
+  for (const auto& item : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path file = item.path() / "case.json";
+    if (item.path().filename().string().starts_with(".") || !std::filesystem::exists(file))
+      continue;
+    cases.push_back(ReadJson(file, [&](const auto& json) {
+      SweepCase entry{json.at("number"), item.path().filename(), json.at("experiment"), {}, {}};
+      for (const auto& [field, value] : json.at("changes").items())
+        entry.changes.push_back({field, value});
+      entry.settings.seeds = json.at("seeds");
+      entry.settings.turns = json.at("turns");
+      return entry;
+    }));
+  }
+  std::sort(cases.begin(), cases.end(),
+            [](const SweepCase& a, const SweepCase& b) { return a.number < b.number; });
+  return cases;
+}
+
+void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder) {
+  nlohmann::ordered_json numbers = nlohmann::ordered_json::object(), words = numbers;
+  for (const auto& [name, value] : outcome.numbers)
+    numbers[name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+  for (const auto& [name, text] : outcome.words) words[name] = text;
+  Write(case_folder / "outcome.json", {{"schema_version", kSchemaVersion},
+                                       {"done", outcome.done},
+                                       {"message", outcome.message},
+                                       {"numbers", numbers},
+                                       {"words", words},
+                                       {"seconds", outcome.seconds}});
+}
+
+std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder) {
+  const std::filesystem::path file = case_folder / "outcome.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return ReadJson(file, [](const auto& json) {
+    CaseOutcome outcome;
+    outcome.done = json.at("done");
+    outcome.message = json.at("message");
+    for (const auto& [name, value] : json.at("numbers").items())
+      outcome.numbers.emplace_back(name,
+                                   value.is_null() ? kNotMeasured : value.template get<double>());
+    for (const auto& [name, text] : json.at("words").items())
+      outcome.words.emplace_back(name, text);
+    outcome.seconds = json.at("seconds");
+    return outcome;
+  });
+}
+
+}  // namespace lacuna

@@ -1,0 +1,193 @@
+#include "sweep/sweep_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "core/atomic_file.h"
+#include "core/changed_yaml.h"
+#include "core/claim.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "sweep/sweep_file.h"
+#include "sweep/sweep_table.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kLockName[] = ".planning";
+
+// Entries of an experiment that are paths, relative to the file they stand in.
+const std::set<std::string>& PathKeys() {
+  static const std::set<std::string> keys = {"output",       "recording", "scene",
+                                             "true_forces",  "true_mesh", "true_positions",
+                                             "true_surfaces"};
+  return keys;
+}
+
+// What makes two cases the same.
+std::string HashOf(const SweepCase& entry, SweepCommand command) {
+  std::string text = NameOf(command) + "\n" + entry.experiment + "\n";
+  for (const CaseChange& change : entry.changes) text += change.field + "\n" + change.value + "\n";
+  if (command == SweepCommand::kTable1)
+    text += fmt::format("{} {}\n", entry.settings.seeds, entry.settings.turns);
+  return HashBytes(text).substr(0, 8);
+}
+
+// The experiment's files as they will lie in the case's folder.
+std::map<std::string, fs::path> FilesOf(SweepCommand command, const fs::path& experiment) {
+  if (command != SweepCommand::kTable1) return {{"experiment.yaml", experiment}};
+  std::map<std::string, fs::path> files;
+  for (const auto& entry : fs::directory_iterator(experiment))
+    if (entry.path().extension() == ".yaml")
+      files["experiments/" + entry.path().filename().string()] = entry.path();
+  if (files.empty()) throw InputError({experiment.string()}, "holds no .yaml file");
+  return files;
+}
+
+CaseFiles Compose(SweepCommand command, const SweepCase& entry, const RequestedCase& request,
+                  const fs::path& sweep_file, const fs::path& folder) {
+  CaseFiles composed;
+  for (const auto& [name, source] : FilesOf(command, request.path)) {
+    const fs::path target = folder / name;
+    std::vector<YamlChange> changes;
+    for (const CaseChange& change : entry.changes)
+      changes.push_back({change.field, change.value, sweep_file});
+    if (command == SweepCommand::kReconstruct || command == SweepCommand::kFit)
+      changes.push_back({"output", "run", target});
+    composed[name] = "# " + Describe(entry) + "\n" +
+                     ChangedYaml(source, changes, PathKeys(), target.parent_path());
+  }
+  return composed;
+}
+
+// The part of a message that is about this field, or about a mapping that was made for it:
+// "mesh.max_volume: got …" → "got …".
+std::string MessageAbout(const std::string& field, const std::string& message) {
+  for (std::string named = field; !named.empty();) {
+    for (size_t at = message.find(named); at != std::string::npos;
+         at = message.find(named, at + 1)) {
+      if (at > 0 && message[at - 1] != ' ') continue;
+      const std::string rest = message.substr(at + named.size());
+      if (rest.starts_with(": ")) return named == field ? rest.substr(2) : message.substr(at);
+      if (named == field && (rest.starts_with(".") || rest.starts_with("[")))
+        return message.substr(at);
+    }
+    const size_t cut = named.find_last_of(".[");
+    named.resize(cut == std::string::npos ? 0 : cut);
+  }
+  return "";
+}
+
+// Says at the sweep file what is wrong with a case: at the change that it is about, if it is.
+[[noreturn]] void Refuse(const RequestedCase& request, const SweepCase& entry,
+                         const Config& sweep_file, const std::string& message) {
+  for (auto change = request.changes.rbegin(); change != request.changes.rend(); ++change) {
+    const std::string about = MessageAbout(change->change.field, message);
+    if (!about.empty()) change->refuse(about);
+  }
+  throw InputError({sweep_file.File().string()}, Describe(entry) + ": " + message);
+}
+
+std::string TextOf(const fs::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) {
+  if (fs::exists(folder / "sweep.json")) {
+    const SweepIdentity known = LoadIdentity(folder);
+    if (known.command != identity.command)
+      throw InputError({folder.string()},
+                       fmt::format("holds a sweep of `{}`; choose another", NameOf(known.command)));
+    return;
+  }
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != kLockName)
+      throw InputError({folder.string()}, "is no sweep and not empty; choose another");
+}
+
+fs::path PartialFolder(const fs::path& folder, const SweepCase& entry) {
+  return folder / ("." + entry.name + ".partial");
+}
+
+void WriteCase(const SweepCase& entry, const CaseFiles& files, const fs::path& folder) {
+  const fs::path partial = PartialFolder(folder, entry);
+  fs::remove_all(partial);
+  MakeFolder(partial);
+  for (const auto& [name, text] : files) {
+    MakeFolder((partial / name).parent_path());
+    WriteFileAtomically(partial / name, text);
+  }
+  SaveCase(entry, partial);
+  fs::rename(partial, folder / entry.name);
+}
+
+}  // namespace
+
+SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
+  const SweepFile file = ReadSweepFile(sweep_file);
+  const SweepCommand command = file.identity.command;
+  MakeFolder(given_folder);
+  // Paths in the cases are relative, and must not lead through a symbolic link.
+  const fs::path folder = fs::canonical(given_folder);
+  RefuseForeignFolder(folder, file.identity);
+  const Claim claim(folder / kLockName);
+  if (!claim.holds()) throw InputError({folder.string()}, "is being planned by another process");
+
+  SweepPlan plan;
+  std::map<std::string, SweepCase> known;  // by hash
+  int number = 0;
+  for (const SweepCase& entry : LoadCases(folder)) {
+    known[HashOf(entry, command)] = entry;
+    number = std::max(number, entry.number);
+    plan.cases.push_back(entry);
+  }
+  std::set<std::string> wanted;
+  std::vector<std::pair<SweepCase, CaseFiles>> added;
+  for (const RequestedCase& request : file.cases) {
+    SweepCase entry{0, "", request.experiment, {}, file.settings};
+    for (const RequestedChange& change : request.changes) entry.changes.push_back(change.change);
+    const std::string hash = HashOf(entry, command);
+    const auto before = known.find(hash);
+    wanted.insert(hash);
+    entry.number = before == known.end() ? ++number : before->second.number;
+    entry.name = fmt::format("{:04}-{}", entry.number, hash);
+    try {
+      const CaseFiles files =
+          Compose(command, entry, request, sweep_file.File(), folder / entry.name);
+      if (before == known.end()) {
+        CheckCase(command, files, folder / entry.name);
+        added.emplace_back(entry, files);
+        continue;
+      }
+      for (const auto& [name, text] : files)
+        if (TextOf(folder / entry.name / name) != text)
+          throw InputError(
+              fmt::format("differs from {}, which was planned before; plan into another folder",
+                          (folder / entry.name / name).string()));
+    } catch (const InputError& problem) {
+      Refuse(request, entry, sweep_file, problem.what());
+    }
+  }
+  for (const auto& [hash, entry] : known)
+    if (!wanted.contains(hash)) plan.absent.push_back(entry.name);
+  std::sort(plan.absent.begin(), plan.absent.end());
+
+  if (!fs::exists(folder / "sweep.json")) SaveIdentity(file.identity, folder);
+  for (const auto& [entry, files] : added) {
+    WriteCase(entry, files, folder);
+    plan.cases.push_back(entry);
+  }
+  SyncFolder(folder);
+  plan.added = static_cast<int>(added.size());
+  WriteFileAtomically(folder / "cases.csv", CasesAsCsv(plan.cases));
+  return plan;
+}
+
+}  // namespace lacuna
