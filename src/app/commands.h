@@ -17,6 +17,7 @@ void AddAdd(CLI::App* app, std::function<int()>* command);
 void AddCompare(CLI::App* app, std::function<int()>* command);
 void AddDiagnose(CLI::App* app, std::function<int()>* command);
 void AddTable1(CLI::App* app, std::function<int()>* command);
+void AddSweep(CLI::App* app, std::function<int()>* command);
 void AddSimulate(CLI::App* app, std::function<int()>* command);
 void AddInfo(CLI::App* app, std::function<int()>* command);
 void AddValidate(CLI::App* app, std::function<int()>* command);

@@ -26,6 +26,7 @@ constexpr char kFooter[] = R"(Start here:
   lacuna fit experiments/silicone_beam.yaml    predict, and fit the model's parameters
   lacuna compare results/silicone_beam         where and when that model fails
   lacuna diagnose results/silicone_beam        which physical effect it lacks
+  lacuna sweep plan experiments/sweeps/bend_grid.yaml FOLDER   many experiments at once
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
   lacuna effects                               what physics a model can have
@@ -69,6 +70,7 @@ int main(int argc, char** argv) {
   lacuna::AddDiagnose(&app, &command);
   lacuna::AddAdd(&app, &command);
   lacuna::AddTable1(&app, &command);
+  lacuna::AddSweep(&app, &command);
   lacuna::AddSimulate(&app, &command);
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);

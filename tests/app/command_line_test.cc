@@ -64,8 +64,8 @@ scanner: {cameras: 2, look_at: [0 m, 0 m, 0 m], distance: 0.4 m, field_of_view: 
 TEST(CommandLine, HelpNamesEveryCommand) {
   const Ending help = Lacuna("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"reconstruct", "fit", "compare", "diagnose", "add", "simulate",
-                              "info", "validate", "effects", "explain"})
+  for (const char* command : {"reconstruct", "fit", "compare", "diagnose", "add", "sweep",
+                              "simulate", "info", "validate", "effects", "explain"})
     EXPECT_THAT(help.said, HasSubstr(command));
   EXPECT_EQ(Lacuna("--version").status, 0);
 }
@@ -224,6 +224,49 @@ TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {
   EXPECT_EQ(ending.status, 2);
   EXPECT_THAT(ending.said, HasSubstr("occupied"));
   EXPECT_THAT(ending.said, Not(HasSubstr("largest displacement")));
+}
+
+// A reconstruction of a few frames, in two sizes of its mesh and one that cannot be.
+TEST(CommandLine, ASweepIsPlannedRunAndCollected) {
+  const TemporaryFolder folder;
+  const std::string scan = (folder / "scan").string();
+  ASSERT_EQ(Lacuna("simulate " + WriteSmallScene(folder) + " -o " + (folder / "motion").string() +
+                   " --recording " + scan)
+                .status,
+            0);
+  std::ofstream(folder / "small.yaml") << R"(schema_version: 1
+name: small
+recording: scan
+surface: {edge_length: 12 mm}
+mesh: {max_volume: 2000 mm^3}
+material: {law: corotational, young_modulus: 0.1 MPa, poisson_ratio: 0.4}
+forces: {model: none}
+)";
+  std::ofstream(folder / "sweep.yaml") << R"(schema_version: 1
+name: sizes
+command: reconstruct
+experiments: small.yaml
+vary: {mesh.max_volume: [1500 mm^3, 3000 mm^3]}
+cases: [{frames.last: 3}]
+)";
+  const std::string cases = (folder / "cases").string();
+  const std::string plan = "sweep plan " + (folder / "sweep.yaml").string() + " " + cases;
+  const Ending refused = Lacuna(plan);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.said, HasSubstr("sweep.yaml:6:"));  // there are three frames, from 0
+  std::string text = FileContent(folder / "sweep.yaml");
+  text.erase(text.find("cases:"));
+  std::ofstream(folder / "sweep.yaml") << text;
+  ASSERT_EQ(Lacuna(plan).status, 0);
+  EXPECT_THAT(Lacuna("sweep collect " + cases).said, HasSubstr("2 planned"));
+  const Ending run = Lacuna("sweep run " + cases);
+  EXPECT_EQ(run.status, 0) << run.said;
+  const Ending table = Lacuna("sweep collect " + cases);
+  EXPECT_EQ(table.status, 0);
+  EXPECT_THAT(table.said, HasSubstr("2 cases of sizes: 2 done"));
+  EXPECT_THAT(table.said, HasSubstr("animation_residual_m"));
+  EXPECT_EQ(Lacuna("sweep collect " + cases).said, table.said);
+  EXPECT_EQ(Lacuna("sweep run " + cases + " --wait").status, 2);
 }
 
 TEST(CommandLine, CtrlCStopsAndLeavesNothingThatLooksFinished) {

@@ -1,0 +1,130 @@
+// lacuna sweep plan | run | collect
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "app/commands.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "sweep/slurm.h"
+#include "sweep/sweep_plan.h"
+#include "sweep/sweep_run.h"
+#include "sweep/sweep_table.h"
+
+namespace lacuna {
+namespace {
+
+struct Arguments {
+  std::string sweep_file, folder;
+  std::string launcher = "local";
+  int workers = 0;
+  std::vector<int> numbers;
+  bool retry_failed = false;
+  bool wait = false;
+  std::vector<std::string> sbatch;
+};
+
+int Plan(const Arguments& arguments) {
+  const SweepPlan plan = PlanSweep(Config::Load(arguments.sweep_file), arguments.folder);
+  fmt::print("{}: {} cases, {} of them new; cases.csv lists them\n", arguments.folder,
+             plan.cases.size(), plan.added);
+  if (!plan.absent.empty())
+    fmt::print("no longer in {}, and kept: {}\n", arguments.sweep_file,
+               fmt::join(plan.absent, ", "));
+  return 0;
+}
+
+int Submit(const Arguments& arguments) {
+  SlurmOptions options;
+  options.program = std::filesystem::read_symlink("/proc/self/exe");
+  options.numbers = UnfinishedCases(arguments.folder, arguments.retry_failed);
+  std::erase_if(options.numbers, [&arguments](int number) {
+    const std::vector<int>& chosen = arguments.numbers;
+    return !chosen.empty() && std::find(chosen.begin(), chosen.end(), number) == chosen.end();
+  });
+  if (options.numbers.empty()) {
+    fmt::print("{}: no case is left to run\n", arguments.folder);
+    return 0;
+  }
+  options.at_a_time = arguments.workers;
+  options.retry_failed = arguments.retry_failed;
+  options.wait = arguments.wait;
+  options.options = arguments.sbatch;
+  const std::string job = SubmitToSlurm(arguments.folder, options);
+  fmt::print("Slurm job {}: {} tasks; `squeue -j {}` and `lacuna sweep collect {}` tell of them\n",
+             job, options.numbers.size(), job, arguments.folder);
+  return 0;
+}
+
+int Run(const Arguments& arguments) {
+  if (arguments.launcher == "slurm") return Submit(arguments);
+  if (arguments.wait || !arguments.sbatch.empty())
+    throw InputError("--wait and --sbatch go with --launcher slurm");
+  SweepRunOptions options;
+  const int cores = ThreadCount();
+  options.workers = arguments.workers > 0        ? arguments.workers
+                    : !arguments.numbers.empty() ? 1
+                                                 : cores;
+  options.threads = std::max(1, cores / options.workers);
+  options.numbers = arguments.numbers;
+  options.retry_failed = arguments.retry_failed;
+  const int unfinished = RunSweep(arguments.folder, options);
+  if (unfinished > 0)
+    fmt::print(stderr, "{} cases are not done; `lacuna sweep collect {}` says why\n", unfinished,
+               arguments.folder);
+  return unfinished > 0 ? 1 : 0;
+}
+
+int Collect(const Arguments& arguments) {
+  const SweepTable table = CollectSweep(arguments.folder);
+  SaveTable(table, arguments.folder);
+  fmt::print("{}The table lies in {}: table.txt, table.csv, table.json\n", TableInWords(table),
+             arguments.folder);
+  return 0;
+}
+
+}  // namespace
+
+void AddSweep(CLI::App* app, std::function<int()>* command) {
+  CLI::App* sweep = app->add_subcommand("sweep", "Many experiments at once: plan, run, collect");
+  sweep->footer(
+      "docs/sweep.md explains the sweep file; experiments/sweeps/bend_grid.yaml is one. All three\n"
+      "can be repeated: plan adds what is new, run goes on with what is not done, on as many\n"
+      "machines as share the folder.");
+  sweep->require_subcommand(1);
+  auto arguments = std::make_shared<Arguments>();
+  const auto becomes = [command, arguments](int (*function)(const Arguments&)) {
+    return [command, arguments, function] {
+      *command = [arguments, function] { return function(*arguments); };
+    };
+  };
+  CLI::App* plan = sweep->add_subcommand("plan", "Lay out a folder of cases");
+  plan->add_option("sweep", arguments->sweep_file, "The sweep's YAML file")->required();
+  plan->add_option("folder", arguments->folder, "Of the cases")->required();
+  plan->callback(becomes(&Plan));
+
+  CLI::App* run = sweep->add_subcommand("run", "Run the cases that have no outcome yet");
+  run->add_option("folder", arguments->folder, "Of the cases")->required();
+  run->add_option("--launcher", arguments->launcher, "local (default) or slurm")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  run->add_option("--workers", arguments->workers,
+                  "Cases at a time (local: one a core; slurm: as many as it allows)")
+      ->check(CLI::Range(1, 100000));
+  run->add_option("--case", arguments->numbers, "Only these, by number: --case 3,7")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  run->add_flag("--retry-failed", arguments->retry_failed, "Failed cases once more");
+  run->add_flag("--wait", arguments->wait, "slurm: return when the job has ended");
+  run->add_option("--sbatch", arguments->sbatch, "slurm: a further option, --sbatch=--time=60")
+      ->allow_extra_args(false);
+  run->callback(becomes(&Run));
+
+  CLI::App* collect = sweep->add_subcommand("collect", "One table of all cases");
+  collect->add_option("folder", arguments->folder, "Of the cases")->required();
+  collect->callback(becomes(&Collect));
+}
+
+}  // namespace lacuna
