@@ -20,6 +20,11 @@ const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& 
     if (effect.candidate.type == type) return effect;
     known.push_back(effect.candidate.type);
   }
+  for (const UntriedEffect& effect : ranking.untried)
+    if (effect.type == type)
+      throw InputError(
+          fmt::format("{} cannot be added by itself: {}; write it into the experiment's `effects`",
+                      type, effect.why));
   if (FindEntry(type) == nullptr) {
     throw InputError(fmt::format("no effect is called \"{}\"{}; `lacuna effects` lists them", type,
                                  Suggestion(type, known)));
@@ -62,7 +67,9 @@ void AddAdd(CLI::App* app, std::function<int()>* command) {
   add->footer(
       "Writes the experiment RUN+EFFECT.yaml beside RUN, which starts from RUN's fitted values, "
       "and\n"
-      "runs it: errors before and after, on fitted and on held-out frames.");
+      "runs it: errors before and after, on fitted and on held-out frames. An elasticity law takes "
+      "the\n"
+      "place of the model's.");
   auto run = std::make_shared<std::string>();
   auto effect = std::make_shared<std::string>();
   add->add_option("run", *run, "The folder of a finished `lacuna fit`")->required();

@@ -78,6 +78,8 @@ void PrintRanking(const DiagnosisRecord& diagnosis) {
       quiet.push_back(effect.type);
   }
   if (!quiet.empty()) PrintText(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
+  for (const UntriedEffect& effect : diagnosis.untried)
+    PrintText(fmt::format("not tried: {}; {}", effect.type, effect.why));
 }
 
 void PrintNuisances(const DiagnosisRecord& diagnosis) {

@@ -41,17 +41,16 @@ constexpr Dimension kPressurePerDepth{-2, 1, -2, 0, 0, "a pressure per depth", "
 
 // The pressure at a depth ≥ 0 and what belongs to it, all for k = 1.
 struct Penalty {
-  double potential;     // ∫ p dd
-  double pressure;      // p
-  double slope;         // ∂p/∂d
-  double by_smoothing;  // ∂p/∂s
+  double potential;  // ∫ p dd
+  double pressure;   // p
+  double slope;      // ∂p/∂d
 };
 
 Penalty PenaltyAt(double depth, double smoothing) {
   const double d = depth, s = smoothing;
-  if (d <= s) return {d * d * d / (6 * s), d * d / (2 * s), d / s, -d * d / (2 * s * s)};
+  if (d <= s) return {d * d * d / (6 * s), d * d / (2 * s), d / s};
   const double linear = d - s / 2;
-  return {linear * linear / 2 + s * s / 24, linear, 1, -0.5};
+  return {linear * linear / 2 + s * s / 24, linear, 1};
 }
 
 class PlaneContactEffect final : public Effect {
@@ -100,7 +99,7 @@ class PlaneContactEffect final : public Effect {
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
-    CHECK(parameter >= 0 && parameter < kParameters);
+    CHECK(parameter >= 0 && parameter < kSlip);
     ForEachContact(at, [&](const Contact& contact) {
       derivative->segment<3>(3 * contact.node) +=
           contact.area * TractionDerivative(at, contact, parameter);
@@ -200,7 +199,8 @@ class PlaneContactEffect final : public Effect {
                                .plausible_min = 1e-5,
                                .plausible_max = 1e-2,
                                .default_value = 1e-3,
-                               .log_scale = true});
+                               .log_scale = true,
+                               .setting = true});
     card.parameters.push_back({.name = "smoothing",
                                .meaning = "depth over which the push becomes proportional, s",
                                .dimension = kLength,
@@ -209,7 +209,8 @@ class PlaneContactEffect final : public Effect {
                                .plausible_min = 1e-6,
                                .plausible_max = 1e-3,
                                .default_value = 1e-4,
-                               .log_scale = true});
+                               .log_scale = true,
+                               .setting = true});
     return card;
   }
 
@@ -253,11 +254,6 @@ class PlaneContactEffect final : public Effect {
         return slope * Direction(contact);
       case kFriction:
         return -pressure * contact.slip / contact.slip_norm;
-      case kSlip:
-        return pressure * Friction() * parameters_[kSlip] / std::pow(contact.slip_norm, 3) *
-               contact.slip;
-      case kSmoothing:
-        return Stiffness() * penalty.by_smoothing * Direction(contact);
       default:
         break;
     }

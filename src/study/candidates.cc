@@ -178,6 +178,17 @@ double PlausibleScale(const ParameterCard& card) {
   return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
 }
 
+std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate) {
+  if (candidate.IsPilot()) return {{"share", "", 1, true}};
+  std::vector<CandidateAmount> amounts;
+  for (const int index : candidate.amplitude) {
+    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    amounts.push_back({parameter.name, parameter.dimension.unit, PlausibleScale(parameter),
+                       parameter.bounds.min >= parameter.null_value});
+  }
+  return amounts;
+}
+
 std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
   const Extent extent = Measure(setting.body);
   std::vector<CandidateEffect> candidates;

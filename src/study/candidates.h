@@ -16,13 +16,27 @@ namespace lacuna {
 struct CandidateEffect {
   std::string type;                // of the effect
   std::string variant;             // "τ = 0.3 s", "at the tip"; empty where there is one only
-  std::shared_ptr<Effect> effect;  // at its null value
-  // The parameters that make its size: one, or the three components of a vector.
+  std::shared_ptr<Effect> effect;  // at its null value; a pilot's at its pilot setting
+  // The parameters that make its size: one, or the three components of a vector. Empty: a pilot,
+  // which has no derivative at its null value (pilot_hypotheses.h); its one amount is the share of
+  // what the pilot setting changes, 1 there.
   std::vector<int> amplitude;
+  // It takes the place of the model's elasticity law; false: it acts besides.
+  bool replaces_material = false;
+
+  bool IsPilot() const { return amplitude.empty(); }
 };
 
 // The largest plausible size of a parameter: the scale of its prior.
 double PlausibleScale(const ParameterCard& card);
+
+// One of the numbers that make a candidate's size.
+struct CandidateAmount {
+  std::string name, unit;
+  double plausible = 1;      // the largest size, the scale of its prior
+  bool is_positive = false;  // it cannot be negative
+};
+std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate);
 
 // What the variants are chosen for.
 struct CandidateSetting {
@@ -36,8 +50,8 @@ struct CandidateSetting {
 };
 
 // All effects of the catalogue whose size has a null value and that the model does not have yet.
-// Contact, which has no derivative at its null value, and effects that only YAML describes are not
-// among them.
+// Contact, which has no derivative at its null value (pilot_hypotheses.h), and effects that only
+// YAML describes are not among them.
 std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting);
 
 }  // namespace lacuna

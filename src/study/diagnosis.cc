@@ -78,6 +78,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   diagnosis.scored = ranking.variants;
   diagnosis.errors = ErrorsOf(problem, values);
   diagnosis.control = ranking.control;
+  diagnosis.untried = std::move(ranking.untried);
   for (ScoredEffect& effect : ranking.effects) {
     diagnosis.ranking.emplace_back();
     diagnosis.ranking.back().scored = std::move(effect);
@@ -214,8 +215,11 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                          {"evidence", nuisance.evidence},
                          {"explained_share", nuisance.explained},
                          {"adopted", nuisance.adopted}});
+  nlohmann::json untried = nlohmann::json::array();
+  for (const UntriedEffect& effect : diagnosis.untried)
+    untried.push_back({{"effect", effect.type}, {"why", effect.why}});
   const nlohmann::json all = {
-      {"schema_version", 2},
+      {"schema_version", 3},
       {"verdict", VerdictName(diagnosis.verdict)},
       {"effects", diagnosis.effects},
       {"explanation", diagnosis.explanation},
@@ -232,7 +236,8 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
       {"left_in_noise", diagnosis.left_in_noise},
       {"present_in_noise", diagnosis.present_in_noise},
       {"nuisances", nuisances},
-      {"ranking", ranking}};
+      {"ranking", ranking},
+      {"untried", untried}};
   WriteFileAtomically(file, all.dump(2) + "\n");
 }
 

@@ -2,7 +2,8 @@
 //
 // 1. Every effect of the catalogue, and every nuisance that may pass for one, is tried on the
 //    fitted trajectory to first order, all in one tangent-linear run, and scored by the evidence
-//    for it (study/effect_ranking.h).
+//    for it (study/effect_ranking.h); what has no derivative, in a pilot run of its own
+//    (study/pilot_hypotheses.h).
 // 2. The best effects are added to the model one at a time and fitted with it. What counts is the
 //    evidence of all frames, those that were not fitted among them, with noise that is no smaller
 //    and no less correlated than what the best of them leaves.
@@ -54,6 +55,7 @@ struct Diagnosis {
   NoiseLevel noise_level;
   ModelErrors errors;                     // of the present model
   std::vector<RankedEffect> ranking;      // by first order's evidence
+  std::vector<UntriedEffect> untried;     // as in EffectRanking
   std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
   int scored = 0;                         // effects and variants
   double control = 0;  // the evidence that one in twenty controls finds without an effect

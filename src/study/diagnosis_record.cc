@@ -65,6 +65,8 @@ DiagnosisRecord FromJson(const json& value) {
     record.ranking.push_back(EffectFrom(entry));
     record.ranking.back().errors.has_held_out = record.errors.has_held_out;
   }
+  for (const json& entry : value.at("untried"))
+    record.untried.push_back({entry.at("effect"), entry.at("why")});
   return record;
 }
 

@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-// One parameter of an effect's amplitude, in its unit (SI). Infinite: the data does not tell it.
+// One of an effect's amounts, in its unit (SI). Infinite: the data does not tell it.
 struct RecordedSize {
   std::string parameter, unit;
   double expected = 0, deviation = 0;
@@ -53,6 +53,7 @@ struct DiagnosisRecord {
   ModelErrors errors;           // of the model as it is
   std::vector<RecordedNuisance> nuisances;
   std::vector<RecordedEffect> ranking;
+  std::vector<UntriedEffect> untried;  // with the reason
 };
 
 // "missing {drag}"

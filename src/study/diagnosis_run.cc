@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 2;
+constexpr int kDiagnosisVersion = 3;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -40,7 +40,8 @@ json SettingsOf(const Diagnosis& diagnosis) {
     const CandidateEffect& candidate = effect.scored.candidate;
     const Eigen::VectorXd values = candidate.effect->Parameters();
     settings[candidate.type] = {{"values", std::vector<double>(values.begin(), values.end())},
-                                {"amplitude", candidate.amplitude}};
+                                {"amplitude", candidate.amplitude},
+                                {"replaces_material", candidate.replaces_material}};
   }
   return settings;
 }
@@ -94,11 +95,14 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
     candidate.type = effect.type;
     candidate.variant = effect.variant;
     candidate.amplitude = settings.at("amplitude").get<std::vector<int>>();
-    if (entry == nullptr || values.size() != entry->card->parameters.size() ||
-        candidate.amplitude.size() != effect.sizes.size())
-      throw InputError(OriginFile(run).string() + ": is of another catalogue; diagnose again");
+    candidate.replaces_material = settings.at("replaces_material");
+    const std::string other =
+        OriginFile(run).string() + ": is of another catalogue; diagnose again";
+    if (entry == nullptr || values.size() != entry->card->parameters.size())
+      throw InputError(other);
     candidate.effect = entry->make(
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
     scored.score.size.resize(static_cast<Eigen::Index>(effect.sizes.size()));
     for (size_t k = 0; k < effect.sizes.size(); ++k)
       scored.score.size[static_cast<Eigen::Index>(k)] = effect.sizes[k].expected;

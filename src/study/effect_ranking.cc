@@ -76,10 +76,8 @@ double ExpectedHeldOut(const Weighed& weighed, const std::vector<int>& chosen, d
 
 std::vector<LinearPrior> PriorsOf(const CandidateEffect& candidate) {
   std::vector<LinearPrior> priors;
-  for (const int index : candidate.amplitude) {
-    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
-    priors.push_back({0, PlausibleScale(parameter), parameter.bounds.min >= parameter.null_value});
-  }
+  for (const CandidateAmount& amount : AmountsOf(candidate))
+    priors.push_back({0, amount.plausible, amount.is_positive});
   return priors;
 }
 
@@ -242,7 +240,7 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   const PredictionStudy& study = problem.study();
   progress->Begin("score", 0);
   problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
-  const std::vector<CandidateEffect> candidates =
+  std::vector<CandidateEffect> candidates =
       MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without});
   const GripNuisances grips(problem);
   std::vector<MisfitDirection> directions = DirectionsOf(candidates);
@@ -262,6 +260,12 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
     own.push_back(hypotheses.Add(misfit.by.middleCols(column, width), PriorsOf(candidate)));
     column += width;
   }
+  PilotHypotheses pilots = RunPilots(problem, values, misfit, without);
+  for (PilotHypothesis& pilot : pilots.tried) {
+    own.push_back(hypotheses.Add(pilot.by, PriorsOf(pilot.candidate)));
+    candidates.push_back(std::move(pilot.candidate));
+  }
+  ranking.untried = std::move(pilots.untried);
   std::vector<int> base = parameters;
   const auto add_nuisance = [&](NuisanceCandidate candidate, bool adopted) {
     const std::vector<int> columns = hypotheses.Add(candidate.by, candidate.priors);
@@ -354,10 +358,9 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   for (const int k : adopted) ranking.adopted.priors.push_back(hypotheses.priors[k]);
   for (Entry& entry : entries) {
     ScoredEffect& scored = entry.scored;
-    const EffectCard& card = scored.candidate.effect->Card();
-    for (const int parameter : scored.candidate.amplitude) {
-      scored.parameters.push_back(card.parameters[parameter].name);
-      scored.units.emplace_back(card.parameters[parameter].dimension.unit);
+    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
+      scored.parameters.push_back(amount.name);
+      scored.units.push_back(amount.unit);
     }
     const LinearFit fit = weighed.fitted.Fit(Joined(base, entry.own), variance);
     scored.fitted = values + fit.change.head(known);

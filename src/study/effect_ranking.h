@@ -13,6 +13,7 @@
 #include "study/calibration_problem.h"
 #include "study/candidates.h"
 #include "study/nuisance_candidates.h"
+#include "study/pilot_hypotheses.h"
 
 namespace lacuna {
 
@@ -26,7 +27,7 @@ double Price(size_t rivals);
 // What first order says about one hypothesis.
 struct Score {
   double evidence = 0;        // ln of the odds against the model as it is, less the price of trying
-  Eigen::VectorXd size;       // of the amplitude's parameters, in their units
+  Eigen::VectorXd size;       // of the candidate's amounts, in their units
   Eigen::VectorXd deviation;  // of it
   Eigen::VectorXd detectable;  // the smallest sizes that would have been noticed; may be infinite
   double explained = 0;        // share of the squared misfit, of all frames, that goes
@@ -65,7 +66,8 @@ struct AdoptedNuisances {
 };
 
 struct EffectRanking {
-  std::vector<ScoredEffect> effects;      // by evidence, the best first
+  std::vector<ScoredEffect> effects;  // by evidence, the best first
+  std::vector<UntriedEffect> untried;
   std::vector<ScoredNuisance> nuisances;  // discretisation, grips, measurement
   AdoptedNuisances adopted;
   NoiseLevel noise;

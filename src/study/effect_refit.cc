@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/catalogue.h"
+#include "study/model_change.h"
 #include "study/recording_misfit.h"
 
 namespace lacuna {
 namespace {
 
-// How far beyond the plausible range a refit may go, in parts of that range.
-constexpr double kMargin = 0.1;
 // A rival need not be at its very best to be told from one that fits.
 constexpr int kIterations = 25;
 constexpr double kFarOff = 2;     // σ: a refit that leaves more may have ended at the wrong place
@@ -154,49 +152,6 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eige
 }
 
 }  // namespace
-
-PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
-  PredictionStudy with = study;
-  const CatalogueEntry* entry = FindEntry(scored.candidate.type);
-  Eigen::VectorXd values = scored.candidate.effect->Parameters();
-  const EffectCard& card = *entry->card;
-  for (size_t k = 0; k < scored.candidate.amplitude.size(); ++k) {
-    const int index = scored.candidate.amplitude[k];
-    const ParameterCard& parameter = card.parameters[index];
-    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
-    // Within what is plausible, and not at the null value, where other parameters have no meaning.
-    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
-    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
-    values[index] = start;
-  }
-  const std::shared_ptr<Effect> effect = entry->make(values);
-  with.effects.push_back(effect);
-  for (ModelParameter& parameter : ModelParameters(with.effects)) {
-    if (parameter.places.front().first == effect) {
-      // Where another effect is what is missing, a fit would make this one do its work at any size.
-      const auto& [place, index] = parameter.places.front();
-      const ParameterCard& plausible = place->Card().parameters[index];
-      const double margin = kMargin * (plausible.plausible_max - plausible.plausible_min);
-      CalibratedParameter& prior = parameter.prior;
-      const bool is_amplitude = std::count(scored.candidate.amplitude.begin(),
-                                           scored.candidate.amplitude.end(), index) > 0;
-      if (is_amplitude && !prior.log_scale) {
-        prior.prior_mean = plausible.null_value;
-        prior.prior_deviation = PlausibleScale(plausible);
-      }
-      prior.max = std::min(prior.max, plausible.plausible_max + margin);
-      prior.min = std::max(prior.min, plausible.log_scale && plausible.plausible_min > 0
-                                          ? 0.5 * plausible.plausible_min
-                                          : plausible.plausible_min - margin);
-      with.fitted.push_back(parameter);
-      continue;
-    }
-    // A modulus that the effect shares with the material moves with it.
-    for (ModelParameter& known : with.fitted)
-      if (known.places.front() == parameter.places.front()) known.places = parameter.places;
-  }
-  return with;
-}
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,

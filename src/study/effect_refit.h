@@ -45,10 +45,6 @@ struct EffectRefit {
   FittedHypothesis hypothesis;
 };
 
-// The study with the effect in its model, all of whose parameters are fitted, within what its card
-// calls plausible.
-PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& effect);
-
 // From where first order expects the best parameters, or from `values` where that is nearer. Null
 // `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
 // Leaves the study's effects at `values`. `misfit`: of the model as it is. Throws Interrupted.

@@ -7,7 +7,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "effects/effect_text.h"
-#include "study/diagnosis.h"
+#include "study/model_change.h"
 
 namespace lacuna {
 namespace {
@@ -42,14 +42,17 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
   const std::string name = fitted.study.name + "+" + effect.candidate.type;
 
   std::string text = fmt::format(
-      "# {} with {}, from the fit of {}.\n"
+      "# {} with {}{}, from the fit of {}.\n"
       "use: {}\n"
       "name: {}\n"
       "output: {}\n"
       "material: {}\n"
       "effects:\n",
-      fitted.study.name, effect.candidate.type, fitted.study.name,
-      experiment.lexically_proximate(parent).generic_string(), name, name,
+      fitted.study.name, effect.candidate.type,
+      effect.candidate.replaces_material
+          ? " in place of " + fitted.study.effects.front()->Card().type
+          : "",
+      fitted.study.name, experiment.lexically_proximate(parent).generic_string(), name, name,
       Written(*study.effects.front(), experiment));
   for (size_t k = 1; k < study.effects.size(); ++k)
     text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
@@ -61,24 +64,25 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
 }
 
 std::string WhyUnseen(const ScoredEffect& effect) {
-  const CandidateEffect& candidate = effect.candidate;
-  const EffectCard& card = candidate.effect->Card();
-  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
-    const ParameterCard& parameter = card.parameters[candidate.amplitude[k]];
-    if (effect.score.detectable[static_cast<Eigen::Index>(k)] < PlausibleScale(parameter))
-      return "";
-  }
-  const ParameterCard& first = card.parameters[candidate.amplitude.front()];
+  const std::string& type = effect.candidate.type;
+  const std::vector<CandidateAmount> amounts = AmountsOf(effect.candidate);
+  for (size_t k = 0; k < amounts.size(); ++k)
+    if (effect.score.detectable[static_cast<Eigen::Index>(k)] < amounts[k].plausible) return "";
+  const CandidateAmount& first = amounts.front();
   const double detectable = effect.score.detectable.minCoeff();
-  const std::string unit = first.dimension.unit;
   if (!std::isfinite(detectable)) {
     return fmt::format("{} does nothing in these recordings that the fitted parameters cannot do",
-                       card.type);
+                       type);
+  }
+  if (effect.candidate.IsPilot()) {
+    return fmt::format(
+        "what {} ({}) changes would have to be {:.2g} times as large to show in these recordings",
+        type, effect.candidate.variant, detectable);
   }
   return fmt::format(
       "{} would have to be larger than is plausible to show in these recordings: {} of {:.2g} {}, "
       "against {:.2g} {} at most",
-      card.type, first.name, detectable, unit, PlausibleScale(first), unit);
+      type, first.name, detectable, first.unit, first.plausible, first.unit);
 }
 
 }  // namespace lacuna

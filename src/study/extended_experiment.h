@@ -1,4 +1,4 @@
-// The experiment of a fitted run with one more effect in its model.
+// The experiment of a fitted run with one more effect in its model, or with another elasticity law.
 #ifndef LACUNA_STUDY_EXTENDED_EXPERIMENT_H_
 #define LACUNA_STUDY_EXTENDED_EXPERIMENT_H_
 
@@ -11,9 +11,10 @@
 namespace lacuna {
 
 // Writes <run>+<effect>.yaml beside the run's folder: it uses the run's experiment, starts from the
-// fitted values, has the effect at its expected size and all of its parameters fitted, and puts its
-// results into <run>+<effect>. Returns the file. Throws InputError when an effect of the model is
-// none that can be written down (an expression): that one has to be added by hand.
+// fitted values, has the effect at its expected size and all of its parameters fitted (an
+// elasticity law: the moduli that were fitted before), and puts its results into <run>+<effect>.
+// Returns the file. Throws InputError when an effect of the model is none that can be written down
+// (an expression): that one has to be added by hand.
 std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
                                               const std::filesystem::path& run,
                                               const ScoredEffect& effect);

@@ -48,12 +48,10 @@ std::string Titles(const std::vector<std::string>& types) {
 // No effect, at the largest size that is plausible, would stand out from the noise.
 bool NothingCouldBeSeen(const std::vector<RankedEffect>& ranking) {
   for (const RankedEffect& effect : ranking) {
-    const EffectCard& card = effect.scored.candidate.effect->Card();
-    for (size_t k = 0; k < effect.scored.candidate.amplitude.size(); ++k) {
-      const ParameterCard& parameter = card.parameters[effect.scored.candidate.amplitude[k]];
-      if (effect.scored.score.detectable[static_cast<Eigen::Index>(k)] < PlausibleScale(parameter))
+    const std::vector<CandidateAmount> amounts = AmountsOf(effect.scored.candidate);
+    for (size_t k = 0; k < amounts.size(); ++k)
+      if (effect.scored.score.detectable[static_cast<Eigen::Index>(k)] < amounts[k].plausible)
         return false;
-    }
   }
   return true;
 }

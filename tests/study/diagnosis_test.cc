@@ -18,25 +18,6 @@ using Verdict = Diagnosis::Verdict;
 // The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
 constexpr double kModelError = 2;  // σ
 
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
-
-Diagnosis DiagnoseBar(const HeldBarTruth& truth,
-                      const std::map<std::string, std::string>& replaced) {
-  const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
-  const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
-  const TetMesh mesh = BarMesh({6, 1, 1}, 2);
-  const CalibrationProblem problem(study, mesh);
-  Progress progress(Silent());
-  const Calibration calibration = problem.FitFromStart(&progress);
-  EXPECT_TRUE(calibration.usable) << calibration.message;
-  return Diagnose(problem, calibration.parameters, {}, &progress);
-}
-
 const std::map<std::string, std::string> kWithoutDamping{
     {"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}};
 

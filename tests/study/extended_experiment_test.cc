@@ -76,6 +76,41 @@ TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
   std::filesystem::current_path(before);
 }
 
+TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  const FittedRun fitted = OpenRun(run);
+  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
+    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
+
+  ScoredEffect law;
+  law.candidate.type = "st_venant_kirchhoff";
+  law.candidate.replaces_material = true;
+  const Eigen::VectorXd moduli = fitted.study.effects.front()->Parameters();
+  law.candidate.effect = FindEntry("st_venant_kirchhoff")->make(moduli);
+  const PredictionStudy other =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, law)));
+  ASSERT_EQ(other.effects.size(), fitted.study.effects.size());
+  EXPECT_EQ(other.effects.front()->Card().type, "st_venant_kirchhoff");
+  EXPECT_EQ(other.effects.front()->Parameters(), moduli);
+  ASSERT_EQ(other.fitted.size(), 1u);
+  EXPECT_EQ(other.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(other.fitted[0].places[0].first, other.effects.front());
+
+  ScoredEffect contact;
+  contact.candidate.type = "plane_contact";
+  contact.candidate.effect = MakeEffect(
+      "plane_contact", {{"stiffness", 1e8}, {"normal_y", 1}, {"normal_z", 0}, {"offset", -0.0123}});
+  contact.score.size = Eigen::VectorXd::Constant(1, 0.8);
+  const PredictionStudy more =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, contact)));
+  ASSERT_EQ(more.effects.size(), fitted.study.effects.size() + 1);
+  EXPECT_EQ(more.effects.back()->Parameters(), contact.candidate.effect->Parameters());
+  // The modulus; of the plane its stiffness, normal, place and friction.
+  ASSERT_EQ(more.fitted.size(), 1u + 6u);
+  EXPECT_EQ(more.fitted[5].prior.name, "plane_contact.offset");
+}
+
 TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
   ScoredEffect scored;
   scored.candidate.type = "drag";
@@ -88,6 +123,9 @@ TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
   EXPECT_THAT(WhyUnseen(scored), HasSubstr("larger than is plausible"));
   scored.score.detectable[0] = INFINITY;
   EXPECT_THAT(WhyUnseen(scored), HasSubstr("drag does nothing in these recordings"));
+  scored.candidate.amplitude.clear();  // a pilot
+  scored.score.detectable[0] = 3;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("3 times as large"));
 }
 
 TEST(ExtendedExperiment, ARunWhoseExperimentHasChangedIsNotOpened) {

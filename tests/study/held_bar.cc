@@ -10,6 +10,7 @@
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/embedding.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 Eigen::Matrix3Xd BarMarkerPlaces() {
@@ -24,9 +25,10 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
   model.body = std::make_shared<const Body>(MakeBody(BarMesh({8, 2, 2}, 2), 1000));
   const TetMesh& mesh = model.body->mesh;
   model.effects = {
-      MakeEffect("neo_hookean", {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}}),
+      MakeEffect(truth.law, {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}}),
       MakeEffect("gravity", {{"acceleration_z", -9.80665}}),
       MakeEffect("mass_damping", {{"alpha", truth.alpha}})};
+  model.effects.insert(model.effects.end(), truth.hidden.begin(), truth.hidden.end());
   if (truth.body_force) {
     model.effects.push_back(std::make_shared<PrescribedForce>(
         model.body->node_mass / model.body->node_mass.sum(), truth.body_force));
@@ -135,6 +137,21 @@ PredictionStudy ReadBarStudy(const std::filesystem::path& folder,
                              const std::map<std::string, std::string>& replaced) {
   return ReadPredictionStudy(
       Config::Parse(BarExperiment(folder, replaced), (folder / "study.yaml").string()));
+}
+
+Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
+                      const DiagnosisOptions& options) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
+  const TetMesh mesh = BarMesh({6, 1, 1}, 2);
+  const CalibrationProblem problem(study, mesh);
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const Calibration calibration = problem.FitFromStart(&progress);
+  EXPECT_TRUE(calibration.usable) << calibration.message;
+  return Diagnose(problem, calibration.parameters, options, &progress);
 }
 
 }  // namespace lacuna

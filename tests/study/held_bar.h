@@ -8,9 +8,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "study/diagnosis.h"
 #include "study/prediction_study.h"
 #include "support/box_mesh.h"
 
@@ -24,6 +26,8 @@ struct HeldBarTruth {
   double noise = 5e-5;                        // m
   // N, over time: a net force spread over the bar by mass, that a model may lack.
   std::function<Eigen::Vector3d(double time)> body_force = {};
+  std::string law = "neo_hookean";
+  std::vector<std::shared_ptr<Effect>> hidden = {};  // that a model may lack too
 };
 inline constexpr double kRelease = 0.0437;   // s
 inline constexpr double kFitUntil = 0.1501;  // s
@@ -51,6 +55,10 @@ std::string BarExperiment(const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& replaced = {});
 PredictionStudy ReadBarStudy(const std::filesystem::path& folder,
                              const std::map<std::string, std::string>& replaced = {});
+
+// Films the bar, fits the experiment, with texts replaced, and diagnoses it.
+Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
+                      const DiagnosisOptions& options = {});
 
 }  // namespace lacuna
 

@@ -1,0 +1,99 @@
+#include "study/model_change.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// How far beyond the plausible range a fit may go, in parts of that range.
+constexpr double kMargin = 0.1;
+
+int IndexOf(const EffectCard& card, const std::string& name) {
+  for (size_t k = 0; k < card.parameters.size(); ++k)
+    if (card.parameters[k].name == name) return static_cast<int>(k);
+  LOG(FATAL) << card.type << " has no " << name;
+}
+
+void ReplaceMaterial(const std::shared_ptr<Effect>& law, PredictionStudy* study) {
+  const std::shared_ptr<Effect> before = study->effects.front();
+  study->effects.front() = law;
+  for (ModelParameter& parameter : study->fitted) {
+    for (auto& [effect, index] : parameter.places) {
+      if (effect != before) continue;
+      index = IndexOf(law->Card(), before->Card().parameters[index].name);
+      effect = law;
+    }
+  }
+}
+
+// The values that a fit of the effect starts from.
+Eigen::VectorXd StartOf(const ScoredEffect& scored) {
+  const CandidateEffect& candidate = scored.candidate;
+  Eigen::VectorXd values = candidate.effect->Parameters();
+  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
+    const int index = candidate.amplitude[k];
+    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
+    // Within what is plausible, and not at the null value, where other parameters have no meaning.
+    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
+    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
+    values[index] = start;
+  }
+  return values;
+}
+
+// Where another effect is what is missing, a fit would make this one do its work at any size.
+void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
+  const double margin = kMargin * (plausible.plausible_max - plausible.plausible_min);
+  // A pilot's place is taken from the recording, wherever that is.
+  const double low = std::min(prior->start, plausible.log_scale && plausible.plausible_min > 0
+                                                ? 0.5 * plausible.plausible_min
+                                                : plausible.plausible_min - margin);
+  const double high = std::max(prior->start, plausible.plausible_max + margin);
+  prior->min = std::max(prior->min, low);
+  prior->max = std::min(prior->max, high);
+}
+
+}  // namespace
+
+PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate) {
+  PredictionStudy with = study;
+  if (candidate.replaces_material)
+    ReplaceMaterial(candidate.effect, &with);
+  else
+    with.effects.push_back(candidate.effect);
+  return with;
+}
+
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
+  CandidateEffect own = scored.candidate;
+  own.effect = FindEntry(own.type)->make(StartOf(scored));
+  PredictionStudy with = WithCandidate(study, own);
+  if (own.replaces_material) return with;
+  for (ModelParameter& parameter : ModelParameters(with.effects)) {
+    if (parameter.places.front().first == own.effect) {
+      const int index = parameter.places.front().second;
+      const ParameterCard& card = own.effect->Card().parameters[index];
+      CalibratedParameter& prior = parameter.prior;
+      const bool is_amplitude = std::count(own.amplitude.begin(), own.amplitude.end(), index) > 0;
+      if (is_amplitude && !prior.log_scale) {
+        prior.prior_mean = card.null_value;
+        prior.prior_deviation = PlausibleScale(card);
+      }
+      KeepPlausible(card, &prior);
+      with.fitted.push_back(parameter);
+      continue;
+    }
+    // A modulus that the effect shares with the material moves with it.
+    for (ModelParameter& known : with.fitted)
+      if (known.places.front() == parameter.places.front()) known.places = parameter.places;
+  }
+  return with;
+}
+
+}  // namespace lacuna
