@@ -12,6 +12,12 @@
 namespace lacuna {
 namespace {
 
+using ::testing::AnyOf;
+using ::testing::Contains;
+using Verdict = Diagnosis::Verdict;
+
+// The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
+constexpr double kModelError = 2;  // σ
 // The bar, 20 mm wide, is let go at y > 0 and swings to y < 0, where this plane is.
 constexpr double kPlane = -0.0125;  // m
 
@@ -21,6 +27,12 @@ HeldBarTruth BesideAPlane() {
       "plane_contact",
       {{"stiffness", 3e7}, {"normal_x", 0}, {"normal_y", 1}, {"normal_z", 0}, {"offset", kPlane}})};
   return truth;
+}
+
+const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
+  for (const RankedEffect& effect : diagnosis.ranking)
+    if (effect.scored.candidate.type == type) return &effect;
+  return nullptr;
 }
 
 bool IsUntried(const std::vector<UntriedEffect>& untried, const std::string& type) {
@@ -99,6 +111,44 @@ TEST(PilotHypotheses, ALawTakesOverTheFittedModuli) {
   ASSERT_EQ(with.fitted.size(), study.fitted.size());
   EXPECT_EQ(with.fitted[0].places[0].first, law.effect);
   EXPECT_EQ(with.fitted[1].places, study.fitted[1].places);  // of the damping
+}
+
+TEST(Diagnosis, NamesAPlaneThatTheBarMeets) {
+  const Diagnosis diagnosis = DiagnoseBar(BesideAPlane(), {});
+  EXPECT_GT(diagnosis.errors.in_noise, 3 * kModelError);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  ASSERT_THAT(diagnosis.effects, Contains("plane_contact"));
+  const RankedEffect* contact = Find(diagnosis, "plane_contact");
+  ASSERT_NE(contact, nullptr);
+  ASSERT_TRUE(contact->refitted);
+  EXPECT_LT(contact->errors.in_noise, kModelError);
+}
+
+TEST(Diagnosis, DoesNotScoreContactWhereNothingIsMet) {
+  const Diagnosis diagnosis = DiagnoseBar({}, {});
+  EXPECT_EQ(Find(diagnosis, "plane_contact"), nullptr);
+  EXPECT_TRUE(IsUntried(diagnosis.untried, "plane_contact"));
+  // So small strains that laws differ by less than the noise: none has evidence.
+  for (const char* law : {"linear", "corotational", "st_venant_kirchhoff"}) {
+    ASSERT_NE(Find(diagnosis, law), nullptr) << law;
+    EXPECT_LT(Find(diagnosis, law)->scored.score.evidence, 0) << law;
+  }
+}
+
+TEST(Diagnosis, NamesNoWrongEffectWhereAnotherLawIsMissing) {
+  HeldBarTruth truth;
+  truth.law = "st_venant_kirchhoff";
+  truth.hold_force = {0, 0.25, 0.1};  // bends the bar by a third of its length
+  const Diagnosis diagnosis = DiagnoseBar(truth, {});
+  ASSERT_FALSE(diagnosis.ranking.empty());
+  EXPECT_THAT(diagnosis.ranking.front().scored.candidate.type,
+              AnyOf("st_venant_kirchhoff", "strain_stiffening"));
+  if (diagnosis.verdict == Verdict::kMissing) {
+    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff") << diagnosis.explanation;
+  } else {
+    EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+    EXPECT_THAT(diagnosis.effects, Contains("st_venant_kirchhoff"));
+  }
 }
 
 }  // namespace
