@@ -49,6 +49,10 @@ std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden) {
   return MakeEffect(hidden.type, hidden.parameters);
 }
 
+bool IsLaw(const HiddenEffect& hidden) {
+  return FindEntry(hidden.type)->kind == CatalogueEntry::Kind::kMaterial;
+}
+
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    const std::string& nuisance) {
   TrialCase trial;
@@ -107,6 +111,19 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
   const bool along = type == "active_contraction" || type.ends_with("gradient");
   SetVector("axis", along ? Eigen::Vector3d::UnitX() : draws.Direction(), &drawn);
   SetVector("gravity", {0, 0, -9.80665}, &drawn);
+  if (type == "plane_contact") {
+    // A bar that is pulled to one side and let go swings to the other, about as far.
+    Eigen::Vector3d side = trial.hold_forces.front();
+    side.x() = 0;
+    side.normalize();
+    const double half =
+        0.5 * (std::abs(side.y()) * trial.size.y() + std::abs(side.z()) * trial.size.z());
+    const double gap = draws.Between(0.02, 0.08) * trial.size.x();
+    SetVector("normal", side, &drawn);
+    drawn["stiffness"] = 3e3 * trial.young_modulus;  // Pa/m
+    drawn["offset"] = -half - gap;
+  }
+  const bool has_size = !IsLaw(hidden) && type != "plane_contact";
   const bool is_vector = card.parameters[0].name.ends_with("_x");
   const Eigen::Vector3d direction = draws.Direction();
   const double sign = draws.Sign();
@@ -115,7 +132,7 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
     double value = parameter.default_value;
     const auto found = drawn.find(parameter.name);
     if (found != drawn.end()) value = found->second;
-    if (k < (is_vector ? 3 : 1)) {
+    if (has_size && k < (is_vector ? 3 : 1)) {
       hidden.amplitude.push_back(parameter.name);
       value = is_vector ? direction[static_cast<Eigen::Index>(k)]
                         : (parameter.bounds.min >= parameter.null_value ? 1 : sign);

@@ -18,10 +18,14 @@ namespace lacuna {
 struct HiddenEffect {
   std::string type;
   std::map<std::string, double> parameters;  // all of the card's, SI, at the size that is hidden
-  std::vector<std::string> amplitude;        // those that make its size
-  double factor = 0;                         // of its detectable size
+  // Those that make its size; none where nothing does: of a plane that is met, or of an elasticity
+  // law, which stands in the place of the model's.
+  std::vector<std::string> amplitude;
+  double factor = 0;  // of its detectable size; without a size: what it changes is that many times
+                      // what can be detected, or more
 };
 std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden);
+bool IsLaw(const HiddenEffect& hidden);
 
 struct TrialCase {
   std::string name;
@@ -50,7 +54,8 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
                    const std::string& nuisance);
 
 // An effect with places, directions and times drawn from the seed, of size 1 in its plausible
-// direction; the factor is still to be applied.
+// direction; the factor is still to be applied. A plane lies beside the bar, on the side to which
+// it swings.
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed);
 
 // truth.json

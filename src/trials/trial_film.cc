@@ -77,7 +77,12 @@ std::vector<Eigen::Matrix3Xd> Film(const TrialCase& trial, int recording, bool r
   for (const HiddenEffect& hidden : trial.hidden) hides_gravity |= hidden.type == "gravity";
   if (!hides_gravity)
     model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.80665}}));
-  for (const HiddenEffect& hidden : trial.hidden) model.effects.push_back(MakeHidden(hidden));
+  for (const HiddenEffect& hidden : trial.hidden) {
+    if (IsLaw(hidden))
+      model.effects.front() = MakeHidden(hidden);
+    else
+      model.effects.push_back(MakeHidden(hidden));
+  }
   const Eigen::Matrix3Xd& nodes = model.body->mesh.nodes;
   const Eigen::VectorXi clamped = NodesBetween(nodes, -1, trial.clamp_error + kFace);
   const Eigen::Matrix3Xd rest = nodes(Eigen::all, clamped);

@@ -36,7 +36,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
              const Eigen::VectorXd& values, const Diagnosis& diagnosis, TrialOutcome* outcome) {
   const HiddenEffect& hidden = trial.hidden.front();
   const RankedEffect* effect = Find(diagnosis, hidden.type);
-  if (effect == nullptr) return;
+  if (effect == nullptr || hidden.amplitude.empty()) return;  // no size to be compared
   Calibration calibration = effect->calibration;
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {

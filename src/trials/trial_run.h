@@ -19,7 +19,8 @@ struct TrialOutcome {
   double error_before = 0;  // held out, in multiples of the case's noise
   double error_best = 0;    // with the first one named; 0: none was
   double evidence = 0, second_evidence = 0, control = 0, left = 0;
-  // Of the first hidden effect, fitted; false where it is not in the library or its fit failed.
+  // Of the first hidden effect, fitted; false where it is not in the library, has no size, or its
+  // fit failed.
   bool has_truth = false;
   double error_after = 0;     // held out, in multiples of the noise
   double relative_error = 0;  // of its size: |estimate − truth| / |truth|

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include "scan/random_bits.h"
 #include "study/candidates.h"
 #include "study/effect_ranking.h"
+#include "study/model_change.h"
 #include "study/nuisance_candidates.h"
 #include "study/reference.h"
 #include "trials/trial_film.h"
@@ -58,6 +60,20 @@ TrialCase DrawnAgain(const TrialCase& trial) {
   for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
   return DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
                         trial.recordings, RandomBits({trial.seed, 1}));
+}
+
+// What the hidden effect, as drawn, changes of the misfit.
+Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& problem,
+                         const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
+  CandidateEffect candidate;
+  candidate.type = hidden.type;
+  candidate.effect = MakeHidden(hidden);
+  candidate.replaces_material = IsLaw(hidden);
+  const PredictionStudy study = WithCandidate(problem.WithGivenNoise(), candidate);
+  const LinearisedMisfit with =
+      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false, {}, &misfit);
+  if (!with.usable) throw InputError(hidden.type + ": " + with.message);
+  return with.residual - misfit.residual;
 }
 
 // The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
@@ -112,13 +128,18 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   };
   for (const NuisanceCandidate& nuisance : nuisances) add(nuisance.by, nuisance.priors);
   const int own = static_cast<int>(columns.cols());
-  add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
+  if (hidden.amplitude.empty())
+    add(ChangeBy(hidden, problem, values, misfit), {{}});
+  else
+    add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
   const LinearModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
       WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
   std::vector<int> taken(own);
   std::iota(taken.begin(), taken.end(), 0);
-  return kStandsOut / std::sqrt(model.Remaining(taken, {own}, {own}, 1)(0, 0));
+  const double remaining = model.Remaining(taken, {own}, {own}, 1)(0, 0);
+  return remaining > 0 ? kStandsOut / std::sqrt(remaining)
+                       : std::numeric_limits<double>::infinity();
 }
 
 bool IsPlausible(const HiddenEffect& hidden) {
@@ -137,7 +158,8 @@ std::string Film(TrialCase* trial, const std::filesystem::path& folder) {
     for (HiddenEffect& hidden : trial->hidden) {
       const double size = hidden.factor * Detectable(*trial, hidden, folder);
       for (const std::string& name : hidden.amplitude) hidden.parameters[name] *= size;
-      if (!std::isfinite(size) || !IsPlausible(hidden))
+      const bool is_seen = !hidden.amplitude.empty() || size <= 1;
+      if (!std::isfinite(size) || !IsPlausible(hidden) || !is_seen)
         return fmt::format("{} would have to be {:g} times its unit", hidden.type, size);
     }
     FilmCase(*trial, folder);
