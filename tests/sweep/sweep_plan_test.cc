@@ -105,9 +105,11 @@ TEST(SweepPlan, MistakesAreToldAtTheValueOfTheSweepFile) {
 
 TEST(SweepPlan, AListOrMappingIsWrittenInQuotes) {
   const TemporaryFolder folder;
-  const SweepPlan plan = PlanSmallSweep(
-      folder.Path(),
-      "vary: {effects: ['[]', '[{type: gravity}]'], forces: ['~', '{model: none}']}\n");
+  const SweepPlan plan =
+      PlanSmallSweep(folder.Path(),
+                     "vary:\n"
+                     "  effects: ['[]', '[{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]']\n"
+                     "  forces: ['~', '{model: none}']\n");
   ASSERT_EQ(plan.cases.size(), 4u);
   const auto study =
       ReadReconstruction(Config::Load(folder / "cases" / plan.cases[3].name / "experiment.yaml"));
