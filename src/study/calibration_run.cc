@@ -121,7 +121,9 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   }
   const std::filesystem::path experiment = (run / opened.record.experiment).lexically_normal();
   opened.study = ReadPredictionStudy(Config::Load(experiment));
-  if (opened.study.configuration != LoadManifest(run / "manifest.json").configuration) {
+  // As text: a bound that is infinite is null in the file.
+  if (opened.study.configuration.dump() !=
+      LoadManifest(run / "manifest.json").configuration.dump()) {
     throw InputError(fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(),
                                  experiment.string()));
   }

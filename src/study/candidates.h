@@ -4,6 +4,7 @@
 #define LACUNA_STUDY_CANDIDATES_H_
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct CandidateEffect {
   // which has no derivative at its null value (pilot_hypotheses.h); its one amount is the share of
   // what the pilot setting changes, 1 there.
   std::vector<int> amplitude;
+  // Of a pilot that acts besides: the parameters that a refit moves, each with its prior deviation
+  // from the pilot setting, SI.
+  std::map<std::string, double> refined = {};
   // It takes the place of the model's elasticity law; false: it acts besides.
   bool replaces_material = false;
 

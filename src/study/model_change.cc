@@ -80,6 +80,11 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& sco
       const int index = parameter.places.front().second;
       const ParameterCard& card = own.effect->Card().parameters[index];
       CalibratedParameter& prior = parameter.prior;
+      if (own.IsPilot()) {
+        const auto refined = own.refined.find(card.name);
+        if (refined == own.refined.end()) continue;
+        prior.prior_deviation = refined->second;
+      }
       const bool is_amplitude = std::count(own.amplitude.begin(), own.amplitude.end(), index) > 0;
       if (is_amplitude && !prior.log_scale) {
         prior.prior_mean = card.null_value;

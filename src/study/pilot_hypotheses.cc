@@ -13,6 +13,8 @@
 namespace lacuna {
 namespace {
 
+// m: measured points stand off the body's edges, which sink into the plane.
+constexpr double kOffsetDeviation = 2e-3;
 constexpr size_t kMostPlanes = 3;
 constexpr double kFriction = 0.5;  // coefficient of the pilot that rubs
 // A plane that gives way by a tenth of what an element does is stiff enough.
@@ -47,6 +49,8 @@ CandidateEffect Contact(const ProposedPlane& plane, double stiffness, double fri
                                            {"normal_z", plane.normal.z()},
                                            {"offset", plane.offset},
                                            {"friction", friction}});
+  candidate.refined["offset"] = kOffsetDeviation;
+  if (friction > 0) candidate.refined["friction"] = friction;
   return candidate;
 }
 

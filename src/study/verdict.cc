@@ -155,11 +155,12 @@ void Decide(Diagnosis* diagnosis) {
     if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
   }
-  const std::string drop = fmt::format(
-      "the {} error falls from {:.3f} mm ({:.1f} σ) to {:.3f} mm ({:.1f} σ), the odds for it are "
-      "e^{:.0f}",
-      diagnosis->errors.has_held_out ? "held-out" : "fitted", 1e3 * diagnosis->errors.held_out_rms,
-      diagnosis->errors.in_noise, 1e3 * best.errors.held_out_rms, best.errors.in_noise, evidence);
+  const bool corrected = in_the_model > 0;
+  const std::string drop =
+      fmt::format("the {} error{} falls from {:.1f} σ to {:.1f} σ, the odds for it are e^{:.0f}",
+                  diagnosis->errors.has_held_out ? "held-out" : "fitted",
+                  corrected ? ", less what mesh, step and other nuisances in the model do," : "",
+                  diagnosis->errors.without_nuisances, best.errors.without_nuisances, evidence);
   if (diagnosis->effects.size() == 1) {
     diagnosis->verdict = Verdict::kMissing;
     diagnosis->explanation = fmt::format("{}: with it {}", Titles(diagnosis->effects), drop);
