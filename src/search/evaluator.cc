@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "core/error.h"
@@ -102,13 +103,24 @@ bool Evaluator::IsBetter(const Evaluation& outcome) const {
   return excess < best_excess || (excess == best_excess && *outcome.value < *best.value);
 }
 
-const Evaluation* Evaluator::At(const Eigen::VectorXd& free_x) {
-  if (stopped()) return nullptr;
+Eigen::VectorXd Evaluator::Whole(const Eigen::VectorXd& free_x) const {
   Eigen::VectorXd x = problem_.start;
   for (int i = 0; i < n(); ++i) {
     CHECK(lower_[i] <= free_x[i] && free_x[i] <= upper_[i]) << "a search left its bounds";
     x[free_[i]] = free_x[i] + 0.0;  // -0 becomes +0
   }
+  return x;
+}
+
+Eigen::VectorXd Evaluator::GradientAt(const Eigen::VectorXd& x) const {
+  if (!problem_.gradient)
+    return Eigen::VectorXd::Constant(n(), std::numeric_limits<double>::quiet_NaN());
+  return problem_.gradient(Whole(x))(free_);
+}
+
+const Evaluation* Evaluator::At(const Eigen::VectorXd& free_x) {
+  if (stopped()) return nullptr;
+  Eigen::VectorXd x = Whole(free_x);
   const std::vector<double> key(x.data(), x.data() + x.size());
   const auto known = known_.find(key);
   if (known != known_.end()) return outcomes_[known->second].get();

@@ -31,6 +31,10 @@ class Evaluator {
   // from the log or the objective. Null once the search has to stop; the pointer stays valid.
   const Evaluation* At(const Eigen::VectorXd& x);
 
+  // ∂f/∂x of the free variables at an `x` whose outcome has a value; NaN where the problem does not
+  // tell.
+  Eigen::VectorXd GradientAt(const Eigen::VectorXd& x) const;
+
   double feasibility_tolerance() const { return control_.feasibility_tolerance; }
   bool stopped() const { return status_ != SearchStatus::kNotRun; }
   int evaluation_count() const { return static_cast<int>(result_.trace.size()); }
@@ -44,6 +48,7 @@ class Evaluator {
   SearchResult Finish(SearchStatus status, const std::string& message = "");
 
  private:
+  Eigen::VectorXd Whole(const Eigen::VectorXd& free_x) const;  // with the fixed variables
   SearchStatus StopReason() const;
   SearchStep Evaluate(Eigen::VectorXd x);
   bool IsBetter(const Evaluation& outcome) const;

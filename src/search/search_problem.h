@@ -33,6 +33,9 @@ struct SearchProblem {
   // Called from one thread, in an order that depends on its results alone. It may throw: the search
   // ends there, and what was evaluated before stands in the log.
   std::function<Evaluation(const Eigen::VectorXd& x)> evaluate;
+  // ∂f/∂x (n) at an x whose evaluation has succeeded; NaN where only differences can tell. May be
+  // empty. Only searches by the gradient ask (fit/gradient_search.h).
+  std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> gradient = {};
 };
 
 // When to stop, and what to keep.

@@ -50,8 +50,21 @@ VectorXd SearchSpace::FromUnit(const VectorXd& u) const {
   return x;
 }
 
+VectorXd SearchSpace::SlopeAt(const VectorXd& u) const {
+  VectorXd slope = FromUnit(u);
+  for (int i = 0; i < u.size(); ++i) {
+    const SearchVariable& variable = variables_[i];
+    const double range = variable.upper - variable.lower;
+    slope[i] = variable.scale == SearchScale::kLinear || range == 0
+                   ? range
+                   : slope[i] * std::log(variable.upper / variable.lower);
+  }
+  return slope;
+}
+
 SearchProblem SearchSpace::ProblemOf(std::function<Evaluation(const VectorXd& x)> evaluate,
-                                     int constraint_count) const {
+                                     int constraint_count,
+                                     std::function<VectorXd(const VectorXd& x)> gradient) const {
   const int n = static_cast<int>(variables_.size());
   SearchProblem problem;
   VectorXd start(n);
@@ -66,6 +79,11 @@ SearchProblem SearchSpace::ProblemOf(std::function<Evaluation(const VectorXd& x)
   problem.evaluate = [space = *this, evaluate = std::move(evaluate)](const VectorXd& u) {
     return evaluate(space.FromUnit(u));
   };
+  if (gradient) {
+    problem.gradient = [space = *this, gradient = std::move(gradient)](const VectorXd& u) {
+      return VectorXd(gradient(space.FromUnit(u)).cwiseProduct(space.SlopeAt(u)));
+    };
+  }
   return problem;
 }
 

@@ -34,9 +34,14 @@ class SearchSpace {
   Eigen::VectorXd ToUnit(const Eigen::VectorXd& x) const;
   Eigen::VectorXd FromUnit(const Eigen::VectorXd& u) const;
 
-  // The problem in unit coordinates of an objective of the variables.
-  SearchProblem ProblemOf(std::function<Evaluation(const Eigen::VectorXd& x)> evaluate,
-                          int constraint_count = 0) const;
+  // dx_i/du_i at u; 0 for fixed variables.
+  Eigen::VectorXd SlopeAt(const Eigen::VectorXd& u) const;
+
+  // The problem in unit coordinates of an objective of the variables and, where it has one, its
+  // gradient (SearchProblem).
+  SearchProblem ProblemOf(
+      std::function<Evaluation(const Eigen::VectorXd& x)> evaluate, int constraint_count = 0,
+      std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> gradient = {}) const;
 
  private:
   std::vector<SearchVariable> variables_;

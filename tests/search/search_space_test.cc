@@ -51,6 +51,21 @@ TEST(SearchSpace, ASearchSeesTheObjectiveInItsOwnUnits) {
   EXPECT_NEAR(x[1] / 3e4, 1, 1e-3);  // some ten final radii, in units of two decades
 }
 
+TEST(SearchSpace, GradientsFollowTheScale) {
+  const SearchSpace space = MakeSpace();
+  const Vector3d u(0.4, 0.7, 0);
+  for (int i = 0; i < 2; ++i) {
+    const double h = 1e-6;
+    const VectorXd step = h * VectorXd::Unit(3, i);
+    const double difference = (space.FromUnit(u + step) - space.FromUnit(u - step))[i] / (2 * h);
+    EXPECT_NEAR(space.SlopeAt(u)[i] / difference, 1, 1e-8);  // truncation and rounding
+  }
+  EXPECT_EQ(space.SlopeAt(u)[2], 0);
+  const SearchProblem problem =
+      space.ProblemOf({}, 0, [](const VectorXd&) -> VectorXd { return Vector3d(1, 2, 3); });
+  EXPECT_EQ(problem.gradient(u)[1], 2 * space.SlopeAt(u)[1]);
+}
+
 TEST(SearchSpaceDeath, RefusesALogarithmicScaleFromZero) {
   EXPECT_DEATH(SearchSpace({{"volume", 0, 1, 0.5, SearchScale::kLogarithmic}}), "volume");
 }
