@@ -25,6 +25,9 @@ double NumberOf(const nlohmann::json& value) {
   return value.is_null() ? kNotMeasured : value.get<double>();
 }
 
+// Keys of the derivatives, in the order of OuterEvaluation::by_moduli.
+constexpr const char* kModuli[] = {"by_young_modulus", "by_poisson_ratio"};
+
 OuterParameters ParametersFrom(const nlohmann::json& json) {
   return {json.at("radius_edge_ratio"), json.at("max_volume_m3"), json.at("young_modulus_Pa"),
           json.at("poisson_ratio")};
@@ -36,12 +39,19 @@ OuterEvaluation EvaluationFrom(const nlohmann::json& json) {
   evaluation.failure = json.at("failure");
   evaluation.residual_sum = NumberOf(json.at("residual_sum_m"));
   evaluation.residual_per_point = NumberOf(json.at("residual_per_point_m"));
+  evaluation.residual_rms = NumberOf(json.value("residual_rms_m", nlohmann::json()));
   evaluation.scan_distance = NumberOf(json.at("scan_distance_m"));
   evaluation.force = NumberOf(json.at("net_force_N"));
   evaluation.nodes = json.at("nodes");
   evaluation.tets = json.at("tetrahedra");
   evaluation.surface_points = json.at("surface_points");
   evaluation.seconds = json.at("seconds");
+  for (const char* name : kModuli) {
+    if (!json.contains(name)) continue;
+    const nlohmann::json& by = json.at(name);
+    evaluation.by_moduli.push_back(
+        {by.at("residual_sum"), by.at("residual_per_point"), by.at("residual_rms")});
+  }
   return evaluation;
 }
 
@@ -55,16 +65,24 @@ nlohmann::json ToJson(const OuterParameters& parameters) {
 }
 
 nlohmann::json ToJson(const OuterEvaluation& evaluation) {
-  return {{"usable", evaluation.usable},
-          {"failure", evaluation.failure},
-          {"residual_sum_m", Measured(evaluation.residual_sum)},
-          {"residual_per_point_m", Measured(evaluation.residual_per_point)},
-          {"scan_distance_m", Measured(evaluation.scan_distance)},
-          {"net_force_N", Measured(evaluation.force)},
-          {"nodes", evaluation.nodes},
-          {"tetrahedra", evaluation.tets},
-          {"surface_points", evaluation.surface_points},
-          {"seconds", evaluation.seconds}};
+  nlohmann::json json{{"usable", evaluation.usable},
+                      {"failure", evaluation.failure},
+                      {"residual_sum_m", Measured(evaluation.residual_sum)},
+                      {"residual_per_point_m", Measured(evaluation.residual_per_point)},
+                      {"residual_rms_m", Measured(evaluation.residual_rms)},
+                      {"scan_distance_m", Measured(evaluation.scan_distance)},
+                      {"net_force_N", Measured(evaluation.force)},
+                      {"nodes", evaluation.nodes},
+                      {"tetrahedra", evaluation.tets},
+                      {"surface_points", evaluation.surface_points},
+                      {"seconds", evaluation.seconds}};
+  for (size_t i = 0; i < evaluation.by_moduli.size(); ++i) {
+    const OuterSlope& by = evaluation.by_moduli[i];
+    json[kModuli[i]] = {{"residual_sum", by.residual_sum},
+                        {"residual_per_point", by.residual_per_point},
+                        {"residual_rms", by.residual_rms}};
+  }
+  return json;
 }
 
 EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std::string& key)

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
-#include "core/atomic_file.h"
 #include "core/interrupt.h"
-#include "core/npy.h"
 #include "geometry/surface_tracks.h"
 #include "registration/surface_alignment.h"
+#include "study/followed_sensitivity.h"
 #include "study/grip_tracks.h"
 #include "study/outer_forces.h"
 
@@ -45,7 +43,7 @@ class Follower {
  public:
   Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
            const std::vector<FrameState>& states, const TrackedFrames* tracked,
-           FollowedMotion* motion)
+           const std::vector<int>& moduli, FollowedMotion* motion)
       : study_(study), states_(states), tracked_(tracked), motion_(*motion) {
     motion_.noise = NoiseOf(study, states);
     model_ = {motion_.body, study.effects, {}};
@@ -62,6 +60,8 @@ class Follower {
     options.scheme = study.follow.scheme;
     options.refuse_inverted = !study.follow.allow_inverted;
     stepper_ = std::make_unique<Stepper>(model_, options);
+    if (!moduli.empty())
+      sensitivity_ = std::make_unique<FollowedSensitivity>(model_, forces_, moduli);
     previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
   }
 
@@ -102,13 +102,14 @@ class Follower {
     const StepEquation equation(model_, from, study_.follow.scheme, time_step);
 
     ForceFit fit;
+    Observations seen;
     int iterations = 0;
     if (forces_.HasUnknowns()) {
       const Correspondence correspondence = Register(AsPoints(start), state);
       StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
       for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
         ThrowIfInterrupted();
-        const Observations seen = Observe(AsPoints(start), state, correspondence);
+        seen = Observe(AsPoints(start), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
         // Free forces are expected to go on as they were. Coefficients are expected to be small: as
         // a random walk, what the scans do not see of them would drift away.
@@ -137,6 +138,12 @@ class Follower {
     const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
                                            : stepper_->Equilibrium(fit.force, &after);
     if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
+    if (sensitivity_ != nullptr) {
+      sensitivity_->Advance(from, time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic,
+                            time_step, after.position, forces_.HasUnknowns() ? &seen : nullptr,
+                            study_.follow.fit.robust_threshold);
+      frame.position_by = sensitivity_->position();
+    }
     history_ = after;
     force_ = fit.force;
     coefficients_ = fit.coefficients;
@@ -292,40 +299,23 @@ class Follower {
   std::vector<std::shared_ptr<Effect>> known_forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<FollowedSensitivity> sensitivity_;  // where it is asked for
   SurfaceTracks tracks_;  // of tracked points; empty where there are none
   Eigen::Matrix3Xd previous_velocity_;
   DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;
 };
 
-// JSON has no NaN: null stands for it.
-nlohmann::json ToJson(const Eigen::Vector3d& v) {
-  return v.hasNaN() ? nlohmann::json() : nlohmann::json{v.x(), v.y(), v.z()};
-}
-Eigen::Vector3d FromJson(const nlohmann::json& value) {
-  if (value.is_null()) return Eigen::Vector3d::Constant(kNotMeasured);
-  return Eigen::Vector3d(value.at(0).get<double>(), value.at(1).get<double>(),
-                         value.at(2).get<double>());
-}
-
-nlohmann::json ReadJson(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  try {
-    return nlohmann::json::parse(stream);
-  } catch (const nlohmann::json::exception& problem) {
-    throw InputError(SourcePosition{file.string()}, problem.what());
-  }
-}
-
 }  // namespace
 
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
                             const std::vector<FrameState>& states, Progress* progress,
-                            const TrackedFrames* tracked) {
+                            const TrackedFrames* tracked, const std::vector<int>& moduli) {
   FollowedMotion motion;
+  CHECK(moduli.empty() || tracked != nullptr);
   CHECK(tracked == nullptr || (FirstFrameIsReference(study) && states.front().tracked.cols() == 0));
   motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
-  Follower follower(study, reference, states, tracked, &motion);
+  Follower follower(study, reference, states, tracked, moduli, &motion);
   progress->Begin("forces", static_cast<int64_t>(states.size()));
   size_t first = 0;
   if (FirstFrameIsReference(study)) {
@@ -342,53 +332,6 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
     break;
   }
   progress->End();
-  return motion;
-}
-
-void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder) {
-  nlohmann::json index;
-  index["noise_m"] = motion.noise;
-  index["warnings"] = motion.warnings;
-  for (size_t k = 0; k < motion.frames.size(); ++k) {
-    const FollowedFrame& frame = motion.frames[k];
-    index["frames"].push_back({{"time_s", frame.time},
-                               {"weighted_rms", frame.weighted_rms},
-                               {"observations", frame.observations},
-                               {"force_deviation_N", ToJson(frame.force_deviation)},
-                               {"usable", frame.solver.usable},
-                               {"status", frame.solver.status},
-                               {"message", frame.solver.message},
-                               {"iterations", frame.solver.iterations}});
-    WriteNpy(folder / fmt::format("position_{:04}.npy", k), frame.position);
-    WriteNpy(folder / fmt::format("force_{:04}.npy", k), frame.force);
-    WriteNpy(folder / fmt::format("pseudo_force_{:04}.npy", k), frame.pseudo_force);
-    WriteNpy(folder / fmt::format("residual_{:04}.npy", k), frame.residual);
-  }
-  WriteFileAtomically(folder / "motion.json", index.dump(2) + "\n");
-}
-
-FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,
-                                  const std::filesystem::path& folder) {
-  FollowedMotion motion;
-  motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
-  const nlohmann::json index = ReadJson(folder / "motion.json");
-  motion.noise = index.at("noise_m");
-  motion.warnings = index.at("warnings");
-  for (const nlohmann::json& entry : index.at("frames")) {
-    FollowedFrame frame;
-    frame.time = entry.at("time_s");
-    frame.weighted_rms = entry.at("weighted_rms");
-    frame.observations = entry.at("observations");
-    frame.force_deviation = FromJson(entry.at("force_deviation_N"));
-    frame.solver = {entry.at("usable"), entry.at("status"), entry.at("message"),
-                    entry.at("iterations")};
-    const size_t k = motion.frames.size();
-    frame.position = ReadNpyMatrix(folder / fmt::format("position_{:04}.npy", k));
-    frame.force = ReadNpyMatrix(folder / fmt::format("force_{:04}.npy", k));
-    frame.pseudo_force = ReadNpyMatrix(folder / fmt::format("pseudo_force_{:04}.npy", k));
-    frame.residual = ReadNpyMatrix(folder / fmt::format("residual_{:04}.npy", k));
-    motion.frames.push_back(std::move(frame));
-  }
   return motion;
 }
 

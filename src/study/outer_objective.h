@@ -38,6 +38,14 @@ struct OuterProblem {
   // S_0 is turned by this angle about an oblique axis before TetGen sees it, and its mesh turned
   // back, rad: another mesh of the same quality.
   double turn = 0;
+  // Also differentiate by y and p, where that can be done (CanDifferentiate).
+  bool slopes = false;
+};
+
+// What is measured of D, or its derivative by one parameter.
+struct OuterSlope {
+  double residual_sum = kNotMeasured, residual_per_point = kNotMeasured,
+         residual_rms = kNotMeasured;
 };
 
 struct OuterEvaluation {
@@ -48,11 +56,19 @@ struct OuterEvaluation {
   // The residual's mean over the frames and the fixed sampling, m. D there comes from the tracked
   // points themselves, or, with registration in the loop, by linear interpolation between vertices.
   double residual_per_point = kNotMeasured;
+  double residual_rms = kNotMeasured;   // the root of the mean square of the same lengths, m
   double scan_distance = kNotMeasured;  // mean over scan points and frames, m; no correspondence
   double force = kNotMeasured;          // mean over the frames of the net force's length, N
   int nodes = 0, tets = 0, surface_points = 0;
+  // ∂/∂y (per Pa) and ∂/∂p of what is above, forces fitted anew included; empty: not asked for, or
+  // not to be had.
+  std::vector<OuterSlope> by_moduli;
   double seconds = 0;  // wall time; the one number here that is not repeatable
 };
+
+// Whether y and p have derivatives here: not with CPD in the loop, nor with forces whose answer is
+// not followed (study/followed_sensitivity.h).
+bool CanDifferentiate(const OuterProblem& problem);
 
 // Throws Interrupted; whatever else goes wrong with these parameters is a failed evaluation.
 OuterEvaluation EvaluateOuter(const OuterProblem& problem, const OuterParameters& parameters);

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/atomic_file.h"
+#include "fit/gradient_search.h"
 #include "search/gaussian_process_search.h"
 #include "search/nlopt_search.h"
 #include "study/evaluation_record.h"
@@ -45,10 +48,33 @@ SearchResult Run(const SearchProblem& problem, const SearchControl& control,
     case OuterMethod::kNloptBobyqa:
       library.algorithm = NloptAlgorithm::kBobyqa;
       return MinimiseByNlopt(problem, control, library);
+    case OuterMethod::kCeres:
+      return MinimiseByGradient(problem, control,
+                                {cobyla.initial_radius, cobyla.final_radius, settings.difference});
     case OuterMethod::kNloptCobyla:
       break;
   }
   return MinimiseByNlopt(problem, control, library);
+}
+
+double SlopeOf(const OuterSlope& slope, OuterMeasure measure) {
+  switch (measure) {
+    case OuterMeasure::kSum:
+      return slope.residual_sum;
+    case OuterMeasure::kRms:
+      return slope.residual_rms;
+    case OuterMeasure::kPerPoint:
+      break;
+  }
+  return slope.residual_per_point;
+}
+
+// By q, v, y and p; NaN where the evaluation does not tell.
+Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
+  for (size_t i = 0; i < evaluation.by_moduli.size(); ++i)
+    gradient[static_cast<Eigen::Index>(2 + i)] = SlopeOf(evaluation.by_moduli[i], measure);
+  return gradient;
 }
 
 }  // namespace
@@ -67,11 +93,14 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
                                                 {"cobyla_1994", OuterMethod::kCobylaPowell},
                                                 {"gaussian_process", OuterMethod::kGaussianProcess},
                                                 {"nlopt_cobyla", OuterMethod::kNloptCobyla},
-                                                {"nlopt_bobyqa", OuterMethod::kNloptBobyqa}},
+                                                {"nlopt_bobyqa", OuterMethod::kNloptBobyqa},
+                                                {"ceres", OuterMethod::kCeres}},
                                                "cobyla");
-  settings.measure = search.Choice<OuterMeasure>(
-      "measure", {{"per_point", OuterMeasure::kPerPoint}, {"sum", OuterMeasure::kSum}},
-      "per_point");
+  settings.measure = search.Choice<OuterMeasure>("measure",
+                                                 {{"per_point", OuterMeasure::kPerPoint},
+                                                  {"rms", OuterMeasure::kRms},
+                                                  {"sum", OuterMeasure::kSum}},
+                                                 "per_point");
   settings.registration_in_loop =
       search.Choice<bool>("registration", {{"tracked", false}, {"in_loop", true}}, "tracked");
   settings.remesh_surface = search.Flag("remesh_surface", settings.remesh_surface);
@@ -83,6 +112,13 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
   if (cobyla.final_radius > cobyla.initial_radius)
     search.Fail("final_radius", "is larger than initial_radius");
   cobyla.restarts.max_restarts = search.Integer("restarts", 0, 1000, 20);
+  settings.difference = search.Number("difference", {0, 0.5, true, false}, settings.difference);
+  const auto is_free = [](const SearchVariable& variable) {
+    return variable.lower < variable.upper;
+  };
+  const auto free = std::count_if(settings.variables.begin(), settings.variables.end(), is_free);
+  if (settings.method == OuterMethod::kNloptBobyqa && free < 2)
+    search.Fail("method", "nlopt_bobyqa needs two free parameters at least");
   settings.seed = static_cast<uint64_t>(search.Integer("seed", 0, 1 << 30, 1));
   return settings;
 }
@@ -90,7 +126,15 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
 OuterParameters ParametersOf(const Eigen::VectorXd& x) { return {x[0], x[1], x[2], x[3]}; }
 
 double ValueOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
-  return measure == OuterMeasure::kSum ? evaluation.residual_sum : evaluation.residual_per_point;
+  switch (measure) {
+    case OuterMeasure::kSum:
+      return evaluation.residual_sum;
+    case OuterMeasure::kRms:
+      return evaluation.residual_rms;
+    case OuterMeasure::kPerPoint:
+      break;
+  }
+  return evaluation.residual_per_point;
 }
 
 double OuterSearchResult::Seconds() const {
@@ -117,11 +161,13 @@ OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchS
   const SearchSpace space(settings.variables);
   progress->Begin("search", settings.evaluations);
   int64_t done = 0;
-  const SearchProblem search_problem = space.ProblemOf([&](const Eigen::VectorXd& x) {
+  OuterProblem asked = problem;
+  asked.slopes = settings.method == OuterMethod::kCeres;
+  const auto evaluate = [&](const Eigen::VectorXd& x) {
     const OuterParameters parameters = ParametersOf(x);
     const OuterEvaluation* known = record.Find(parameters);
     if (known == nullptr) {
-      record.Append(parameters, EvaluateOuter(problem, parameters));
+      record.Append(parameters, EvaluateOuter(asked, parameters));
       known = record.Find(parameters);
     }
     Evaluation outcome;
@@ -129,7 +175,11 @@ OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchS
     outcome.failure = known->failure;
     progress->Report(++done, outcome.value.value_or(kNotMeasured));
     return outcome;
-  });
+  };
+  const auto gradient = [&](const Eigen::VectorXd& x) {
+    return GradientOf(*record.Find(ParametersOf(x)), settings.measure);
+  };
+  const SearchProblem search_problem = space.ProblemOf(evaluate, 0, gradient);
   SearchControl control;
   control.max_evaluations = settings.evaluations;
   control.log = folder / "search.log";

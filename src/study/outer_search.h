@@ -19,11 +19,14 @@ enum class OuterMethod {
   kCobylaPowell,
   kGaussianProcess,
   kNloptCobyla,
-  kNloptBobyqa
+  kNloptBobyqa,
+  kCeres  // along the gradient: ∂/∂y and ∂/∂p of the equations where they have one, else
+          // differences
 };
 enum class OuterMeasure {
   kPerPoint,  // over a fixed sampling of the surface: does not see how many points a mesh has
   kSum,       // the paper's sum over the mesh's own points: the fewer, the less
+  kRms,       // the root of the mean square over that sampling: what lies far off counts more
 };
 
 struct OuterSearchSettings {
@@ -34,7 +37,8 @@ struct OuterSearchSettings {
   bool remesh_surface = true;  // OuterProblem
   int evaluations = 40;        // at most
   CobylaOptions cobyla;
-  uint64_t seed = 1;  // of the Gaussian process's candidates
+  double difference = 0.1;  // of kCeres, in parts of a range (fit/gradient_search.h)
+  uint64_t seed = 1;        // of the Gaussian process's candidates
 };
 
 // The mapping `search` of an experiment; docs/search.md lists its keys.

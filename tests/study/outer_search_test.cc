@@ -138,10 +138,105 @@ TEST_F(OuterSearchTest, RegistrationInTheLoopAgreesWithTheTrackedFrames) {
   EXPECT_NEAR(in_loop.scan_distance, tracked.scan_distance, 1e-4);
 }
 
+// The derivative of what is measured by y (i = 0) or p (i = 1) with the central differences over
+// several steps, relative to the value's own size over a parameter's scale.
+void ExpectSlopes(const OuterProblem& problem, double tolerance) {
+  const OuterParameters at{2.0, 3e-7, 1.5e5, 0.35};
+  const OuterEvaluation evaluation = EvaluateOuter(problem, at);
+  ASSERT_TRUE(evaluation.usable) << evaluation.failure;
+  ASSERT_EQ(evaluation.by_moduli.size(), 2u);
+  for (const size_t i : {0u, 1u}) {
+    const double scale = i == 0 ? at.young_modulus : at.poisson_ratio;
+    for (const double step : {0.1, 0.03}) {
+      OuterParameters below = at, above = at;
+      (i == 0 ? below.young_modulus : below.poisson_ratio) -= step * scale;
+      (i == 0 ? above.young_modulus : above.poisson_ratio) += step * scale;
+      const OuterEvaluation from = EvaluateOuter(problem, below);
+      const OuterEvaluation to = EvaluateOuter(problem, above);
+      ASSERT_TRUE(from.usable && to.usable);
+      const OuterSlope& slope = evaluation.by_moduli[i];
+      const auto expect = [&](double given, double high, double low, const char* name) {
+        const double difference = (high - low) / (2 * step);
+        EXPECT_NEAR(scale * given, difference, tolerance * std::abs(difference) + 2e-3 * high)
+            << name << " by " << (i == 0 ? "y" : "p") << ", step " << step;
+      };
+      expect(slope.residual_sum, to.residual_sum, from.residual_sum, "sum");
+      expect(slope.residual_per_point, to.residual_per_point, from.residual_per_point, "mean");
+      expect(slope.residual_rms, to.residual_rms, from.residual_rms, "rms");
+    }
+  }
+}
+
+constexpr char kFootprint[] =
+    "{model: footprint, force_scale: 1 N, "
+    "region: {name: tip, half_space: {point: [0.08 m, 0 m, 0 m], normal: [1, 0, 0]}}}";
+
+ReconstructionStudy WithForces(const std::string& forces) {
+  std::string text = kExperiment;
+  const size_t begin = text.find("{model: smooth");
+  text.replace(begin, text.find('\n', begin) - begin, forces);
+  return ReadReconstruction(
+      Config::Parse(text, "reduced.yaml"),
+      LoadRecording(fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend"));
+}
+
+TEST_F(OuterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
+  // Of a body that gravity bends only the tangent-linear model counts; with fitted forces how they
+  // answer, too.
+  for (const char* forces :
+       {"{model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]",
+        kFootprint}) {
+    const ReconstructionStudy study = WithForces(forces);
+    OuterProblem problem{study, *states_, *tracked_, true, false, 0};
+    problem.slopes = true;
+    ExpectSlopes(problem, 0.1);
+  }
+}
+
+TEST_F(OuterSearchTest, WhereForcesAnswerInOtherWaysThereAreNoDerivatives) {
+  const ReconstructionStudy study = WithForces("{model: smooth, length: 60 mm}");
+  OuterProblem problem{study, *states_, *tracked_, true, false, 0};
+  EXPECT_FALSE(CanDifferentiate(problem));
+  problem.slopes = true;
+  const OuterEvaluation evaluation = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
+  ASSERT_TRUE(evaluation.usable);
+  EXPECT_TRUE(evaluation.by_moduli.empty());
+}
+
+TEST_F(OuterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSameResult) {
+  const TemporaryFolder folder;
+  OuterSearchSettings settings = Settings();
+  settings.method = OuterMethod::kCeres;
+  settings.evaluations = 8;
+  const OuterSearchResult whole = Search(settings, folder / "whole");
+  ASSERT_TRUE(whole.IsUsable());
+  // As of the search without derivatives above.
+  EXPECT_LT(whole.evaluations[whole.best].residual_per_point,
+            0.8 * whole.evaluations.front().residual_per_point);
+  fs::create_directories(folder / "stopped");
+  for (const char* name : {"search.log", "evaluations.jsonl"}) {
+    fs::copy_file(folder / "whole" / name, folder / "stopped" / name);
+    CutAfter(folder / "stopped" / name, 4);
+  }
+  EXPECT_EQ(Search(settings, folder / "stopped").trace_hash, whole.trace_hash);
+}
+
+TEST_F(OuterSearchTest, TheMeasuresAreOfTheSameLengths) {
+  const OuterEvaluation evaluation = EvaluateOuter(Problem(), {2.0, 3e-7, 1e5, 0.35});
+  ASSERT_TRUE(evaluation.usable);
+  EXPECT_GT(evaluation.residual_rms, evaluation.residual_per_point);      // Jensen's inequality
+  EXPECT_LT(evaluation.residual_rms, 3 * evaluation.residual_per_point);  // no heavy tail
+  EXPECT_EQ(ValueOf(evaluation, OuterMeasure::kRms), evaluation.residual_rms);
+}
+
 TEST(OuterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
   std::string text = kSearch;
   text.replace(text.find("lower: 0.01 MPa, "), 17, "");
   EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_NO_THROW(ReadOuterSearch(Config::Parse(kSearch, "s.yaml")));
+  text = std::string(kSearch) + "method: nlopt_bobyqa\n";
+  text.replace(text.find(", lower: 0.1, upper: 0.45"), 25, "");
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
   text = kSearch;
   text.replace(text.find("start: 3 MPa"), 12, "start: 30 MPa");
   EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
