@@ -82,7 +82,9 @@ OuterSearchSettings SettingsOf(const Table1Configuration& configuration, int see
 std::string KeyOf(const ReconstructionStudy& study, const OuterSearchSettings& settings,
                   const std::string& scene_key, int seed) {
   nlohmann::json options = study.configuration;
-  for (const char* key : {"output", "name", "row", "paper_drop", "search"}) options.erase(key);
+  for (const char* key :
+       {"output", "name", "row", "paper_drop", "search", "varies", "question", "against"})
+    options.erase(key);
   return HashBytes(fmt::format("{} {} {} {} {} {} {}", kObjectiveVersion, options.dump(), scene_key,
                                seed, static_cast<int>(settings.measure),
                                settings.registration_in_loop, settings.remesh_surface));
@@ -112,6 +114,36 @@ void RefuseOtherScans(const Table1Configuration& configuration, const nlohmann::
   }
 }
 
+// What a gradient through a remesh would be: difference quotients over the mesh's parameters.
+std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
+                                      const Table1Configuration& configuration,
+                                      const std::vector<double>& steps,
+                                      const std::filesystem::path& file, const std::string& key,
+                                      Progress* progress) {
+  const SearchSpace space(configuration.search.variables);
+  const Eigen::VectorXd start = space.ProblemOf({}).start;
+  std::vector<MeshQuotient> quotients;
+  progress->Begin("remeshing", static_cast<int64_t>(2 * steps.size()));
+  for (const Eigen::Index i : {0, 1}) {
+    const SearchVariable& variable = configuration.search.variables[static_cast<size_t>(i)];
+    for (const double step : steps) {
+      Eigen::VectorXd below = start, above = start;
+      below[i] = std::max(start[i] - step, 0.0);
+      above[i] = std::min(start[i] + step, 1.0);
+      if (variable.lower == variable.upper) continue;
+      const OuterEvaluation from = Kept(problem, ParametersOf(space.FromUnit(below)), file, key);
+      const OuterEvaluation to = Kept(problem, ParametersOf(space.FromUnit(above)), file, key);
+      const OuterMeasure measure = configuration.search.measure;
+      quotients.push_back(
+          {variable.name, step,
+           (ValueOf(to, measure) - ValueOf(from, measure)) / (above[i] - below[i])});
+      progress->Report(static_cast<int64_t>(quotients.size()));
+    }
+  }
+  progress->End();
+  return quotients;
+}
+
 // What only the first seed is asked for.
 void AskMore(const Table1Study& study, const Table1Options& options, const OuterProblem& problem,
              const std::filesystem::path& folder, const std::string& key, Table1Result* result,
@@ -125,6 +157,10 @@ void AskMore(const Table1Study& study, const Table1Options& options, const Outer
     progress->Report(k + 1);
   }
   progress->End();
+  if (!options.difference_steps.empty()) {
+    result->quotients = QuotientsOf(problem, study.configurations.front(), options.difference_steps,
+                                    folder / "quotients.jsonl", key, progress);
+  }
   if (!options.profile) return;
   ReconstructionStudy known_study = problem.study;
   known_study.follow.forces.kind = ForceSettings::Kind::kKnown;
@@ -224,6 +260,12 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
         config.Text("name"), config, ReadOuterSearch(config.Child("search")), {}};
     if (config.Has("paper_drop"))
       configuration.paper_drop = config.Number("paper_drop", {0, 1, false, false});
+    configuration.varies = config.Text("varies", "");
+    configuration.question = config.Text("question", "");
+    configuration.against = config.Text("against", "");
+    for (const Table1Configuration& other : study.configurations)
+      if (other.name == configuration.name)
+        config.Fail("name", "is that of another file in the folder");
     const std::filesystem::path scene = std::filesystem::weakly_canonical(config.Path("scene"));
     if (!scene_file.empty() && scene != scene_file)
       config.Fail("scene", "differs from that of " + files.front().File().string());

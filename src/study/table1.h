@@ -25,6 +25,8 @@ struct Table1Configuration {
   Config config;
   OuterSearchSettings search;
   std::optional<double> paper_drop;  // of the paper's |D_anim|, a fraction
+  // Of an ablation (study/ablation.h): what varies, the question, and the row it is held against.
+  std::string varies = {}, question = {}, against = {};
 };
 
 struct Table1Study {
@@ -47,6 +49,9 @@ struct Table1Options {
   int turns = 8;        // meshes from which the first seed's mesh noise is told; 0: not asked
   bool profile = true;  // |D_anim| over the modulus, forces fitted and known, first seed
   bool in_loop = true;  // the ends of each search again with CPD in the loop, first seed
+  // Steps, in parts of a range, of difference quotients over q and v at the first configuration's
+  // start; first seed.
+  std::vector<double> difference_steps = {};
 };
 
 // A search of one configuration and seed, with the paper's way of measuring its ends.
@@ -68,10 +73,18 @@ struct ModulusPoint {
   OuterEvaluation fitted, known;  // forces fitted, as in the searches; forces as measured
 };
 
+// (P(x + h e) − P(x − h e)) / 2h, both ends with meshes of their own.
+struct MeshQuotient {
+  std::string variable;
+  double step = 0;              // h, in parts of the range
+  double slope = kNotMeasured;  // m per range; not measured where an end failed
+};
+
 struct Table1Result {
   std::vector<Table1Seed> seeds;
   std::vector<OuterEvaluation> turned;  // the truth's parameters, S_0 turned a little more each
   std::vector<ModulusPoint> profile;
+  std::vector<MeshQuotient> quotients;
 };
 
 // Makes the recordings that are not there yet, and goes on with searches that were stopped. Throws
