@@ -1,7 +1,4 @@
-// A picture of a surface, drawn without a screen.
-//
-// VTK draws through EGL without a window system: on a machine with neither screen nor graphics
-// processor Mesa's software renderer does it.
+// A picture of one surface, drawn without a screen.
 #ifndef LACUNA_REPORT_SURFACE_PICTURE_H_
 #define LACUNA_REPORT_SURFACE_PICTURE_H_
 
@@ -13,6 +10,7 @@
 #include <utility>
 
 #include "geometry/tri_mesh.h"
+#include "report/panel_picture.h"
 
 namespace lacuna {
 
@@ -36,13 +34,6 @@ struct PictureOptions {
   Eigen::Vector3d up{0, 0, 1};
   bool show_edges = false;
   double point_size = 4;  // pixels
-};
-
-struct PictureResult {
-  enum class Status { kNotRun, kWritten, kNoRenderer };
-  Status status = Status::kNotRun;
-  std::string message;
-  bool IsUsable() const { return status == Status::kWritten; }
 };
 
 // Writes the picture as PNG, atomically. kNoRenderer when the machine offers no OpenGL through EGL.
