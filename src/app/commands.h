@@ -19,6 +19,7 @@ void AddDiagnose(CLI::App* app, std::function<int()>* command);
 void AddTable1(CLI::App* app, std::function<int()>* command);
 void AddSweep(CLI::App* app, std::function<int()>* command);
 void AddAblation(CLI::App* app, std::function<int()>* command);
+void AddFigures(CLI::App* app, std::function<int()>* command);
 void AddSimulate(CLI::App* app, std::function<int()>* command);
 void AddInfo(CLI::App* app, std::function<int()>* command);
 void AddValidate(CLI::App* app, std::function<int()>* command);

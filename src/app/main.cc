@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
   lacuna::AddTable1(&app, &command);
   lacuna::AddSweep(&app, &command);
   lacuna::AddAblation(&app, &command);
+  lacuna::AddFigures(&app, &command);
   lacuna::AddSimulate(&app, &command);
   lacuna::AddInfo(&app, &command);
   lacuna::AddValidate(&app, &command);

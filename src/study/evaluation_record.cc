@@ -28,11 +28,6 @@ double NumberOf(const nlohmann::json& value) {
 // Keys of the derivatives, in the order of OuterEvaluation::by_moduli.
 constexpr const char* kModuli[] = {"by_young_modulus", "by_poisson_ratio"};
 
-OuterParameters ParametersFrom(const nlohmann::json& json) {
-  return {json.at("radius_edge_ratio"), json.at("max_volume_m3"), json.at("young_modulus_Pa"),
-          json.at("poisson_ratio")};
-}
-
 OuterEvaluation EvaluationFrom(const nlohmann::json& json) {
   OuterEvaluation evaluation;
   evaluation.usable = json.at("usable");
@@ -62,6 +57,11 @@ nlohmann::json ToJson(const OuterParameters& parameters) {
           {"max_volume_m3", parameters.max_volume},
           {"young_modulus_Pa", parameters.young_modulus},
           {"poisson_ratio", parameters.poisson_ratio}};
+}
+
+OuterParameters OuterParametersFrom(const nlohmann::json& json) {
+  return {json.at("radius_edge_ratio"), json.at("max_volume_m3"), json.at("young_modulus_Pa"),
+          json.at("poisson_ratio")};
 }
 
 nlohmann::json ToJson(const OuterEvaluation& evaluation) {
@@ -110,7 +110,8 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
         throw InputError({file.string(), 1},
                          "was made with other settings; remove its folder to search anew");
       }
-      known_[KeyOf(ParametersFrom(json.at("parameters")))] = EvaluationFrom(json.at("evaluation"));
+      known_[KeyOf(OuterParametersFrom(json.at("parameters")))] =
+          EvaluationFrom(json.at("evaluation"));
     } catch (const nlohmann::json::exception& problem) {
       throw InputError({file.string(), number}, problem.what());
     }

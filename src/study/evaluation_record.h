@@ -15,6 +15,7 @@
 namespace lacuna {
 
 nlohmann::json ToJson(const OuterParameters& parameters);
+OuterParameters OuterParametersFrom(const nlohmann::json& json);
 nlohmann::json ToJson(const OuterEvaluation& evaluation);
 
 class EvaluationRecord {

@@ -12,9 +12,7 @@
 #include "core/error.h"
 #include "effects/catalogue.h"
 #include "geometry/surface_tracks.h"
-#include "study/follow.h"
 #include "study/followed_sensitivity.h"
-#include "study/reference.h"
 #include "surface/repair.h"
 
 namespace lacuna {
@@ -149,8 +147,7 @@ void Measure(const OuterProblem& problem, const FollowedMotion& motion, OuterEva
   result->usable = true;
 }
 
-void Evaluate(const OuterProblem& problem, const OuterParameters& parameters,
-              OuterEvaluation* result) {
+ReconstructionStudy StudyAt(const OuterProblem& problem, const OuterParameters& parameters) {
   ReconstructionStudy study = problem.study;
   study.mesh.tets.radius_edge_ratio = parameters.radius_edge_ratio;
   study.mesh.tets.max_volume = parameters.max_volume;
@@ -158,25 +155,7 @@ void Evaluate(const OuterProblem& problem, const OuterParameters& parameters,
       problem.remesh_surface || problem.study.mesh.tets.preserve_surface;
   study.effects.front() =
       WithModuli(*study.effects.front(), parameters.young_modulus, parameters.poisson_ratio);
-  const ReferenceBody reference = MakeTurnedBody(problem, study);
-  result->nodes = static_cast<int>(reference.mesh.NodeCount());
-  result->tets = static_cast<int>(reference.mesh.TetCount());
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const FollowedMotion motion = FollowFrames(
-      study, reference, problem.states, &progress,
-      problem.registration_in_loop ? nullptr : &problem.tracked,
-      problem.slopes && CanDifferentiate(problem) ? ModuliOf(study.effects.front()->Card())
-                                                  : std::vector<int>());
-  result->surface_points = static_cast<int>(motion.body->boundary.node.size());
-  const FollowedFrame& last = motion.frames.back();
-  if (!last.solver.usable) {
-    result->failure =
-        fmt::format("frame {}: {}", study.frames[motion.frames.size() - 1], last.solver.message);
-    return;
-  }
-  Measure(problem, motion, result);
+  return study;
 }
 
 }  // namespace
@@ -185,11 +164,44 @@ bool CanDifferentiate(const OuterProblem& problem) {
   return !problem.registration_in_loop && HasModulusSensitivity(problem.study.follow.forces);
 }
 
+ReferenceBody MakeOuterBody(const OuterProblem& problem, const OuterParameters& parameters) {
+  return MakeTurnedBody(problem, StudyAt(problem, parameters));
+}
+
+FollowedMotion FollowOuter(const OuterProblem& problem, const OuterParameters& parameters,
+                           const ReferenceBody& reference) {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const ReconstructionStudy study = StudyAt(problem, parameters);
+  return FollowFrames(study, reference, problem.states, &progress,
+                      problem.registration_in_loop ? nullptr : &problem.tracked,
+                      problem.slopes && CanDifferentiate(problem)
+                          ? ModuliOf(study.effects.front()->Card())
+                          : std::vector<int>());
+}
+
+OuterEvaluation MeasureOuter(const OuterProblem& problem, const FollowedMotion& motion) {
+  OuterEvaluation result;
+  result.nodes = motion.body->NodeCount();
+  result.tets = motion.body->ElementCount();
+  result.surface_points = static_cast<int>(motion.body->boundary.node.size());
+  const FollowedFrame& last = motion.frames.back();
+  if (last.solver.usable) {
+    Measure(problem, motion, &result);
+  } else {
+    result.failure = fmt::format("frame {}: {}", problem.study.frames[motion.frames.size() - 1],
+                                 last.solver.message);
+  }
+  return result;
+}
+
 OuterEvaluation EvaluateOuter(const OuterProblem& problem, const OuterParameters& parameters) {
   const auto begin = std::chrono::steady_clock::now();
   OuterEvaluation result;
   try {
-    Evaluate(problem, parameters, &result);
+    result =
+        MeasureOuter(problem, FollowOuter(problem, parameters, MakeOuterBody(problem, parameters)));
   } catch (const InputError& refused) {
     result.failure = refused.what();
   }

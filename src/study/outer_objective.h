@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "record/run_record.h"
+#include "study/follow.h"
 #include "study/frame_states.h"
 #include "study/reconstruction.h"
+#include "study/reference.h"
 #include "study/tracked_frames.h"
 
 namespace lacuna {
@@ -69,6 +71,12 @@ struct OuterEvaluation {
 // Whether y and p have derivatives here: not with CPD in the loop, nor with forces whose answer is
 // not followed (study/followed_sensitivity.h).
 bool CanDifferentiate(const OuterProblem& problem);
+// The steps of an evaluation: the body, which is an InputError where TetGen refuses; how it follows
+// the frames, ending at the first one where it cannot; and what that measures but the time.
+ReferenceBody MakeOuterBody(const OuterProblem& problem, const OuterParameters& parameters);
+FollowedMotion FollowOuter(const OuterProblem& problem, const OuterParameters& parameters,
+                           const ReferenceBody& reference);
+OuterEvaluation MeasureOuter(const OuterProblem& problem, const FollowedMotion& motion);
 
 // Throws Interrupted; whatever else goes wrong with these parameters is a failed evaluation.
 OuterEvaluation EvaluateOuter(const OuterProblem& problem, const OuterParameters& parameters);

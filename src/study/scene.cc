@@ -30,6 +30,7 @@ BarShape ReadBar(const Config& config) {
                                     bar.edge_length);
   bar.axis = ReadAxis(config, bar.axis);
   bar.angle = config.Quantity("angle", kAngle, kAnyValue, bar.angle);
+  bar.velocity = config.Vector("velocity", kVelocity, bar.velocity);
   return bar;
 }
 
@@ -152,6 +153,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   }
 
   MotionHistory history = RestHistory(model);
+  history.velocity = scene.bar.velocity.replicate(body->NodeCount(), 1);
   Stepper stepper(model, scene.step);
   const double time_step = 1 / (scene.frame_rate * scene.steps_per_frame);
   progress->Begin("simulate", scene.frames);

@@ -26,6 +26,8 @@ struct BarShape {
   double edge_length = 0.006;  // of the surface triangles, m; smaller: finer and slower
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // it is turned about its centre
   double angle = 0;                                 // rad
+  // Of all its points at the start, m/s; √(2gh) downwards at the end of a fall of h.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
 
 // A force spread over the boundary nodes of a region in proportion to area.
