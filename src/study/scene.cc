@@ -30,7 +30,8 @@ BarShape ReadBar(const Config& config) {
                                     bar.edge_length);
   bar.axis = ReadAxis(config, bar.axis);
   bar.angle = config.Quantity("angle", kAngle, kAnyValue, bar.angle);
-  bar.velocity = config.Vector("velocity", kVelocity, bar.velocity);
+  // Not told of a bar at rest, so that results kept under the hash of an older scene stay valid.
+  if (config.Has("velocity")) bar.velocity = config.Vector("velocity", kVelocity);
   return bar;
 }
 
