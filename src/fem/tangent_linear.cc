@@ -264,7 +264,7 @@ struct TangentLinear::Implementation {
   }
 
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
-                               const Eigen::VectorXd& at, const ForceAnswer& answer) {
+                               const Eigen::VectorXd& at) {
     if (Count() == 0) return {TangentLinearSummary::Status::kSolved, {}};
     const StepEquation equation(model, before, scheme, time_step);
     const StepEquation::EndOfStep end = equation.End(at);
@@ -305,8 +305,7 @@ struct TangentLinear::Implementation {
           equation.end_time());
       return summary;
     }
-    Eigen::MatrixXd moved = *solution + gripped;
-    if (answer) moved += answer(moved);
+    const Eigen::MatrixXd moved = *solution + gripped;
     const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
                                                 : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
     AdvanceMemories(equation, end, moved, speed);
@@ -326,9 +325,8 @@ TangentLinear::TangentLinear(TangentLinear&&) noexcept = default;
 TangentLinear& TangentLinear::operator=(TangentLinear&&) noexcept = default;
 
 TangentLinearSummary TangentLinear::Advance(const MotionHistory& before, TimeScheme scheme,
-                                            double time_step, const Eigen::VectorXd& position,
-                                            const ForceAnswer& answer) {
-  return implementation_->Advance(before, scheme, time_step, position, answer);
+                                            double time_step, const Eigen::VectorXd& position) {
+  return implementation_->Advance(before, scheme, time_step, position);
 }
 
 const Eigen::MatrixXd& TangentLinear::position() const { return implementation_->position; }

@@ -57,15 +57,10 @@ class TangentLinear {
   TangentLinear(TangentLinear&&) noexcept;
   TangentLinear& operator=(TangentLinear&&) noexcept;
 
-  // Forces from outside that answer to where the body comes to: given s without their answer, what
-  // it adds to s (both 3n × perturbations).
-  using ForceAnswer = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& position)>;
-
   // After the step (or the equilibrium: kQuasiStatic, 0) from `before` to `position` was found. An
-  // equilibrium forgets where it was sought from; what it leaves is a state at rest. `answer`
-  // empty: the forces from outside stay as they are.
+  // equilibrium forgets where it was sought from; what it leaves is a state at rest.
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
-                               const Eigen::VectorXd& position, const ForceAnswer& answer = {});
+                               const Eigen::VectorXd& position);
 
   // dx/dp and dv/dp at the end of the last step (3n × perturbations).
   const Eigen::MatrixXd& position() const;

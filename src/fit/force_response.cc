@@ -13,17 +13,6 @@ namespace {
 // Only a search direction and an uncertainty depend on it.
 constexpr double kTolerance = 1e-7;
 
-// The place of observation j (3 × columns) of what is given at the nodes (3n × columns).
-Eigen::MatrixXd AtPlace(const Observations& observations, Eigen::Index j,
-                        const Eigen::MatrixXd& nodal) {
-  Eigen::MatrixXd place = Eigen::MatrixXd::Zero(3, nodal.cols());
-  for (int a = 0; a < 3; ++a) {
-    const double weight = observations.weight(a, j);
-    if (weight != 0) place += weight * nodal.middleRows(3 * observations.node(a, j), 3);
-  }
-  return place;
-}
-
 }  // namespace
 
 ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
@@ -57,9 +46,15 @@ Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
   const Eigen::Index count = response.sensitivity.cols();
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    const Eigen::Vector3d deviation =
-        AtPlace(observations, j, position) - observations.target.col(j);
-    const Eigen::MatrixXd moved = AtPlace(observations, j, response.sensitivity);
+    Eigen::Vector3d deviation = -observations.target.col(j);
+    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(3, count);
+    for (int a = 0; a < 3; ++a) {
+      const double weight = observations.weight(a, j);
+      if (weight == 0) continue;
+      const Eigen::Index row = 3 * observations.node(a, j);
+      deviation += weight * position.segment<3>(row);
+      moved += weight * response.sensitivity.middleRows(row, 3);
+    }
     const auto directions = WhitenedDirections(observations, j);
     const double length = (directions * deviation).norm();
     const double trust =
@@ -69,31 +64,6 @@ Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
   }
   return information.selfadjointView<Eigen::Lower>().llt().solve(
       Eigen::MatrixXd::Identity(count, count));
-}
-
-Eigen::MatrixXd CoefficientAnswer(const ForceResponse& response, const Observations& observations,
-                                  const Eigen::VectorXd& position, double robust_threshold,
-                                  const Eigen::MatrixXd& moved) {
-  CHECK(response.IsUsable());
-  const Eigen::Index count = response.sensitivity.cols();
-  Eigen::MatrixXd curvature = Eigen::MatrixXd::Identity(count, count);
-  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(count, moved.cols());
-  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    const auto directions = WhitenedDirections(observations, j);
-    const Eigen::VectorXd residual =
-        directions * (AtPlace(observations, j, position) - observations.target.col(j));
-    const Eigen::MatrixXd jacobian = directions * AtPlace(observations, j, response.sensitivity);
-    Eigen::MatrixXd weighted = jacobian;
-    const double length = residual.norm();
-    if (robust_threshold > 0 && length > robust_threshold) {
-      const Eigen::VectorXd along = residual / length;
-      weighted -= along * (along.transpose() * jacobian);
-      weighted *= robust_threshold / length;
-    }
-    curvature += weighted.transpose() * jacobian;
-    slope += weighted.transpose() * (directions * AtPlace(observations, j, moved));
-  }
-  return -curvature.selfadjointView<Eigen::Lower>().llt().solve(slope);
 }
 
 }  // namespace lacuna

@@ -31,16 +31,6 @@ Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
                                       const Observations& observations,
                                       const Eigen::VectorXd& position, double robust_threshold);
 
-// How the fitted coefficients change when something moves the end of the step by `moved` (3n × m)
-// under unchanged coefficients: K × m,
-//   dc = −(JᵀHJ + I)⁻¹ JᵀH N ds,
-// with N the observed places and H the second derivative of Huber's loss, by the implicit function
-// theorem on the fit's condition Jᵀρ' + c = 0. Left out, as in Gauss–Newton: the second derivative
-// of the positions times the residual, and that the correspondences move along.
-Eigen::MatrixXd CoefficientAnswer(const ForceResponse& response, const Observations& observations,
-                                  const Eigen::VectorXd& position, double robust_threshold,
-                                  const Eigen::MatrixXd& moved);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_FIT_FORCE_RESPONSE_H_

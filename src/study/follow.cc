@@ -60,8 +60,7 @@ class Follower {
     options.scheme = study.follow.scheme;
     options.refuse_inverted = !study.follow.allow_inverted;
     stepper_ = std::make_unique<Stepper>(model_, options);
-    if (!moduli.empty())
-      sensitivity_ = std::make_unique<FollowedSensitivity>(model_, forces_, moduli);
+    if (!moduli.empty()) sensitivity_ = std::make_unique<FollowedSensitivity>(model_, moduli);
     previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
   }
 
@@ -102,14 +101,13 @@ class Follower {
     const StepEquation equation(model_, from, study_.follow.scheme, time_step);
 
     ForceFit fit;
-    Observations seen;
     int iterations = 0;
     if (forces_.HasUnknowns()) {
       const Correspondence correspondence = Register(AsPoints(start), state);
       StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
       for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
         ThrowIfInterrupted();
-        seen = Observe(AsPoints(start), state, correspondence);
+        const Observations seen = Observe(AsPoints(start), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
         // Free forces are expected to go on as they were. Coefficients are expected to be small: as
         // a random walk, what the scans do not see of them would drift away.
@@ -140,8 +138,7 @@ class Follower {
     if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
     if (sensitivity_ != nullptr) {
       sensitivity_->Advance(from, time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic,
-                            time_step, after.position, forces_.HasUnknowns() ? &seen : nullptr,
-                            study_.follow.fit.robust_threshold);
+                            time_step, after.position);
       frame.position_by = sensitivity_->position();
     }
     history_ = after;
@@ -312,7 +309,7 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
                             const std::vector<FrameState>& states, Progress* progress,
                             const TrackedFrames* tracked, const std::vector<int>& moduli) {
   FollowedMotion motion;
-  CHECK(moduli.empty() || tracked != nullptr);
+  CHECK(moduli.empty() || (tracked != nullptr && HasModulusSensitivity(study.follow.forces)));
   CHECK(tracked == nullptr || (FirstFrameIsReference(study) && states.front().tracked.cols() == 0));
   motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
   Follower follower(study, reference, states, tracked, moduli, &motion);

@@ -30,8 +30,8 @@ struct FollowedFrame {
   Eigen::Matrix3Xd residual;  // 3 × boundary vertices, m
   double weighted_rms = 0;    // of the observations, in their standard deviations
   int observations = 0;
-  // dx/dθ of the moduli asked for (3·nodes × moduli), forces fitted anew included; not kept in
-  // files. Empty: not asked for, or not to be had (study/followed_sensitivity.h).
+  // dx/dθ of the moduli asked for (3·nodes × moduli); not kept in files. Empty: not asked for,
+  // or not to be had (study/followed_sensitivity.h).
   Eigen::MatrixXd position_by;
   SolverStatus solver;
 };
@@ -47,7 +47,8 @@ struct FollowedMotion {
 // by CPD, fit the forces to the registered displacements and the scanned points (Eq. 1), and take
 // the step under them. `tracked`: registrations of the same states, taken in place of CPD; only for
 // scans whose first frame is the reference shape (CHECK). `moduli`: parameters of the first effect
-// by which to differentiate the motion; only with `tracked` (CHECK), as CPD has no derivative.
+// by which to differentiate the motion; only with `tracked` and without fitted forces (CHECK):
+// correspondences have no derivative.
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
                             const std::vector<FrameState>& states, Progress* progress,
                             const TrackedFrames* tracked = nullptr,

@@ -1,11 +1,9 @@
-// How a followed motion changes with the moduli of its material, the forces fitted anew included.
+// How a motion that follows a recording changes with the moduli of its material, where no forces
+// are fitted: the tangent-linear model along it (fem/tangent_linear.h).
 //
-// Per step, with s = ∂x/∂θ under unchanged force coefficients (fem/tangent_linear.h, which carries
-// what earlier steps have changed) and R = ∂x/∂c (fit/force_response.h),
-//   dx/dθ = s + R dc/dθ,
-// where dc/dθ keeps the fit's own condition. That condition is not the search's objective: the fit
-// minimises whitened squares, step by step, so that forces answer to θ to first order in |D| and
-// the envelope theorem does not remove them.
+// Forces that are fitted answer to the moduli, and so do the correspondences that they are fitted
+// to: nearest points of scans, taken anew from where the body has come to, which have no
+// derivative.
 #ifndef LACUNA_STUDY_FOLLOWED_SENSITIVITY_H_
 #define LACUNA_STUDY_FOLLOWED_SENSITIVITY_H_
 
@@ -14,38 +12,30 @@
 #include <vector>
 
 #include "fem/tangent_linear.h"
-#include "fit/force_model.h"
-#include "fit/observations.h"
 #include "study/reconstruction.h"
 
 namespace lacuna {
 
-// Forces that are fitted at each node, or whose expected size is a share of Young's modulus, answer
-// in ways that are not followed here.
+// No forces, or known ones.
 bool HasModulusSensitivity(const ForceSettings& forces);
 
 class FollowedSensitivity {
  public:
-  // By these parameters of the model's first effect. The force model must outlive it.
-  FollowedSensitivity(const Model& model, const ForceModel& forces,
-                      const std::vector<int>& parameters);
+  // By these parameters of the model's first effect.
+  FollowedSensitivity(const Model& model, const std::vector<int>& parameters);
 
-  // The step from `before` to `position` has been taken; `seen` is what its forces were fitted to,
-  // null where none were.
+  // The step from `before` to `position` has been taken.
   void Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
-               const Eigen::VectorXd& position, const Observations* seen, double robust_threshold);
+               const Eigen::VectorXd& position);
 
   // dx/dθ at the end of the last step (3n × parameters); empty once a step could not be
-  // differentiated, which `message` tells.
+  // differentiated.
   const Eigen::MatrixXd& position() const { return position_; }
-  const std::string& message() const { return message_; }
 
  private:
-  const Model& model_;
-  const ForceModel& forces_;
   TangentLinear linear_;
+  bool usable_ = true;
   Eigen::MatrixXd position_;
-  std::string message_;
 };
 
 }  // namespace lacuna

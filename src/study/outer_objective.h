@@ -62,14 +62,13 @@ struct OuterEvaluation {
   double scan_distance = kNotMeasured;  // mean over scan points and frames, m; no correspondence
   double force = kNotMeasured;          // mean over the frames of the net force's length, N
   int nodes = 0, tets = 0, surface_points = 0;
-  // ∂/∂y (per Pa) and ∂/∂p of what is above, forces fitted anew included; empty: not asked for, or
-  // not to be had.
+  // ∂/∂y (per Pa) and ∂/∂p of what is above; empty: not asked for, or not to be had.
   std::vector<OuterSlope> by_moduli;
   double seconds = 0;  // wall time; the one number here that is not repeatable
 };
 
-// Whether y and p have derivatives here: not with CPD in the loop, nor with forces whose answer is
-// not followed (study/followed_sensitivity.h).
+// Whether y and p have derivatives here: not with CPD in the loop, nor with fitted forces
+// (study/followed_sensitivity.h).
 bool CanDifferentiate(const OuterProblem& problem);
 // The steps of an evaluation: the body, which is an InputError where TetGen refuses; how it follows
 // the frames, ending at the first one where it cannot; and what that measures but the time.

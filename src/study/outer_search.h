@@ -20,8 +20,8 @@ enum class OuterMethod {
   kGaussianProcess,
   kNloptCobyla,
   kNloptBobyqa,
-  kCeres  // along the gradient: ∂/∂y and ∂/∂p of the equations where they have one, else
-          // differences
+  kCeres  // along the gradient: of the equations by y and p where no forces are fitted, else
+          // differences differences
 };
 enum class OuterMeasure {
   kPerPoint,  // over a fixed sampling of the surface: does not see how many points a mesh has

@@ -177,40 +177,11 @@ TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAnEffectThatIsNotInTheModel) {
   EXPECT_LT((by_position.col(0) - difference).norm(), 1e-5 * difference.norm());
 }
 
-TEST(TangentLinear, CarriesOnWhatForcesFromOutsideAnswer) {
-  // Forces that undo half of each change: the position has half of what it would have, and the
-  // velocity is that of the positions.
-  const Case motion;
-  const Model model = motion.MakeModel();
-  Stepper stepper(model, {.scheme = TimeScheme::kImplicitEuler});
-  const std::vector<Perturbation> perturbations{{motion.effects[0], 0, {}}};
-  TangentLinear left_alone(model, perturbations), answered(model, perturbations);
-  const TangentLinear::ForceAnswer answer = [](const Eigen::MatrixXd& moved) -> Eigen::MatrixXd {
-    return -0.5 * moved;
-  };
-  MotionHistory history = RestHistory(model);
-  const MotionHistory rest = history;
-  ASSERT_TRUE(stepper.Step(kTimeStep, {}, &history).IsUsable());
-  for (TangentLinear* linear : {&left_alone, &answered}) {
-    ASSERT_TRUE(linear
-                    ->Advance(rest, TimeScheme::kImplicitEuler, kTimeStep, history.position,
-                              linear == &answered ? answer : TangentLinear::ForceAnswer())
-                    .IsUsable());
-  }
-  ASSERT_GT(left_alone.position().norm(), 0);
-  // Rounding.
-  EXPECT_LT((answered.position() - 0.5 * left_alone.position()).norm(),
-            1e-12 * left_alone.position().norm());
-  EXPECT_LT((answered.velocity() - answered.position() / kTimeStep).norm(),
-            1e-12 * answered.velocity().norm());
-}
-
 TEST(TangentLinear, FollowsTheGrip) {
   Case motion;
   motion.effects.resize(2);
   const double lift = motion.lift;
-  const Perturbation higher{
-      nullptr, 0, [&](double time, const Eigen::VectorXd&) { return motion.Lifted(time); }};
+  const Perturbation higher{nullptr, 0, [&](double time, const Eigen::VectorXd&) { return motion.Lifted(time); }};
   ExpectDerivative(
       motion, higher, 1e-3, [&](double by) { motion.lift = lift + by; }, 1e-5, "lift");
 }
