@@ -152,6 +152,11 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
       if (!ranked.refitted || !refits[k].message.empty()) continue;
       const HypothesisEvidence after = EvidenceOf(refits[k].hypothesis, diagnosis.noise_level);
       ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis.ranking.size());
+      if (!std::isfinite(ranked.evidence)) {
+        ranked.evidence = 0;
+        refits[k].message = ranked.refit_message = "it ended where its evidence has no value";
+        continue;
+      }
       ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
       ranked.left_in_noise = InNoise(refits[k].hypothesis);
     }

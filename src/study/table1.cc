@@ -227,8 +227,11 @@ Recording AnnouncedRecording(const Scene& scene) {
   recording.name = scene.name;
   recording.density = scene.density;
   for (int k = 0; k < scene.frames; ++k) recording.times.push_back(k / scene.frame_rate);
+  const Eigen::Vector2d covered(recording.times.front(), recording.times.back());
   for (const SceneLoad& load : scene.loads)
-    if (load.measured) recording.forces.push_back({load.region.name, load.region, {}, {}, {}});
+    if (load.measured)
+      recording.forces.push_back(
+          {load.region.name, load.region, covered, Eigen::Matrix3Xd::Zero(3, 2), {}});
   return recording;
 }
 

@@ -61,7 +61,8 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
                      "is of another scene; run `lacuna table1` again");
   std::vector<Optimum> optima;
   try {
-    for (const nlohmann::json& search : nlohmann::json::parse(TextOf(file)).at("searches")) {
+    const nlohmann::json table = nlohmann::json::parse(TextOf(file));
+    for (const nlohmann::json& search : table.at("searches")) {
       if (search.at("seed") != 1 || !search.contains("best")) continue;
       optima.push_back(
           {search.at("name"), OuterParametersFrom(search.at("best").at("parameters")),

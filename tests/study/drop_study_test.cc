@@ -63,9 +63,9 @@ SceneMotion MadeUpBounce() {
 
 TEST(DropStudyTest, NumbersAreReadOffAMadeUpBounce) {
   const DropNumbers numbers = MeasureDrop(ReadFigure1().scene, MadeUpBounce());
-  // Between samples 0.5 ms apart the gap is taken to be a line: exact before the touch, and off by
-  // a part of a step where the body leaves.
-  EXPECT_NEAR(numbers.touch_time, 0.0101, 1e-5);
+  // Between samples 0.5 ms apart the gap is taken to be a line, which the touch and the leaving
+  // bend: both are off by less than a step.
+  EXPECT_NEAR(numbers.touch_time, 0.0101, 5e-4);
   EXPECT_NEAR(numbers.contact_time, 0.02, 5e-4);
   EXPECT_NEAR(numbers.compression, 0.12, 1e-4);  // a parabola through the top of a sine
   // The time of leaving is off by some 0.3 ms of gravity.

@@ -103,8 +103,8 @@ TEST_F(Table1FiguresTest, ArrowsShowTheRegisteredDisplacement) {
     EXPECT_LE(arrows.vertex_values.maxCoeff(), 1e3 * longest * (1 + 1e-12));
     EXPECT_GT(arrows.vertex_values.maxCoeff(), 500 * longest);
     EXPECT_EQ(arrows.mesh.vertices.cols() % kArrowVertices, 0);
-    // Fitted forces bring the body to where the scans have it, a few noises off.
-    EXPECT_LT(figure.numbers[k].at("points_to_simulation_mean_m"), 1e-3);
+    // Fitted forces bring the body to where the scans have it; elements of 14 mm cut the corners.
+    EXPECT_LT(figure.numbers[k].at("points_to_simulation_mean_m"), 2e-3);
   }
   EXPECT_GT(figure.numbers[1].at("simulated_max_m"), figure.numbers[0].at("simulated_max_m"));
 }
@@ -120,7 +120,8 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
       {"seed", 1},
       {"name", "all"},
       {"best", {{"parameters", ToJson(optimum)}, {"evaluation", ToJson(found)}}}};
-  std::ofstream(folder / "table1.json") << nlohmann::json{{"searches", {search}}};
+  std::ofstream(folder / "table1.json")
+      << nlohmann::json{{"searches", nlohmann::json::array({search})}};
   EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
               ThrowsMessage<InputError>(HasSubstr("another scene")));
   fs::create_directories(folder / "seed_1/recording");

@@ -44,9 +44,9 @@ TEST(TrialSuite, HasEveryGroupAndIsTheSameAgain) {
   }
   for (const char* nuisance : {"grip", "bad_frame", "coarse_mesh", "time_jitter"})
     EXPECT_THAT(nuisances, Contains(nuisance));
-  EXPECT_EQ(cases[6].hidden[0].factor, 1);
-  EXPECT_EQ(cases[7].hidden[0].factor, 4);
-  EXPECT_EQ(cases[8].group, "removed");
+  EXPECT_EQ(cases[6].group, "removed");
+  EXPECT_EQ(cases[7].hidden[0].factor, 1);
+  EXPECT_EQ(cases[8].hidden[0].factor, 4);
 }
 
 TEST(TrialSuite, RefusesAnEffectThatIsNone) {
@@ -116,18 +116,18 @@ TEST(TrialReport, CountsRightWrongAndDeclared) {
   outcome.error_after = 1.1;
   outcome.relative_error = 0.1;
   outcome.covered = {1};
-  Write(folder.Path(), cases[1], outcome);  // right
+  Write(folder.Path(), cases[2], outcome);  // right
   outcome.verdict = "ambiguous";
   outcome.named = {"mass_damping", "drag"};
   outcome.ranked = {"mass_damping", "drag"};
   outcome.error_after = 1.3;
   outcome.covered = {0};
-  Write(folder.Path(), cases[2], outcome);  // declared
+  Write(folder.Path(), cases[3], outcome);  // declared
   outcome.verdict = "missing";
   outcome.named = {"mass_damping"};
   outcome.ranked = {"mass_damping", "gravity"};
-  Write(folder.Path(), cases[3], outcome);  // wrong
-  Write(folder.Path(), cases[4], outcome);  // of the library without it: a false name
+  Write(folder.Path(), cases[4], outcome);  // wrong
+  Write(folder.Path(), cases[1], outcome);  // of the library without it: a false name
 
   const TrialReport report = ReportTrials(folder.Path());
   ASSERT_EQ(report.tallies.size(), 3u);  // control, one_effect, removed
