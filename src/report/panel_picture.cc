@@ -79,7 +79,11 @@ std::pair<double, double> ColourRange(const PanelPicture& picture,
       }
     }
   }
-  return low <= high ? std::make_pair(low, high) : std::make_pair(0.0, 1.0);
+  if (!(low <= high)) return {0, 1};
+  // A length that is almost nothing somewhere is read best from nothing.
+  constexpr double kAlmostNothing = 0.05;
+  if (low > 0 && low < kAlmostNothing * high) low = 0;
+  return {low, high};
 }
 
 // Even steps of lightness from dark blue to yellow, readable in grey and for colour-blind eyes.

@@ -57,7 +57,8 @@ struct PanelPicture {
 struct PanelOptions {
   int width = 1200;  // pixels; raise for print
   int height = 900;
-  // The colours' ends; empty: smallest and largest value of all panels.
+  // The colours' ends; empty: smallest and largest value of all panels, or 0 where the smallest is
+  // almost that.
   std::optional<std::pair<double, double>> range;
   // What each panel takes in, m; empty: all that is drawn in any of them.
   Eigen::AlignedBox3d framing;
