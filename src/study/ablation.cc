@@ -227,14 +227,16 @@ std::string AblationText(const Table1Study& study, const Table1Result& result) {
   for (const AblationRow& row : summary.rows) {
     if (row.varies != varies) text += fmt::format("-- {}\n", row.varies);
     varies = row.varies;
-    text += fmt::format(
-        "{}{:7.3f} {:7.3f}   {:7.3f} {:6.3f}  {:6.1f}  {:5.3f} {:8.1f} {:7.1f}  {:6.2f}  {:5.3f}  "
-        "{:5.0f}  {:5.0f} {:4.0f}\n",
-        PaddedRight(row.name, 20), 1e3 * row.start.median, 1e3 * row.best.median,
-        row.start_sum.median, row.best_sum.median, 100 * row.drop.median,
-        row.radius_edge_ratio.median, 1e6 * row.max_volume.median, 1e-3 * row.young_modulus.median,
-        row.modulus_factor.median, row.poisson_ratio.median, row.evaluations.median,
-        row.failures.median, row.seconds.median);
+    const auto cell = [](double value, size_t width, int digits) {
+      return PaddedLeft(std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits), width);
+    };
+    text += PaddedRight(row.name, 20) + cell(1e3 * row.start.median, 7, 3) +
+            cell(1e3 * row.best.median, 8, 3) + cell(row.start_sum.median, 10, 3) +
+            cell(row.best_sum.median, 7, 3) + cell(100 * row.drop.median, 8, 1) +
+            cell(row.radius_edge_ratio.median, 7, 3) + cell(1e6 * row.max_volume.median, 9, 1) +
+            cell(1e-3 * row.young_modulus.median, 8, 1) + cell(row.modulus_factor.median, 8, 2) +
+            cell(row.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
+            cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0) + "\n";
   }
   text += "\nWhat each row shows (in brackets: the row it is held against)\n";
   for (const AblationRow& row : summary.rows) {
