@@ -125,11 +125,10 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
         ScoredEffect& scored = diagnosis.ranking[at].scored;
         if (scored.candidate.type != found[k].candidate.type || diagnosis.ranking[at].refitted)
           continue;
-        // Its place, direction or time and its size as they are found early.
-        const ScoredEffect late = std::exchange(scored, found[k]);
+        // Its place, direction or time, its size and its look-alikes as they are found early.
+        const Score late = std::exchange(scored, found[k]).score;
         refit(at);
-        scored.score = late.score;
-        scored.look_alikes = late.look_alikes;
+        scored.score = late;
       }
     }
   }

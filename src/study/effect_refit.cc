@@ -226,7 +226,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
   if (effect != nullptr && !(refit.calibration.usable && refit.calibration.rms <= kFarOff)) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
-    const Calibration afresh = with.FitFromStart(progress);
+    const Calibration afresh = with.Fit(with.Start(), progress);
     if (afresh.parameters.size() == own) {
       start.head(own) = afresh.parameters;
       progress->Begin("refit " + effect->candidate.type + " from there", 0);
