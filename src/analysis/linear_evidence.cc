@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace lacuna {
@@ -65,6 +66,12 @@ LinearModel LinearModel::WithResidual(const Eigen::VectorXd& residual,
   other.squares_ = residual.squaredNorm();
   other.toward_ = columns.transpose() * residual;
   return other;
+}
+
+LinearFit LinearModel::FitAll(double variance) const {
+  std::vector<int> all(priors_.size());
+  std::iota(all.begin(), all.end(), 0);
+  return Fit(all, variance);
 }
 
 LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) const {

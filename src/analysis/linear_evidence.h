@@ -42,6 +42,7 @@ class LinearModel {
   // positive and that comes out negative is set to 0; its evidence is that of the prior cut in
   // half, exact for one such parameter and taken parameter by parameter for several.
   LinearFit Fit(const std::vector<int>& chosen, double variance) const;
+  LinearFit FitAll(double variance) const;  // with all columns
 
   // AᵀB of columns a and b after the columns `taken`, with their priors, have taken what they can.
   Eigen::MatrixXd Remaining(const std::vector<int>& taken, const std::vector<int>& a,

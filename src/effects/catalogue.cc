@@ -119,6 +119,12 @@ const CatalogueEntry* FindEntry(const std::string& type) {
   return nullptr;
 }
 
+int ParameterIndex(const EffectCard& card, const std::string& name) {
+  for (size_t k = 0; k < card.parameters.size(); ++k)
+    if (card.parameters[k].name == name) return static_cast<int>(k);
+  return -1;
+}
+
 std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material) {
   return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material);
 }

@@ -40,6 +40,9 @@ const std::vector<CatalogueEntry>& Catalogue();
 // The entry of this name, or null.
 const CatalogueEntry* FindEntry(const std::string& type);
 
+// Where the card's parameter of this name stands; −1: it has none.
+int ParameterIndex(const EffectCard& card, const std::string& name);
+
 // The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes. Throws InputError at the key
 // when the type is unknown or a parameter is missing, has the wrong unit or is out of bounds.
 std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material = nullptr);

@@ -41,8 +41,9 @@ struct TangentLinear::Implementation {
   std::vector<char> fixed;
   EliminationOrder order;
   CholmodFactor factor;
-  BlockMatrix tangent;
-  double element_size;  // m
+  BlockMatrix tangent, by_rate;
+  std::vector<Eigen::Index> of_grips;  // perturbations that move gripped nodes
+  double element_size;                 // m
   // Now and one step earlier.
   Eigen::MatrixXd position, velocity, previous_position, previous_velocity;
   std::vector<Memory> inside;   // one per effect of the model
@@ -55,6 +56,7 @@ struct TangentLinear::Implementation {
         order(NestedDissection(*model.body->pattern, fixed)),
         factor(*model.body->pattern, order),
         tangent(model.body->pattern),
+        by_rate(model.body->pattern),
         element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())) {
     const Eigen::Index size = 3 * model.body->NodeCount();
     position = velocity = Eigen::MatrixXd::Zero(size, Count());
@@ -71,6 +73,8 @@ struct TangentLinear::Implementation {
       }
       outside.push_back(std::move(memory));
     }
+    for (Eigen::Index k = 0; k < Count(); ++k)
+      if (perturbations[k].grip) of_grips.push_back(k);
   }
 
   Eigen::Index Count() const { return static_cast<Eigen::Index>(perturbations.size()); }
@@ -193,30 +197,22 @@ struct TangentLinear::Implementation {
   // position.
   void AddTangentForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
                         const TangentWeights& weights, const Eigen::MatrixXd& change,
-                        Eigen::MatrixXd* right) const {
-    BlockMatrix effects(model.body->pattern);
+                        Eigen::MatrixXd* right) {
+    by_rate.SetZero();
     for (size_t j = 0; j < model.effects.size(); ++j)
-      model.effects[j]->AddTangents(equation.At(end, j), weights, false, &effects);
-    const double* values = effects.values();
+      model.effects[j]->AddTangents(equation.At(end, j), weights, false, &by_rate);
+    const double* values = by_rate.values();
     if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
                     [](double value) { return value == 0; }))
       return;
-    *right -= effects * change;
-  }
-
-  std::vector<Eigen::Index> GripPerturbations() const {
-    std::vector<Eigen::Index> found;
-    for (Eigen::Index k = 0; k < Count(); ++k)
-      if (perturbations[k].grip) found.push_back(k);
-    return found;
+    *right -= by_rate * change;
   }
 
   // The sensitivities of the gripped nodes; 0 elsewhere.
   Eigen::MatrixXd GripColumns(const StepEquation& equation, const Eigen::VectorXd& at) const {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(position.rows(), Count());
     Eigen::VectorXd reaction;
-    for (Eigen::Index k = 0; k < Count(); ++k) {
-      if (!perturbations[k].grip) continue;
+    for (const Eigen::Index k : of_grips) {
       if (reaction.size() == 0) equation.Residual(at, &reaction);
       const Eigen::VectorXd moved = perturbations[k].grip(equation.end_time(), reaction);
       for (size_t i = 0; i < fixed.size(); ++i)
@@ -291,10 +287,8 @@ struct TangentLinear::Implementation {
       AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
     }
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
-    const std::vector<Eigen::Index> moved_by_grips = GripPerturbations();
-    if (!moved_by_grips.empty())
-      right(Eigen::all, moved_by_grips) -=
-          tangent * Eigen::MatrixXd(gripped(Eigen::all, moved_by_grips));
+    if (!of_grips.empty())
+      right(Eigen::all, of_grips) -= tangent * Eigen::MatrixXd(gripped(Eigen::all, of_grips));
 
     TangentLinearSummary summary;
     const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, std::move(right));

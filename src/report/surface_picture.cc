@@ -22,14 +22,7 @@ PictureResult RenderSurfacePng(const std::filesystem::path& file, const SurfaceS
   picture.panels.push_back(std::move(panel));
   picture.value_name = scene.value_name;
   picture.caption = scene.caption;
-  PanelOptions page;
-  page.width = options.width;
-  page.height = options.height;
-  page.range = options.range;
-  page.framing = options.framing;
-  page.view_direction = options.view_direction;
-  page.up = options.up;
-  return RenderPanelPng(file, picture, page);
+  return RenderPanelPng(file, picture, options);
 }
 
 }  // namespace lacuna

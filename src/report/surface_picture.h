@@ -3,11 +3,8 @@
 #define LACUNA_REPORT_SURFACE_PICTURE_H_
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <utility>
 
 #include "geometry/tri_mesh.h"
 #include "report/panel_picture.h"
@@ -23,15 +20,7 @@ struct SurfaceScene {
   std::string caption;            // at the bottom; may be empty
 };
 
-struct PictureOptions {
-  int width = 1200;  // pixels; raise for print
-  int height = 900;
-  // The colours' ends; empty: smallest and largest value. Fix it to compare frames.
-  std::optional<std::pair<double, double>> range;
-  // What the picture takes in; empty: the mesh and the points. Fix it to compare frames.
-  Eigen::AlignedBox3d framing;
-  Eigen::Vector3d view_direction{-1, 2, -0.7};  // from the eye to the object
-  Eigen::Vector3d up{0, 0, 1};
+struct PictureOptions : PanelOptions {
   bool show_edges = false;
   double point_size = 4;  // pixels
 };

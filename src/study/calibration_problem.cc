@@ -15,8 +15,7 @@ namespace {
 
 // Share of the fitted time that is fitted first.
 constexpr double kShortHorizon = 0.25;
-// A fit that leaves more than so many σ is tried from these parts of the moduli's start values.
-constexpr double kFarOff = 2;
+// A fit that may be astray is tried from these parts of the moduli's start values.
 constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
 // Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
 // wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
@@ -347,7 +346,7 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
 
 Calibration CalibrationProblem::FitFromStart(Progress* progress) const {
   Calibration calibration = Fit(Start(), progress);
-  if (calibration.usable && calibration.rms <= kFarOff) return calibration;
+  if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;
   const auto is_modulus = [&](size_t k) {
     return parameters_[k].log_scale && study_.fitted[k].unit == "Pa";
   };

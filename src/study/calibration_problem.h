@@ -36,6 +36,9 @@ struct LinearisedMisfit {
   std::vector<Part> parts;
 };
 
+// σ: a fit that leaves more may have ended at the wrong place.
+inline constexpr double kMayBeAstray = 2;
+
 class CalibrationProblem {
  public:
   // Throws InputError when a region is empty or a scan does not show the object. The study must

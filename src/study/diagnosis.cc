@@ -50,6 +50,21 @@ PredictionStudy EarlyPart(const CalibrationProblem& problem) {
   return early;
 }
 
+// Effects by their evidence along a fit of the early part; none where it cannot be fitted. Leaves
+// the study's effects at `values`.
+std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
+                                    const Eigen::VectorXd& values,
+                                    const std::vector<std::string>& without, Progress* progress) {
+  const PredictionStudy early = EarlyPart(problem);
+  const CalibrationProblem of_early(early, problem.body()->mesh);
+  const Calibration first = of_early.FitFromStart(progress);
+  std::vector<ScoredEffect> found;
+  if (first.parameters.size() == values.size())
+    found = RankEffects(of_early, first.parameters, progress, without).effects;
+  problem.SetModel(values);
+  return found;
+}
+
 }  // namespace
 
 std::string VerdictName(Verdict verdict) {
@@ -112,13 +127,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   }
 
   if (diagnosis.present_in_noise > kFarOff) {
-    const PredictionStudy early = EarlyPart(problem);
-    const CalibrationProblem of_early(early, problem.body()->mesh);
-    const Calibration first = of_early.FitFromStart(progress);
-    std::vector<ScoredEffect> found;
-    if (first.parameters.size() == values.size())
-      found = RankEffects(of_early, first.parameters, progress, options.without).effects;
-    problem.SetModel(values);
+    const std::vector<ScoredEffect> found = RankEarly(problem, values, options.without, progress);
     for (size_t k = 0; k < found.size() && static_cast<int>(k) < options.refits; ++k) {
       if (found[k].score.evidence < kNoEvidence) break;
       for (size_t at = 0; at < diagnosis.ranking.size(); ++at) {

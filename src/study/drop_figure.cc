@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "effects/catalogue.h"
 #include "fem/element_strain.h"
 #include "report/line_chart.h"
 
@@ -112,11 +113,8 @@ size_t FrameAt(const SceneMotion& motion, double time) {
 
 double FloorHeight(const Scene& scene) {
   for (const auto& effect : scene.effects) {
-    const EffectCard& card = effect->Card();
-    if (card.type != "plane_contact") continue;
-    for (size_t i = 0; i < card.parameters.size(); ++i)
-      if (card.parameters[i].name == "offset")
-        return effect->Parameters()[static_cast<Eigen::Index>(i)];
+    if (effect->Card().type == "plane_contact")
+      return effect->Parameters()[ParameterIndex(effect->Card(), "offset")];
   }
   return 0;
 }

@@ -14,7 +14,6 @@ namespace {
 
 // A rival need not be at its very best to be told from one that fits.
 constexpr int kIterations = 25;
-constexpr double kFarOff = 2;     // σ: a refit that leaves more may have ended at the wrong place
 constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
@@ -85,11 +84,9 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
   hypothesis.left = hypothesis.misfit.residual;
   if (adopted.by.cols() > 0) {
-    std::vector<int> all;
-    for (Eigen::Index k = 0; k < adopted.by.cols(); ++k) all.push_back(static_cast<int>(k));
     const LinearFit fit = LinearModel(WhitenedRows(hypothesis.left, same, 0, false),
                                       WhitenedRows(adopted.by, same, 0, false), adopted.priors)
-                              .Fit(all, 1);
+                              .FitAll(1);
     hypothesis.left += adopted.by * fit.change;
   }
   return hypothesis;
@@ -101,10 +98,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns = WhitenedRows(misfit.by, misfit, noise.correlation_time, false);
   const Eigen::VectorXd left = WhitenedRows(hypothesis.left, misfit, noise.correlation_time, false);
-  std::vector<int> all;
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    all.push_back(static_cast<int>(k));
     const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
     if (k < hypothesis.parameters && std::isfinite(prior.deviation))
       prior_cost += std::pow(prior.mean / prior.deviation, 2);
@@ -112,7 +107,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   // The determinant is that of the linear model, whatever its residual.
   const LinearFit nothing =
       LinearModel(Eigen::VectorXd::Zero(left.size()), columns, WithoutMeans(hypothesis.priors))
-          .Fit(all, noise.variance);
+          .FitAll(noise.variance);
   HypothesisEvidence evidence;
   evidence.misfit = left.squaredNorm();
   evidence.log_evidence =
@@ -128,12 +123,10 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eige
                                    const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
   if (!hypothesis.misfit.usable) return hypothesis;
-  std::vector<int> all;
-  for (Eigen::Index k = 0; k < hypothesis.misfit.by.cols(); ++k) all.push_back(static_cast<int>(k));
   const LinearFit fit =
       LinearModel(WhitenedRows(hypothesis.misfit.residual, same, 0, false),
                   WhitenedRows(hypothesis.misfit.by, same, 0, false), hypothesis.priors)
-          .Fit(all, 1);
+          .FitAll(1);
   Eigen::VectorXd moved = values;
   for (size_t k = 0; k < problem.parameters().size(); ++k) {
     const CalibratedParameter& parameter = problem.parameters()[k];
@@ -224,7 +217,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   };
   refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
-  if (effect != nullptr && !(refit.calibration.usable && refit.calibration.rms <= kFarOff)) {
+  if (effect != nullptr && !(refit.calibration.usable && refit.calibration.rms <= kMayBeAstray)) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
     const Calibration afresh = with.Fit(with.Start(), progress);
     if (afresh.parameters.size() == own) {

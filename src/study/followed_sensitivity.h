@@ -2,8 +2,8 @@
 // are fitted: the tangent-linear model along it (fem/tangent_linear.h).
 //
 // Forces that are fitted answer to the moduli, and so do the correspondences that they are fitted
-// to: nearest points of scans, taken anew from where the body has come to, which have no
-// derivative.
+// to: nearest points of scans, taken anew from where the body has come to. A derivative through the
+// forces with correspondences held did not agree with differences (docs/search.md).
 #ifndef LACUNA_STUDY_FOLLOWED_SENSITIVITY_H_
 #define LACUNA_STUDY_FOLLOWED_SENSITIVITY_H_
 

@@ -13,19 +13,15 @@ namespace {
 // How far beyond the plausible range a fit may go, in parts of that range.
 constexpr double kMargin = 0.1;
 
-int IndexOf(const EffectCard& card, const std::string& name) {
-  for (size_t k = 0; k < card.parameters.size(); ++k)
-    if (card.parameters[k].name == name) return static_cast<int>(k);
-  LOG(FATAL) << card.type << " has no " << name;
-}
-
 void ReplaceMaterial(const std::shared_ptr<Effect>& law, PredictionStudy* study) {
   const std::shared_ptr<Effect> before = study->effects.front();
   study->effects.front() = law;
   for (ModelParameter& parameter : study->fitted) {
     for (auto& [effect, index] : parameter.places) {
       if (effect != before) continue;
-      index = IndexOf(law->Card(), before->Card().parameters[index].name);
+      const std::string& name = before->Card().parameters[index].name;
+      index = ParameterIndex(law->Card(), name);
+      CHECK_GE(index, 0) << law->Card().type << " has no " << name;
       effect = law;
     }
   }

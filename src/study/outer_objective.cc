@@ -20,12 +20,9 @@ namespace {
 
 // Where y and p stand among the parameters of the elasticity law.
 std::vector<int> ModuliOf(const EffectCard& card) {
-  std::vector<int> moduli;
-  for (const char* name : {"young_modulus", "poisson_ratio"}) {
-    for (size_t k = 0; k < card.parameters.size(); ++k)
-      if (card.parameters[k].name == name) moduli.push_back(static_cast<int>(k));
-  }
-  CHECK_EQ(moduli.size(), 2u) << card.type;
+  const std::vector<int> moduli = {ParameterIndex(card, "young_modulus"),
+                                   ParameterIndex(card, "poisson_ratio")};
+  CHECK(moduli[0] >= 0 && moduli[1] >= 0) << card.type;
   return moduli;
 }
 

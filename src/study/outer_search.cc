@@ -57,23 +57,25 @@ SearchResult Run(const SearchProblem& problem, const SearchControl& control,
   return MinimiseByNlopt(problem, control, library);
 }
 
-double SlopeOf(const OuterSlope& slope, OuterMeasure measure) {
+// Of an evaluation, or of its slopes.
+template <typename Residuals>
+double Chosen(const Residuals& residuals, OuterMeasure measure) {
   switch (measure) {
     case OuterMeasure::kSum:
-      return slope.residual_sum;
+      return residuals.residual_sum;
     case OuterMeasure::kRms:
-      return slope.residual_rms;
+      return residuals.residual_rms;
     case OuterMeasure::kPerPoint:
       break;
   }
-  return slope.residual_per_point;
+  return residuals.residual_per_point;
 }
 
 // By q, v, y and p; NaN where the evaluation does not tell.
 Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
   for (size_t i = 0; i < evaluation.by_moduli.size(); ++i)
-    gradient[static_cast<Eigen::Index>(2 + i)] = SlopeOf(evaluation.by_moduli[i], measure);
+    gradient[static_cast<Eigen::Index>(2 + i)] = Chosen(evaluation.by_moduli[i], measure);
   return gradient;
 }
 
@@ -126,15 +128,7 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
 OuterParameters ParametersOf(const Eigen::VectorXd& x) { return {x[0], x[1], x[2], x[3]}; }
 
 double ValueOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
-  switch (measure) {
-    case OuterMeasure::kSum:
-      return evaluation.residual_sum;
-    case OuterMeasure::kRms:
-      return evaluation.residual_rms;
-    case OuterMeasure::kPerPoint:
-      break;
-  }
-  return evaluation.residual_per_point;
+  return Chosen(evaluation, measure);
 }
 
 double OuterSearchResult::Seconds() const {

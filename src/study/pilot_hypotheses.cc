@@ -23,10 +23,8 @@ const char kContact[] = "plane_contact";
 
 // NaN: the law has none.
 double ParameterOf(const Effect& effect, const std::string& name) {
-  const std::vector<ParameterCard>& cards = effect.Card().parameters;
-  for (size_t k = 0; k < cards.size(); ++k)
-    if (cards[k].name == name) return effect.Parameters()[static_cast<Eigen::Index>(k)];
-  return std::nan("");
+  const int index = ParameterIndex(effect.Card(), name);
+  return index < 0 ? std::nan("") : effect.Parameters()[index];
 }
 
 double ContactStiffness(const Body& body, const Effect& material) {

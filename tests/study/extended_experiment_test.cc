@@ -31,12 +31,17 @@ std::filesystem::path FitBar(const std::filesystem::path& folder) {
   return study.output;
 }
 
+FittedRun OpenAtItsValues(const std::filesystem::path& run) {
+  FittedRun fitted = OpenRun(run);
+  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
+    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
+  return fitted;
+}
+
 TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   const TemporaryFolder folder;
   const std::filesystem::path run = FitBar(folder.Path());
-  const FittedRun fitted = OpenRun(run);
-  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
-    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
+  const FittedRun fitted = OpenAtItsValues(run);
 
   ScoredEffect scored;
   const Body body = MakeBody(fitted.mesh, 1000);
@@ -79,9 +84,7 @@ TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
 TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
   const TemporaryFolder folder;
   const std::filesystem::path run = FitBar(folder.Path());
-  const FittedRun fitted = OpenRun(run);
-  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
-    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
+  const FittedRun fitted = OpenAtItsValues(run);
 
   ScoredEffect law;
   law.candidate.type = "st_venant_kirchhoff";

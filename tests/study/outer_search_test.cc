@@ -7,22 +7,13 @@
 #include <fstream>
 #include <string>
 
+#include "study/reduced_bend.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr char kExperiment[] = R"(schema_version: 1
-name: reduced
-frames: {last: 15, every: 5}
-surface: {of_frames: poisson, edge_length: 8 mm, samples_per_node: 1.5, point_weight: 8}
-mesh: {radius_edge_ratio: 2.0, max_volume: 300 mm^3, preserve_surface: false}
-material: {law: corotational, young_modulus: 0.1 MPa, poisson_ratio: 0.35}
-forces: {model: smooth, length: 60 mm, traction_scale: 0.1 kPa}
-fit: {noise: 0.3 mm, alignment_rounds: 1}
-)";
 
 // A modulus that is 30 times too high, which forces of this size cannot make up for.
 constexpr char kSearch[] = R"(
@@ -35,23 +26,12 @@ evaluations: 10
 
 class OuterSearchTest : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
-    const fs::path bend = fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
-    study_ = new ReconstructionStudy(
-        ReadReconstruction(Config::Parse(kExperiment, "reduced.yaml"), LoadRecording(bend)));
-    states_ = new std::vector<FrameState>(LoadFrameStates(*study_, &progress));
-    tracked_ = new TrackedFrames(TrackFrames(*study_, *states_, &progress));
-  }
-  static void TearDownTestSuite() {
-    delete tracked_;
-    delete states_;
-    delete study_;
-  }
+  static void SetUpTestSuite() { scans_ = new Table1Scans(LoadReducedBend()); }
+  static void TearDownTestSuite() { delete scans_; }
 
-  static OuterProblem Problem() { return {*study_, *states_, *tracked_, true, false, 0}; }
+  static OuterProblem Problem() {
+    return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
+  }
   static OuterSearchSettings Settings() {
     return ReadOuterSearch(Config::Parse(kSearch, "search.yaml"));
   }
@@ -62,13 +42,9 @@ class OuterSearchTest : public testing::Test {
     return RunOuterSearch(Problem(), settings, folder, "reduced", &progress);
   }
 
-  static ReconstructionStudy* study_;
-  static std::vector<FrameState>* states_;
-  static TrackedFrames* tracked_;
+  static Table1Scans* scans_;
 };
-ReconstructionStudy* OuterSearchTest::study_ = nullptr;
-std::vector<FrameState>* OuterSearchTest::states_ = nullptr;
-TrackedFrames* OuterSearchTest::tracked_ = nullptr;
+Table1Scans* OuterSearchTest::scans_ = nullptr;
 
 // The first `count` lines of a file, and a part of the next one.
 void CutAfter(const fs::path& file, int count) {
@@ -117,10 +93,10 @@ TEST_F(OuterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
 }
 
 TEST_F(OuterSearchTest, ARefusedMeshIsAFailedEvaluation) {
-  std::vector<FrameState> states = *states_;
+  std::vector<FrameState> states = scans_->states;
   TriMesh& surface = states.front().surface;
   surface.triangles.conservativeResize(3, surface.triangles.cols() - 1);
-  const OuterProblem problem{*study_, states, *tracked_, false, false, 0};
+  const OuterProblem problem{scans_->study, states, scans_->tracked, false, false, 0};
   const OuterEvaluation failed = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
   EXPECT_FALSE(failed.usable);
   EXPECT_NE(failed.failure.find("cannot be meshed"), std::string::npos) << failed.failure;
@@ -168,7 +144,7 @@ void ExpectSlopes(const OuterProblem& problem, double tolerance) {
 }
 
 ReconstructionStudy WithForces(const std::string& forces) {
-  std::string text = kExperiment;
+  std::string text = kReducedBend;
   const size_t begin = text.find("{model: smooth");
   text.replace(begin, text.find('\n', begin) - begin, forces);
   return ReadReconstruction(
@@ -180,7 +156,7 @@ TEST_F(OuterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
   // A body that bends by its weight, in a recording without: D grows as it gets softer.
   const ReconstructionStudy study =
       WithForces("{model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]");
-  OuterProblem problem{study, *states_, *tracked_, true, false, 0};
+  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
   problem.slopes = true;
   // The curvature of D over a tenth of y.
   ExpectSlopes(problem, 0.1);
@@ -189,7 +165,7 @@ TEST_F(OuterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
 TEST_F(OuterSearchTest, WhereForcesAreFittedThereAreNoDerivatives) {
   const ReconstructionStudy study =
       WithForces("{model: smooth, length: 60 mm, traction_scale: 0.1 kPa}");
-  OuterProblem problem{study, *states_, *tracked_, true, false, 0};
+  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
   EXPECT_FALSE(CanDifferentiate(problem));
   problem.slopes = true;
   const OuterEvaluation evaluation = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});

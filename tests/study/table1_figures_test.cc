@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "report/arrow_mesh.h"
 #include "study/evaluation_record.h"
+#include "study/reduced_bend.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -18,15 +19,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr char kExperiment[] = R"(schema_version: 1
-name: reduced
-frames: {last: 15, every: 5}
-surface: {of_frames: poisson, edge_length: 8 mm, samples_per_node: 1.5, point_weight: 8}
-mesh: {radius_edge_ratio: 2.0, max_volume: 300 mm^3, preserve_surface: false}
-material: {law: corotational, young_modulus: 0.1 MPa, poisson_ratio: 0.35}
-forces: {model: smooth, length: 60 mm, traction_scale: 0.1 kPa}
-fit: {noise: 0.3 mm, alignment_rounds: 1}
-)";
 constexpr char kSearch[] = R"(
 radius_edge_ratio: {start: 2.0}
 max_volume: {start: 300 mm^3}
@@ -37,17 +29,12 @@ poisson_ratio: {start: 0.35}
 class Table1FiguresTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    ProgressOptions silent;
-    silent.style = ProgressStyle::kSilent;
-    Progress progress(silent);
-    const fs::path bend = fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend";
-    const Config config = Config::Parse(kExperiment, "reduced.yaml");
-    scans_ = new Table1Scans{ReadReconstruction(config, LoadRecording(bend)), {}, {}};
-    scans_->states = LoadFrameStates(scans_->study, &progress);
-    scans_->tracked = TrackFrames(scans_->study, scans_->states, &progress);
+    scans_ = new Table1Scans(LoadReducedBend());
     table1_ = new Table1Study;
-    table1_->configurations.push_back(
-        {"all", config, ReadOuterSearch(Config::Parse(kSearch, "search.yaml")), {}});
+    table1_->configurations.push_back({"all",
+                                       Config::Parse(kReducedBend, "reduced.yaml"),
+                                       ReadOuterSearch(Config::Parse(kSearch, "search.yaml")),
+                                       {}});
     table1_->scene_key = "a scene";
     table1_->true_young_modulus = 1e5;
     table1_->true_poisson_ratio = 0.35;
