@@ -40,6 +40,10 @@ void PrintCalibration(const CalibrationRecord& record) {
         "{}  rms distance of the predicted surface from scanned patches, along its normal;\n"
         "  σ = {:.3f} mm of one point, less of a patch\n",
         record.noise > 0 ? "" : "\n", 1e3 * record.scan_noise);
+  fmt::print("  time step {:.3g} ms{}\n", 1e3 * record.time_step,
+             record.step_error > 0
+                 ? fmt::format("; half of it would change {:.2g} σ", record.step_error)
+                 : "");
   for (const FittedRecording& recording : record.recordings) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));

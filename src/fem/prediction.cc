@@ -65,17 +65,17 @@ PredictionSummary Predict(
 
   while (next < wanted) {
     before = history;
-    const StepSummary step = stepper.Step(options.time_step, {}, &history);
+    const double length = (summary.steps == 0 ? kFirstStep : 1) * options.time_step;
+    const StepSummary step = stepper.Step(length, {}, &history);
     if (!step.IsUsable()) return Stopped(summary, step.message);
-    linearised = linear.Advance(before, options.step.scheme, options.time_step, history.position);
+    linearised = linear.Advance(before, options.step.scheme, length, history.position);
     if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
     ++summary.steps;
     const Knot<Eigen::VectorXd> now{history.position, history.velocity};
     const Knot<Eigen::MatrixXd> now_by{linear.position(), linear.velocity()};
     while (next < wanted && times[next] <= history.time) {
-      const double t = 1 - (history.time - times[next]) / options.time_step;
-      visit_next(Interpolate(state, now, options.time_step, t),
-                 Interpolate(by, now_by, options.time_step, t));
+      const double t = 1 - (history.time - times[next]) / length;
+      visit_next(Interpolate(state, now, length, t), Interpolate(by, now_by, length, t));
     }
     state = now;
     by = now_by;

@@ -12,13 +12,17 @@
 
 namespace lacuna {
 
+// The first step, of implicit Euler, as a part of the others: letting go is a shock, and what that
+// step gets wrong of it goes with the square of its length.
+constexpr double kFirstStep = 0.1;
+
 struct PredictionOptions {
   // The body is in equilibrium until then, under its effects, its grips where they are then, and
   // `held_force`; from then on it moves without `held_force`.
   double start_time = 0;            // s
   Eigen::VectorXd held_force = {};  // 3n, N; empty: none
   double time_step = 0.005;         // s; smaller: slower, more accurate by its square
-  StepOptions step = {};
+  StepOptions step = {.scheme = TimeScheme::kTwoStep};
 };
 
 // The motion at one of the times asked for. Sensitivities are 3n × perturbations, empty without
@@ -40,7 +44,7 @@ struct PredictionSummary {
   bool IsUsable() const { return status == Status::kReached; }
 };
 
-// Visits the motion at `times` (s, ascending), between the ends of equal steps by cubic Hermite
+// Visits the motion at `times` (s, ascending), between the ends of steps by cubic Hermite
 // interpolation, whose error is of higher order than the step's. A step that fails ends the
 // prediction; the states visited before are good.
 PredictionSummary Predict(const Model& model, const PredictionOptions& options,

@@ -8,6 +8,7 @@
 
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
+#include "fem/prediction.h"
 
 namespace lacuna {
 namespace {
@@ -107,7 +108,6 @@ ReducedResponse::ReducedResponse(const Model& model, const std::vector<Trajector
                                  const ReducedResponseOptions& options)
     : options_(options) {
   CHECK(!states.empty());
-  CHECK(options.scheme != TimeScheme::kQuasiStatic) << "a response in time needs inertia";
   const Body& body = *model.body;
   TangentsAlong along(model, options.time_step);
 
@@ -156,30 +156,31 @@ void ReducedResponse::Respond(
     const std::function<void(int index, const Eigen::MatrixXd& position,
                              const Eigen::MatrixXd& velocity)>& visit) const {
   CHECK(IsUsable()) << message_;
-  const double h = options_.time_step;
   double time = tangents_.front().time;
   Eigen::MatrixXd q = tangents_.front().stiffness.partialPivLu().solve(load_ * held);
-  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(q.rows(), q.cols());
-  Eigen::MatrixXd q_before, w_before;
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(q.rows(), q.cols()), a = w;
+  Eigen::MatrixXd q_before, w_before, a_before;
   size_t next = 0;
   for (; next < times.size() && times[next] <= time; ++next) visit(static_cast<int>(next), q, w);
-  while (next < times.size()) {
-    const bool two_steps = options_.scheme == TimeScheme::kBdf2 && q_before.size() > 0;
-    const double rate = two_steps ? 1.5 / h : 1 / h;
-    Eigen::MatrixXd q_history = q, w_history = w;
-    if (two_steps) {
-      q_history = (4 * q - q_before) / 3;
-      w_history = (4 * w - w_before) / 3;
-    }
+  double last = 0;
+  for (int step = 0; next < times.size(); ++step) {
+    const double h = (step == 0 ? kFirstStep : 1) * options_.time_step;
+    const SchemeWeights weights = WeightsOf(options_.scheme, h, step, last);
+    const double rate = weights.rate;
+    const Eigen::MatrixXd q_history = weights.Combine(q, q_before, w, w_before);
+    const Eigen::MatrixXd w_history = weights.Combine(w, w_before, a, a_before);
     time += h;
+    last = h;
     const Tangents at = At(time);
     const Eigen::MatrixXd right = load_ * histories(time) +
                                   at.mass * (rate * rate * q_history + rate * w_history) +
                                   at.damping * (rate * q_history);
     q_before = std::move(q);
     w_before = std::move(w);
+    a_before = std::move(a);
     q = (rate * rate * at.mass + rate * at.damping + at.stiffness).partialPivLu().solve(right);
     w = rate * (q - q_history);
+    a = rate * (w - w_history);
     for (; next < times.size() && times[next] <= time; ++next) {
       const double t = 1 - (time - times[next]) / h, s = 1 - t;
       visit(static_cast<int>(next),

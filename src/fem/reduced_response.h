@@ -32,8 +32,8 @@ struct TrajectoryState {
 };
 
 struct ReducedResponseOptions {
-  TimeScheme scheme = TimeScheme::kBdf2;
-  double time_step = 0.005;  // s
+  TimeScheme scheme = TimeScheme::kTwoStep;
+  double time_step = 0.005;  // s; the first step is shorter, as a prediction's is
   int most_shapes = 40;      // in Φ; more: finer, slower by the square
   int basis_states = 6;      // of the trajectory, evenly spread, that Φ is made at
 };

@@ -131,7 +131,13 @@ struct Stepper::Implementation {
       return result;
     }
     const int factorisations_before = solver.factorisations();
+    // From where the body would be without what is to come in this step.
     Eigen::VectorXd position = history->position;
+    if (equation.has_inertia()) {
+      position += time_step * history->velocity;
+      if (history->acceleration.size() > 0)
+        position += 0.5 * time_step * time_step * history->acceleration;
+    }
     NewtonSummary solved = Solve(equation, force, target, &position);
     const auto find_inverted = [&] {
       return options.refuse_inverted && solved.IsUsable()

@@ -36,26 +36,20 @@ StepEquation::StepEquation(const Model& model, const MotionHistory& history, Tim
   CHECK_EQ(history.effect_state.size(), model.effects.size());
   CHECK(time_step > 0 || (time_step == 0 && !inertia_)) << "a step with inertia needs a length";
   if (time_step == 0) return;
-  const double h = time_step;
-  if (scheme == TimeScheme::kBdf2 && history.previous_position.size() > 0) {
-    const double ratio = history.previous_time_step > 0 ? h / history.previous_time_step : 1;
-    rate_ = (1 + 2 * ratio) / (1 + ratio) / h;
-    weights_ = {(1 + ratio) * (1 + ratio) / (1 + 2 * ratio), -ratio * ratio / (1 + 2 * ratio)};
-    position_history_ =
-        weights_.now * history.position + weights_.before * history.previous_position;
-    velocity_history_ =
-        weights_.now * history.velocity + weights_.before * history.previous_velocity;
-  } else {
-    rate_ = 1 / h;
-    position_history_ = history.position;
-    velocity_history_ = history.velocity;
-  }
+  const int steps_before = history.previous_position.size() == 0
+                               ? 0
+                               : (history.previous_acceleration.size() == 0 ? 1 : 2);
+  weights_ = WeightsOf(scheme, time_step, steps_before, history.previous_time_step);
+  position_history_ = weights_.Combine(history.position, history.previous_position,
+                                       history.velocity, history.previous_velocity);
+  velocity_history_ = weights_.Combine(history.velocity, history.previous_velocity,
+                                       history.acceleration, history.previous_acceleration);
 }
 
 StepEquation::EndOfStep StepEquation::End(const Eigen::VectorXd& position) const {
   EndOfStep end{position, Velocity(position), {}};
   if (inertia_) {
-    end.acceleration = rate_ * (end.velocity - velocity_history_);
+    end.acceleration = rate() * (end.velocity - velocity_history_);
   } else {
     end.acceleration = Eigen::VectorXd::Zero(position.size());
   }
@@ -73,8 +67,8 @@ Kinematics StepEquation::At(const EndOfStep& end, size_t effect) const {
 }
 
 Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
-  if (rate_ == 0) return Eigen::VectorXd::Zero(position.size());
-  return rate_ * (position - position_history_);
+  if (rate() == 0) return Eigen::VectorXd::Zero(position.size());
+  return rate() * (position - position_history_);
 }
 
 void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
@@ -98,14 +92,14 @@ void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* re
 void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
                            BlockMatrix* tangent) const {
   const EndOfStep end = End(position);
-  const TangentWeights weights{-1, -rate_, inertia_ ? -rate_ * rate_ : 0};
+  const TangentWeights weights{-1, -rate(), inertia_ ? -rate() * rate() : 0};
   tangent->SetZero();
   for (size_t j = 0; j < model_.effects.size(); ++j)
     model_.effects[j]->AddTangents(At(end, j), weights, convexify, tangent);
   if (!inertia_) return;
   const Eigen::VectorXd& mass = model_.body->node_mass;
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() += rate_ * rate_ * mass[i];
+    tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() += rate() * rate() * mass[i];
   }
 }
 
@@ -143,8 +137,10 @@ MotionHistory StepEquation::Advance(const Eigen::VectorXd& position) const {
   next.position = position;
   next.velocity = end.velocity;
   if (time_step_ > 0) {
+    if (inertia_) next.acceleration = end.acceleration;
     next.previous_position = history_.position;
     next.previous_velocity = history_.velocity;
+    next.previous_acceleration = history_.acceleration;
     next.previous_time_step = time_step_;
   }
   for (size_t j = 0; j < model_.effects.size(); ++j) {

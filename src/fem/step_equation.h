@@ -1,12 +1,7 @@
 // The equation of motion of one time step, as a function of the unknown positions alone.
 //
-// Every implicit integrator that Lacuna uses writes velocity and acceleration at the end of the
-// step as v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states:
-//   implicit Euler   γ = 1/h        x̃ = xₙ                     ṽ = vₙ
-//   BDF2             γ = 3/(2h)     x̃ = (4 xₙ − xₙ₋₁)/3        ṽ = (4 vₙ − vₙ₋₁)/3
-//     after a step of another length, h/ω:
-//                    γ = (1+2ω)/(1+ω)/h    x̃ = ((1+ω)² xₙ − ω² xₙ₋₁)/(1+2ω),  ṽ likewise
-//   quasi-static     no inertia;    v = (x − xₙ)/h for rate-dependent effects, 0 without a step
+// An integrator (time_scheme.h) writes velocity and acceleration at the end of the step as
+// v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states,
 // so that a step is the root of
 //   r(x) = M a(x) − Σ f_effect(x, v(x), t)          and          ∂r/∂x = γ² M − Σ (∂f/∂x + γ
 //   ∂f/∂v).
@@ -19,17 +14,16 @@
 #include <vector>
 
 #include "fem/model.h"
+#include "fem/time_scheme.h"
 
 namespace lacuna {
 
-enum class TimeScheme { kQuasiStatic, kImplicitEuler, kBdf2 };
-
-// The motion up to now. `previous_*` is one step earlier; empty before the second step (BDF2 then
-// starts with one implicit Euler step, whose error is of second order as one step's is).
+// The motion up to now. `previous_*` is one step earlier, empty before the second step.
 struct MotionHistory {
   double time = 0;                     // s
   Eigen::VectorXd position, velocity;  // 3n
-  Eigen::VectorXd previous_position, previous_velocity;
+  Eigen::VectorXd acceleration;        // 3n; empty before the first step
+  Eigen::VectorXd previous_position, previous_velocity, previous_acceleration;
   double previous_time_step = 0;              // s; 0: as long as the next one
   std::vector<Eigen::VectorXd> effect_state;  // one per effect of the model
 };
@@ -43,11 +37,6 @@ class StepEquation {
     const Eigen::VectorXd& position;
     Eigen::VectorXd velocity, acceleration;
   };
-  // x̃ = now·xₙ + before·xₙ₋₁, and ṽ likewise.
-  struct HistoryWeights {
-    double now = 1, before = 0;
-  };
-
   // `time_step` > 0, or 0 for statics. The model and the history must outlive the equation.
   StepEquation(const Model& model, const MotionHistory& history, TimeScheme scheme,
                double time_step);
@@ -72,9 +61,9 @@ class StepEquation {
   const Body& body() const { return *model_.body; }
   double end_time() const { return end_time_; }
   double time_step() const { return time_step_; }
-  double rate() const { return rate_; }  // γ, 1/s; 0 in statics
+  double rate() const { return weights_.rate; }  // γ, 1/s; 0 in statics
   bool has_inertia() const { return inertia_; }
-  const HistoryWeights& history_weights() const { return weights_; }
+  const SchemeWeights& weights() const { return weights_; }
 
   EndOfStep End(const Eigen::VectorXd& position) const;
   // What an effect of the model sees there.
@@ -83,11 +72,10 @@ class StepEquation {
  private:
   const Model& model_;
   const MotionHistory& history_;
-  double rate_ = 0;  // γ
   bool inertia_ = true;
   double time_step_ = 0;
   double end_time_ = 0;
-  HistoryWeights weights_;
+  SchemeWeights weights_;
   Eigen::VectorXd position_history_, velocity_history_;  // x̃, ṽ
 };
 

@@ -45,7 +45,8 @@ struct TangentLinear::Implementation {
   std::vector<Eigen::Index> of_grips;  // perturbations that move gripped nodes
   double element_size;                 // m
   // Now and one step earlier.
-  Eigen::MatrixXd position, velocity, previous_position, previous_velocity;
+  Eigen::MatrixXd position, velocity, acceleration;
+  Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
   std::vector<Memory> inside;   // one per effect of the model
   std::vector<Memory> outside;  // one per perturbation; without effect where it is the model's
 
@@ -265,13 +266,11 @@ struct TangentLinear::Implementation {
     const StepEquation equation(model, before, scheme, time_step);
     const StepEquation::EndOfStep end = equation.End(at);
     const double rate = equation.rate();
-    const StepEquation::HistoryWeights& weights = equation.history_weights();
-    Eigen::MatrixXd position_history = weights.now * position;
-    Eigen::MatrixXd velocity_history = weights.now * velocity;
-    if (weights.before != 0) {
-      position_history += weights.before * previous_position;
-      velocity_history += weights.before * previous_velocity;
-    }
+    const SchemeWeights& weights = equation.weights();
+    const Eigen::MatrixXd position_history =
+        weights.Combine(position, previous_position, velocity, previous_velocity);
+    const Eigen::MatrixXd velocity_history =
+        weights.Combine(velocity, previous_velocity, acceleration, previous_acceleration);
 
     equation.Tangent(at, /*convexify=*/false, &tangent);
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(position.rows(), Count());
@@ -305,8 +304,10 @@ struct TangentLinear::Implementation {
     AdvanceMemories(equation, end, moved, speed);
     previous_position = std::move(position);
     previous_velocity = std::move(velocity);
+    previous_acceleration = std::move(acceleration);
     position = moved;
     velocity = speed;
+    acceleration = rate * (velocity - velocity_history);
     summary.status = TangentLinearSummary::Status::kSolved;
     return summary;
   }

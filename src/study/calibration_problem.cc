@@ -344,6 +344,17 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
   return calibration;
 }
 
+Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
+  progress->Begin("fit", 0);
+  int evaluations = 0;
+  Calibration calibration =
+      FitOver(std::numeric_limits<double>::infinity(), start, {}, progress, &evaluations);
+  progress->End(calibration.message);
+  calibration.predictions = evaluations;
+  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
+  return calibration;
+}
+
 Calibration CalibrationProblem::FitFromStart(Progress* progress) const {
   Calibration calibration = Fit(Start(), progress);
   if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;

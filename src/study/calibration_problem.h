@@ -84,6 +84,9 @@ class CalibrationProblem {
   Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
                   const CalibrationOptions& options = {}) const;
 
+  // Over all fitted frames at once, from near the solution.
+  Calibration FitOn(const Eigen::VectorXd& start, Progress* progress) const;
+
   // From Start(). A fit from far away may end where it is off by a period of a vibration: where it
   // leaves far more than noise, the moduli are started from elsewhere too, and the best is kept.
   Calibration FitFromStart(Progress* progress) const;

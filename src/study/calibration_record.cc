@@ -92,6 +92,8 @@ json ToJson(const CalibrationRecord& record) {
               {"usable", record.usable},
               {"message", record.message},
               {"noise_m", record.noise},
+              {"time_step_s", record.time_step},
+              {"step_error_in_noise", Number(record.step_error)},
               {"rms_before", Number(record.start_rms)},
               {"rms_after", Number(record.rms)},
               {"predictions", record.predictions},
@@ -109,6 +111,8 @@ CalibrationRecord FromJson(const json& value) {
   record.usable = value.at("usable");
   record.message = value.at("message");
   record.noise = value.at("noise_m");
+  record.time_step = value.at("time_step_s");
+  record.step_error = FromNumber(value.at("step_error_in_noise"), kInfinity);
   record.start_rms = FromNumber(value.at("rms_before"), kInfinity);
   record.rms = FromNumber(value.at("rms_after"), kInfinity);
   record.predictions = value.at("predictions");

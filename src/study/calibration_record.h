@@ -43,6 +43,8 @@ struct CalibrationRecord {
   // m, of a marker's coordinate and of a scanned point along the normal, that residuals are weighed
   // with; 0: there are none.
   double noise = 0, scan_noise = 0;
+  double time_step = 0;           // s, of the simulation
+  double step_error = 0;          // what half of it would change, σ; 0: the step was given
   double start_rms = 0, rms = 0;  // of the whitened residuals, before and after
   int predictions = 0;
   std::vector<FittedParameter> parameters;  // the model's, then the recordings'

@@ -9,23 +9,25 @@
 #include "record/csv_table.h"
 #include "study/misfit_report.h"
 #include "study/run_stage.h"
+#include "study/stepped_fit.h"
 
 namespace lacuna {
 namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 3;
+constexpr int kCalibrationVersion = 4;
 
 struct CalibrationStage {
   CalibrationRecord record;
   CsvTable misfit;
 };
 
-CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& reference,
+CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
                             Progress* progress) {
+  const SteppedFit fit = FitWithItsStep(reference.mesh, &study, progress);
+  const Calibration& calibration = fit.calibration;
   const CalibrationProblem problem(study, reference.mesh);
-  const Calibration calibration = problem.FitFromStart(progress);
   CalibrationStage stage;
   CalibrationRecord& record = stage.record;
   // So that the folder of runs can be moved together with the experiments.
@@ -37,6 +39,8 @@ CalibrationStage Calibrated(const PredictionStudy& study, const ReferenceBody& r
   record.message = calibration.message;
   record.noise = problem.noise();
   record.scan_noise = problem.scan_noise();
+  record.time_step = study.time_step;
+  record.step_error = fit.step_error;
   record.start_rms = calibration.start_rms;
   record.rms = calibration.rms;
   record.predictions = calibration.predictions;
@@ -127,6 +131,7 @@ FittedRun OpenRun(const std::filesystem::path& run) {
     throw InputError(fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(),
                                  experiment.string()));
   }
+  opened.study.time_step = opened.record.time_step;
   opened.mesh = ReadReferenceBody(FinishedStage(run, "mesh")).mesh;
   opened.values.resize(static_cast<Eigen::Index>(opened.record.parameters.size()));
   for (size_t k = 0; k < opened.record.parameters.size(); ++k)

@@ -15,6 +15,10 @@ namespace {
 // A rival need not be at its very best to be told from one that fits.
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
+// Of the steps that then take the held-out frames in: the most, and the log evidence that ends
+// them.
+constexpr int kSettlingSteps = 4;
+constexpr double kSettled = 0.5;
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
 Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit) {
@@ -117,12 +121,10 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 
 namespace {
 
-// The same after one more step to first order, which takes the held-out frames in too, where that
-// makes the evidence of all frames larger.
-FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
-  FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
-  if (!hypothesis.misfit.usable) return hypothesis;
+// The values after a step to first order from a hypothesis' own, which takes the held-out frames in
+// too.
+Eigen::VectorXd Moved(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                      const FittedHypothesis& hypothesis, const LinearisedMisfit& same) {
   const LinearFit fit =
       LinearModel(WhitenedRows(hypothesis.misfit.residual, same, 0, false),
                   WhitenedRows(hypothesis.misfit.by, same, 0, false), hypothesis.priors)
@@ -136,12 +138,25 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, const Eige
         std::clamp(parameter.log_scale ? values[at] * std::exp(by / values[at]) : values[at] + by,
                    parameter.min, parameter.max);
   }
-  FittedHypothesis next = HypothesisAt(problem, moved, adopted, same);
-  if (!next.misfit.usable) return hypothesis;
+  return moved;
+}
+
+// The hypothesis at the parameters that are best for all frames, sought from `values`.
+FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
+                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   const NoiseLevel white;
-  return EvidenceOf(next, white).log_evidence > EvidenceOf(hypothesis, white).log_evidence
-             ? next
-             : hypothesis;
+  FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
+  for (int step = 0; step < kSettlingSteps && hypothesis.misfit.usable; ++step) {
+    values = Moved(problem, values, hypothesis, same);
+    FittedHypothesis next = HypothesisAt(problem, values, adopted, same);
+    if (!next.misfit.usable) break;
+    const double gain =
+        EvidenceOf(next, white).log_evidence - EvidenceOf(hypothesis, white).log_evidence;
+    if (!(gain > 0)) break;
+    hypothesis = std::move(next);
+    if (gain < kSettled) break;
+  }
+  return hypothesis;
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name)
   return config.Choice<TimeScheme>("scheme",
                                    {{"quasi_static", TimeScheme::kQuasiStatic},
                                     {"implicit_euler", TimeScheme::kImplicitEuler},
-                                    {"bdf2", TimeScheme::kBdf2}},
+                                    {"bdf2", TimeScheme::kBdf2},
+                                    {"two_step", TimeScheme::kTwoStep}},
                                    default_name);
 }
 

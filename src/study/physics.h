@@ -27,7 +27,7 @@ std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config);
 // Warnings about values far outside the range that the effect's card calls plausible.
 std::vector<std::string> ImplausibleParameters(const std::vector<std::shared_ptr<Effect>>& effects);
 
-// `scheme: quasi_static | implicit_euler | bdf2`.
+// `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);
 
 // A number over time: linear between its points, constant before the first and after the last.

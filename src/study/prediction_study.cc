@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "effects/catalogue.h"
 #include "study/recorded_motion.h"
@@ -242,6 +244,24 @@ void SetParameter(const ModelParameter& parameter, double value) {
   }
 }
 
+namespace {
+
+constexpr double kLongestStep = 0.005;  // s, to begin with
+
+// Mean distance of the frames that are used, s, of the recording where it is least.
+double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const PredictedRecording& item : recordings) {
+    const std::vector<double>& times = item.recording.times;
+    if (item.frames.size() < 2) continue;
+    shortest = std::min(shortest, (times[item.frames.back()] - times[item.frames.front()]) /
+                                      static_cast<double>(item.frames.size() - 1));
+  }
+  return shortest;
+}
+
+}  // namespace
+
 bool IsPredictionStudy(const Config& config) { return config.Has("recordings"); }
 
 PredictionStudy ReadPredictionStudy(const Config& config) {
@@ -258,11 +278,14 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.mesh = ReadMeshSettings(mesh);
   study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
   study.effects = ReadEffects(config);
-  const Config motion = config.Child("motion");
-  study.scheme = ReadTimeScheme(motion, "bdf2");
-  if (study.scheme == TimeScheme::kQuasiStatic)
-    motion.Fail("scheme", "a prediction needs inertia: implicit_euler or bdf2");
-  study.time_step = motion.Quantity("time_step", kTime, kPositive, study.time_step);
+  const std::optional<Config> motion = config.OptionalChild("motion");
+  if (motion) {
+    study.scheme = ReadTimeScheme(*motion, "two_step");
+    if (study.scheme == TimeScheme::kQuasiStatic)
+      motion->Fail("scheme", "a prediction needs inertia: two_step, bdf2 or implicit_euler");
+  }
+  study.chooses_time_step = !motion || !motion->Has("time_step");
+  if (!study.chooses_time_step) study.time_step = motion->Quantity("time_step", kTime, kPositive);
   study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
@@ -275,6 +298,8 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
                    [](const PredictedRecording& item) { return item.fitted; }))
     config.Fail("recordings", "none of them is fitted");
   RequireSomethingToFit(config, study);
+  if (study.chooses_time_step)
+    study.time_step = std::min(kLongestStep, 0.5 * ShortestSpacing(study.recordings));
   const auto& density = study.recordings.front().recording.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);

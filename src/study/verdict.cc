@@ -33,6 +33,9 @@ constexpr double kGripRival = 0.5, kOtherRival = 0.98;
 // Where the best effect leaves more than noise, it must have explained this share of what is more
 // than noise to be named.
 constexpr double kMostOfIt = 0.85;
+// Where more than noise is left, a nuisance that explains this share of the misfit is still what is
+// to be seen to first.
+constexpr double kMostByNuisance = 0.5;
 // A finer discretisation would change this share of the error.
 constexpr double kMeshMatters = 0.25;
 
@@ -77,17 +80,19 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
   const std::string error = fmt::format(
       "{:.3f} mm or {:.1f} σ", 1e3 * diagnosis->errors.held_out_rms, diagnosis->errors.in_noise);
   std::vector<std::string> advice;
+  double most_explained = 0;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const bool counts = IsDiscretisation(nuisance.candidate)
                             ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed &&
                                   diagnosis->errors.in_noise > kAtNoise
                             : nuisance.adopted || nuisance.evidence > kNamed;
     if (!counts) continue;
+    most_explained = std::max(most_explained, nuisance.explained);
     diagnosis->effects.push_back(nuisance.candidate.name);
     advice.push_back(fmt::format("{} explains {:.0f} % of the misfit: {}", nuisance.candidate.what,
                                  100 * nuisance.explained, nuisance.candidate.advice));
   }
-  if (!diagnosis->effects.empty()) {
+  if (!diagnosis->effects.empty() && (is_noise || most_explained > kMostByNuisance)) {
     diagnosis->verdict = Verdict::kNuisance;
     diagnosis->explanation = fmt::format("{}", fmt::join(advice, "; "));
   } else if (is_noise) {
@@ -99,8 +104,9 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     diagnosis->verdict = Verdict::kNotInLibrary;
     diagnosis->explanation = fmt::format(
         "{} are left, which is not noise, and no effect of the catalogue explains them "
-        "(best evidence {:.1f})",
-        error, best_evidence);
+        "(best evidence {:.1f}){}",
+        error, best_evidence,
+        advice.empty() ? "" : fmt::format("; nor is this all of it: {}", fmt::join(advice, "; ")));
   }
 }
 

@@ -25,7 +25,7 @@ constexpr double kRelease = 0.1237;  // s
 constexpr double kFitUntil = 0.381;  // s
 constexpr double kFace = 1e-5;       // m: the clamp and the hand hold the faces at the ends
 constexpr double kTrueVolume = 2e-7, kModelVolume = 1e-6, kCoarseVolume = 4e-6;  // m³, tetrahedra
-constexpr double kTrueStep = 0.001, kModelStep = 0.002;                          // s
+constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;                         // s
 constexpr int kMarkers = 8;
 constexpr double kPlaceError = 1e-4;  // m, per axis
 constexpr double kDensity = 1000;     // kg/m³
@@ -93,7 +93,7 @@ std::vector<Eigen::Matrix3Xd> Film(const TrialCase& trial, int recording, bool r
       *model.body, NodesBetween(nodes, trial.true_size[0] - kFace, trial.true_size[0] + 1));
   PredictionOptions options;
   options.start_time = kRelease;
-  options.time_step = rough ? kModelStep : kTrueStep;
+  options.time_step = rough ? kRoughStep : kTrueStep;
   options.held_force.resize(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * trial.hold_forces[recording];
@@ -199,10 +199,10 @@ void FilmCase(const TrialCase& trial, const std::filesystem::path& folder, bool 
       "false}}\n"
       "material: {{law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\neffects: "
       "[{}]\n"
-      "motion: {{time_step: {} s}}\nplace_deviation: {} m\nrecordings:\n",
+      "{}place_deviation: {} m\nrecordings:\n",
       trial.name, trial.nuisance == "coarse_mesh" ? kCoarseVolume : kModelVolume,
-      hides_gravity ? "" : "{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}", kModelStep,
-      2 * kPlaceError);
+      hides_gravity ? "" : "{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}",
+      rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "", 2 * kPlaceError);
   for (int r = 0; r < trial.recordings; ++r) {
     std::vector<Eigen::Matrix3Xd> frames = Film(trial, r, rough);
     AddNoise(trial, r, &frames);

@@ -15,6 +15,7 @@
 #include "core/workers.h"
 #include "study/diagnosis.h"
 #include "study/reference.h"
+#include "study/stepped_fit.h"
 
 namespace lacuna {
 namespace {
@@ -67,11 +68,11 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
 
 TrialOutcome RunCase(const std::filesystem::path& folder) {
   const auto began = std::chrono::steady_clock::now();
-  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   const ReferenceBody reference = MakeReferenceBody(study);
-  const CalibrationProblem problem(study, reference.mesh);
   Progress progress(Silent());
-  const Calibration calibration = problem.FitFromStart(&progress);
+  const Calibration calibration = FitWithItsStep(reference.mesh, &study, &progress).calibration;
+  const CalibrationProblem problem(study, reference.mesh);
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
   // Only which effect is to be kept from the library is known of the truth before.

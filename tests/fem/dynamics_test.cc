@@ -104,6 +104,41 @@ TEST(TimeSchemes, Bdf2IsOfOrderTwoWithDampingAndGravity) {
   EXPECT_NEAR(ObservedOrder(TimeScheme::kBdf2, GravityAndDamping(), 80), 2, 0.1);
 }
 
+TEST(TimeSchemes, TwoStepIsOfOrderTwo) {
+  EXPECT_NEAR(ObservedOrder(TimeScheme::kTwoStep, {}, 400), 2, 0.1);
+}
+TEST(TimeSchemes, TwoStepIsOfOrderTwoWithDampingAndGravity) {
+  EXPECT_NEAR(ObservedOrder(TimeScheme::kTwoStep, GravityAndDamping(), 80), 2, 0.1);
+}
+
+// ẍ = −ω² x over one period from rest at 1, the first of `steps` a tenth as long as the others.
+std::complex<double> AfterAPeriod(TimeScheme scheme, int steps) {
+  const double h = 2 * M_PI / (steps - 0.9);
+  double x = 1, v = 0, a = 0, x_before = 0, v_before = 0, a_before = 0, last = 0;
+  for (int step = 0; step < steps; ++step) {
+    const double length = step == 0 ? 0.1 * h : h;
+    const SchemeWeights weights = WeightsOf(scheme, length, step, last);
+    const double x_history = weights.Combine(x, x_before, v, v_before);
+    const double v_history = weights.Combine(v, v_before, a, a_before);
+    x_before = x, v_before = v, a_before = a, last = length;
+    const double square = weights.rate * weights.rate;
+    x = (square * x_history + weights.rate * v_history) / (square + 1);
+    v = weights.rate * (x - x_history);
+    a = weights.rate * (v - v_history);
+  }
+  return {x, -v};
+}
+
+TEST(TimeSchemes, TwoStepHasAThirdOfTheErrorOfBdf2) {
+  const std::complex<double> bdf2 = AfterAPeriod(TimeScheme::kBdf2, 100);
+  const std::complex<double> two_step = AfterAPeriod(TimeScheme::kTwoStep, 100);
+  // A lag of 2π C (ωh)², C = 1/3 and 0.099: the error constants of the two.
+  const double square = std::pow(2 * M_PI / 99.1, 2);
+  EXPECT_NEAR(-std::arg(bdf2) / (2 * M_PI * square), 1.0 / 3, 0.03);
+  EXPECT_NEAR(-std::arg(two_step) / (2 * M_PI * square), 0.099, 0.01);
+  EXPECT_LT(std::abs(1 - std::abs(two_step)), 0.2 * std::abs(1 - std::abs(bdf2)));
+}
+
 TEST(TimeSchemes, Bdf2StaysOfOrderTwoWhenTheStepChanges) {
   const Model model = Bar("neo_hookean", {6, 1, 1}, 1, true);
   const MotionHistory start = Swing(model);

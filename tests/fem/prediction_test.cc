@@ -88,7 +88,8 @@ TEST(Prediction, IsTheSteppersMotionWhereStepsEnd) {
   std::vector<double> times{history.time};
   std::vector<Eigen::VectorXd> position{history.position}, velocity{history.velocity};
   for (int step = 0; step < 6; ++step) {
-    ASSERT_TRUE(stepper.Step(kTimeStep, {}, &history).IsUsable());
+    const double length = step == 0 ? kFirstStep * kTimeStep : kTimeStep;
+    ASSERT_TRUE(stepper.Step(length, {}, &history).IsUsable());
     times.push_back(history.time);
     position.push_back(history.position);
     velocity.push_back(history.velocity);
@@ -211,8 +212,8 @@ TEST(Prediction, TellsWhereItStopped) {
   EXPECT_EQ(visited.summary.status, PredictionSummary::Status::kStopped);
   EXPECT_FALSE(visited.summary.IsUsable());
   EXPECT_NE(visited.summary.message, "");
-  // The fourth lies in the step that fails, which is the fourth as well.
-  EXPECT_EQ(visited.summary.steps, 3);
+  // The fourth lies in the step that fails, the fifth, as the first is short.
+  EXPECT_EQ(visited.summary.steps, 4);
   EXPECT_EQ(visited.summary.states, 3);
   EXPECT_THAT(visited.index, testing::ElementsAre(0, 1, 2));
   // What was visited is what a model without the trouble does.

@@ -85,8 +85,8 @@ TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
                    });
   // Of what two moments at six states leave out, and of linear interpolation of the tangents. The
   // release is abrupt, and rings in shapes that the basis does not have.
-  EXPECT_LT(std::sqrt(difference[0] / size[0]), 0.01);
-  EXPECT_LT(std::sqrt(difference[1] / size[1]), 0.03);
+  EXPECT_LT(std::sqrt(difference[0] / size[0]), 0.03);
+  EXPECT_LT(std::sqrt(difference[1] / size[1]), 0.06);
 }
 
 }  // namespace

@@ -115,7 +115,8 @@ void ExpectParameterDerivative(const Case& motion, const std::shared_ptr<Effect>
 }
 
 TEST(TangentLinear, AgreesWithDifferencesForEveryParameterOfTheModel) {
-  for (const TimeScheme scheme : {TimeScheme::kBdf2, TimeScheme::kImplicitEuler}) {
+  for (const TimeScheme scheme :
+       {TimeScheme::kBdf2, TimeScheme::kImplicitEuler, TimeScheme::kTwoStep}) {
     Case motion;
     motion.scheme = scheme;
     motion.effects.resize(2);  // symmetric tangents only
@@ -181,7 +182,8 @@ TEST(TangentLinear, FollowsTheGrip) {
   Case motion;
   motion.effects.resize(2);
   const double lift = motion.lift;
-  const Perturbation higher{nullptr, 0, [&](double time, const Eigen::VectorXd&) { return motion.Lifted(time); }};
+  const Perturbation higher{
+      nullptr, 0, [&](double time, const Eigen::VectorXd&) { return motion.Lifted(time); }};
   ExpectDerivative(
       motion, higher, 1e-3, [&](double by) { motion.lift = lift + by; }, 1e-5, "lift");
 }

@@ -52,6 +52,8 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                             {"usable", true},
                             {"message", ""},
                             {"noise_m", kNoise},
+                            {"time_step_s", 0.005},
+                            {"step_error_in_noise", 0},
                             {"rms_before", 2.0},
                             {"rms_after", 1.0},
                             {"predictions", 3},

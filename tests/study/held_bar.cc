@@ -38,7 +38,7 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
       *model.body, NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.078; }));
   PredictionOptions options;
   options.start_time = kRelease;
-  options.time_step = 0.002;
+  options.time_step = 0.0007;
   options.held_force.resize(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * truth.hold_force;

@@ -77,7 +77,7 @@ TEST_F(ReadingAPredictionStudy, TakesWhatIsThere) {
   EXPECT_EQ(item.hold->release, kRelease);
   EXPECT_EQ(item.fit_until, kFitUntil);
   EXPECT_EQ(study.density, 1000);
-  EXPECT_EQ(study.scheme, TimeScheme::kBdf2);
+  EXPECT_EQ(study.scheme, TimeScheme::kTwoStep);
   ASSERT_EQ(study.fitted.size(), 2u);
   EXPECT_EQ(study.fitted[0].prior.name, "young_modulus");
   EXPECT_EQ(study.fitted[1].prior.name, "mass_damping.alpha");

@@ -20,7 +20,8 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
       folder.Path(), {{"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
                        "fit: {parameters: []}"},
                       {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
-                      {"alpha: 1 1/s", "alpha: 2 1/s"}});
+                      {"alpha: 1 1/s", "alpha: 2 1/s"},
+                      {"motion: {time_step: 3 ms}", "motion: {time_step: 2 ms}"}});
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
@@ -64,10 +65,11 @@ TEST(UnexplainedForce, FindsAHiddenBodyForce) {
   EXPECT_TRUE(force.converged);
   EXPECT_TRUE(force.stands_out);
   EXPECT_GT(force.in_noise_before, 5);
-  EXPECT_LT(force.in_noise_after, 1.2);
-  // Aside: within a quarter of its amplitude. Along the weight a steady part is nearly the
+  // The second bending mode rings on, at a frequency that the coarser mesh has a little higher.
+  EXPECT_LT(force.in_noise_after, 1.7);
+  // Aside: within a third of its amplitude. Along the weight a steady part is nearly the
   // markers' places, or a pull along the sagging bar: within three deviations.
-  EXPECT_LT(Error(force, truth, 1), 0.25 * 0.04);
+  EXPECT_LT(Error(force, truth, 1), 0.33 * 0.04);
   EXPECT_LT(Error(force, truth, 2), 3 * force.rms_deviation[2]);
   EXPECT_LT(Error(force, truth, 0), 3 * force.rms_deviation[0]);
   EXPECT_LT(force.rms_deviation[1], 0.25 * 0.04);
