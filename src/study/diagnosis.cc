@@ -85,13 +85,16 @@ std::string VerdictName(Verdict verdict) {
   return "no power";
 }
 
-Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress) {
   Diagnosis diagnosis;
   diagnosis.noise = problem.noise();
+  diagnosis.errors = ErrorsOf(problem, fitted);
+  progress->Begin("discretise", 0);
+  const Eigen::VectorXd values = AtDiscretisationLimit(problem, fitted);
+  progress->End();
   EffectRanking ranking = RankEffects(problem, values, progress, options.without);
   diagnosis.scored = ranking.variants;
-  diagnosis.errors = ErrorsOf(problem, values);
   diagnosis.control = ranking.control;
   diagnosis.untried = std::move(ranking.untried);
   for (ScoredEffect& effect : ranking.effects) {
@@ -185,6 +188,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& val
   diagnosis.left_in_noise = InNoise(*weigh());
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
+  problem.SetModel(fitted);
   return diagnosis;
 }
 

@@ -66,8 +66,8 @@ struct Diagnosis {
 
 std::string VerdictName(Diagnosis::Verdict verdict);
 
-// Of the study fitted to `values` (CalibrationProblem::parameters). Throws Interrupted.
-Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+// Of the study fitted to `fitted` (CalibrationProblem::parameters). Throws Interrupted.
+Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress);
 
 // diagnosis.json

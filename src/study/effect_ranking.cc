@@ -234,6 +234,33 @@ double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& m
   return rows[which] > 0 ? std::sqrt(squares[which] / rows[which]) : 0;
 }
 
+Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
+                        const Eigen::VectorXd& values, const Eigen::VectorXd& change) {
+  Eigen::VectorXd moved = values;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    const double by = change[at];
+    moved[at] = std::clamp(
+        parameters[k].log_scale ? values[at] * std::exp(by / values[at]) : values[at] + by,
+        parameters[k].min, parameters[k].max);
+  }
+  return moved;
+}
+
+Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
+                                      const Eigen::VectorXd& values) {
+  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  if (!misfit.usable) return values;
+  Hypotheses hypotheses;
+  hypotheses.Add(misfit.by, PriorsAbout(problem.parameters(), values));
+  for (const NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
+    hypotheses.Add(nuisance.by, nuisance.priors);
+  const LinearFit fit = LinearModel(WhitenedRows(misfit.residual, misfit, 0, true),
+                                    WhitenedRows(hypotheses.by, misfit, 0, true), hypotheses.priors)
+                            .FitAll(1);
+  return MovedBy(problem.parameters(), values, fit.change);
+}
+
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without) {
   EffectRanking ranking;

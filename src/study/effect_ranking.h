@@ -88,6 +88,16 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values);
 
+// `values` after such changes, within the parameters' bounds; a parameter on a logarithmic scale by
+// their exponential.
+Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
+                        const Eigen::VectorXd& values, const Eigen::VectorXd& change);
+
+// What the study would be fitted to with elements and steps as fine as can be, to first order: what
+// they change is best known there (nuisance_candidates.h). Throws Interrupted.
+Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
+                                      const Eigen::VectorXd& values);
+
 // Rows of a linearised misfit, whitened recording by recording with its errors; of the frames that
 // were fitted, or of all.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,

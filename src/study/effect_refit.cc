@@ -129,16 +129,7 @@ Eigen::VectorXd Moved(const CalibrationProblem& problem, const Eigen::VectorXd& 
       LinearModel(WhitenedRows(hypothesis.misfit.residual, same, 0, false),
                   WhitenedRows(hypothesis.misfit.by, same, 0, false), hypothesis.priors)
           .FitAll(1);
-  Eigen::VectorXd moved = values;
-  for (size_t k = 0; k < problem.parameters().size(); ++k) {
-    const CalibratedParameter& parameter = problem.parameters()[k];
-    const Eigen::Index at = static_cast<Eigen::Index>(k);
-    const double by = fit.change[at];
-    moved[at] =
-        std::clamp(parameter.log_scale ? values[at] * std::exp(by / values[at]) : values[at] + by,
-                   parameter.min, parameter.max);
-  }
-  return moved;
+  return MovedBy(problem.parameters(), values, fit.change);
 }
 
 // The hypothesis at the parameters that are best for all frames, sought from `values`.

@@ -130,8 +130,13 @@ void Decide(Diagnosis* diagnosis) {
                    [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
   const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
   double in_the_model = 0;
-  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
-    if (nuisance.adopted) in_the_model += std::max(0.0, nuisance.evidence);
+  bool corrected = false;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
+    if (!nuisance.adopted) continue;
+    corrected = true;
+    // Mesh and step are no free directions: what they change is simulated.
+    if (!IsDiscretisation(nuisance.candidate)) in_the_model += std::max(0.0, nuisance.evidence);
+  }
   if (evidence < std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model})) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);
     return;
@@ -161,7 +166,6 @@ void Decide(Diagnosis* diagnosis) {
     if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
   }
-  const bool corrected = in_the_model > 0;
   const std::string drop =
       fmt::format("the {} error{} falls from {:.1f} σ to {:.1f} σ, the odds for it are e^{:.0f}",
                   diagnosis->errors.has_held_out ? "held-out" : "fitted",

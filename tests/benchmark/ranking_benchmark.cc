@@ -47,7 +47,7 @@ int Run(const std::string& file, int repeats) {
   const double unit = Median(forward);
   fmt::print("{} unknowns; medians of {}\n", 3 * reference.mesh.nodes.cols(), repeats);
   fmt::print("  one forward simulation of all recordings  {:8.3f} s\n", unit);
-  fmt::print("  finer mesh and half the step              {:8.3f} s  {:5.2f} forward simulations\n",
+  fmt::print("  finer mesh and finer steps                {:8.3f} s  {:5.2f} forward simulations\n",
              Median(nuisances), Median(nuisances) / unit);
   std::vector<double> effects;
   for (int k = 0; k < repeats; ++k)
