@@ -20,6 +20,8 @@ constexpr double kLookAlike = 0.95;
 constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
 constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
+// σ, of held-out frames: what is this far off has other troubles than its discretisation.
+constexpr double kFarOff = 3;
 
 std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
   std::vector<int> range(static_cast<size_t>(count));
@@ -251,6 +253,8 @@ Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
                                       const Eigen::VectorXd& values) {
   const LinearisedMisfit misfit = problem.Linearise(values, true);
   if (!misfit.usable) return values;
+  if (HeldOutInNoise(WhitenedRows(misfit.residual, misfit, 0, false), misfit) > kFarOff)
+    return values;
   Hypotheses hypotheses;
   hypotheses.Add(misfit.by, PriorsAbout(problem.parameters(), values));
   for (const NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
@@ -258,7 +262,8 @@ Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
   const LinearFit fit = LinearModel(WhitenedRows(misfit.residual, misfit, 0, true),
                                     WhitenedRows(hypotheses.by, misfit, 0, true), hypotheses.priors)
                             .FitAll(1);
-  return MovedBy(problem.parameters(), values, fit.change);
+  const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, fit.change);
+  return problem.Linearise(moved, false, {}, &misfit).usable ? moved : values;
 }
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
@@ -303,6 +308,9 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
   // What a finer discretisation would do is nobody's merit.
   std::vector<std::vector<int>> of_nuisance;
   for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
+    of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
+  // Nor is what the object's dimensions do, of which bending stiffness goes with the cube.
+  for (NuisanceCandidate& nuisance : ShapeNuisances(problem, values, misfit))
     of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
 
   // What no effect explains is taken for noise.

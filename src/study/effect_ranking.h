@@ -94,7 +94,8 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
 // What the study would be fitted to with elements and steps as fine as can be, to first order: what
-// they change is best known there (nuisance_candidates.h). Throws Interrupted.
+// they change is best known there (nuisance_candidates.h). `values` where those cannot be simulated
+// or are far from what was measured. Throws Interrupted.
 Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
                                       const Eigen::VectorXd& values);
 

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kShift = 1e-3;  // m, by how much a grip, a frame, a registration may be off
 constexpr double kTurn = 0.02;   // rad
+// How well the object's dimensions are known, in parts of them: 0.05 mm of 17 mm.
+constexpr double kShape = 0.003;
 // By how much frames may be mistimed, in parts of their distance.
 constexpr double kJitter = 0.1;
 // How much finer steps and elements are looked at; and what refining without end would change, in
@@ -24,7 +26,7 @@ constexpr double kJitter = 0.1;
 // Less refined, they would be known less well, and then do the work of a missing effect: a mesh
 // that is a little too stiff near the clamp looks like a stiffness that falls along the bar.
 constexpr double kStepRatio = 4, kVolumeRatio = 6;
-constexpr LinearPrior kStepLimit = {1.07, 0.05, false}, kMeshLimit = {1.15, 0.15, false};
+constexpr LinearPrior kStepLimit = {1.07, 0.15, false}, kMeshLimit = {1.1, 0.4, false};
 // More frames than this, and single frames are too small a part to be looked at one by one.
 constexpr size_t kMostFrames = 400;
 
@@ -168,6 +170,31 @@ std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem&
       CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false));
   problem.SetModel(values);  // the refined models share its effects
   return candidates;
+}
+
+std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
+                                              const Eigen::VectorXd& values,
+                                              const LinearisedMisfit& misfit) {
+  const Model& model = problem.models().front().model();
+  const TetMesh& mesh = problem.body()->mesh;
+  // What is gripped at a face stays at it.
+  Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
+  if (!model.grips.empty() && model.grips.front().nodes.size() > 0)
+    centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
+  const PredictionStudy study = problem.WithGivenNoise();
+  NuisanceCandidate candidate{"shape", "the object's dimensions", "measure the object again", 0, {},
+                              {}};
+  candidate.by = Eigen::MatrixXd::Zero(misfit.residual.size(), 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    TetMesh larger = mesh;
+    larger.nodes.row(axis).array() += kShape * (mesh.nodes.row(axis).array() - centre[axis]);
+    const LinearisedMisfit changed = CalibrationProblem(study, larger).Linearise(values, false);
+    if (!changed.usable || changed.residual.size() != misfit.residual.size()) return {};
+    candidate.by.col(axis) = changed.residual - misfit.residual;
+    candidate.priors.push_back({0, 1, false});
+  }
+  problem.SetModel(values);
+  return {candidate};
 }
 
 std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& problem,

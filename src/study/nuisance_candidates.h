@@ -50,6 +50,12 @@ std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem&
                                                        const Eigen::VectorXd& values,
                                                        const LinearisedMisfit& misfit);
 
+// The object's three dimensions, each known to a part of itself; by runs of a body that is that
+// much larger. None where one of them fails.
+std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
+                                              const Eigen::VectorXd& values,
+                                              const LinearisedMisfit& misfit);
+
 // Those that need no simulation: a clock that is late, frames at uncertain times, one frame out of
 // place, a measuring frame that drifts. `left`: what the fit leaves of each row, in σ; it points at
 // the frame that may be wrong.

@@ -71,8 +71,8 @@ double ExcessExplained(double before, double after) {
   return std::clamp((before * before - after * after) / (before * before - 1), 0.0, 1.0);
 }
 
-bool IsDiscretisation(const NuisanceCandidate& nuisance) {
-  return nuisance.name == "mesh" || nuisance.name == "time_step";
+bool IsAlwaysTaken(const NuisanceCandidate& nuisance) {
+  return nuisance.name == "mesh" || nuisance.name == "time_step" || nuisance.name == "shape";
 }
 
 // Nothing of the catalogue is needed, or nothing of it helps.
@@ -82,7 +82,7 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
   std::vector<std::string> advice;
   double most_explained = 0;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
-    const bool counts = IsDiscretisation(nuisance.candidate)
+    const bool counts = IsAlwaysTaken(nuisance.candidate)
                             ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed &&
                                   diagnosis->errors.in_noise > kAtNoise
                             : nuisance.adopted || nuisance.evidence > kNamed;
@@ -134,8 +134,8 @@ void Decide(Diagnosis* diagnosis) {
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     if (!nuisance.adopted) continue;
     corrected = true;
-    // Mesh and step are no free directions: what they change is simulated.
-    if (!IsDiscretisation(nuisance.candidate)) in_the_model += std::max(0.0, nuisance.evidence);
+    // What mesh, step and dimensions change is simulated and bounded: no free directions.
+    if (!IsAlwaysTaken(nuisance.candidate)) in_the_model += std::max(0.0, nuisance.evidence);
   }
   if (evidence < std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model})) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);

@@ -77,7 +77,8 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
 }
 
 // The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
-// from what a grip that is off, an unknown force of the hand and the discretisation could do.
+// from what a grip or dimensions that are off, an unknown force of the hand and the discretisation
+// could do.
 double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
                   const std::filesystem::path& folder) {
   TrialCase without = trial;
@@ -118,6 +119,8 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   std::vector<NuisanceCandidate> nuisances =
       grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
   for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
+    nuisances.push_back(std::move(nuisance));
+  for (NuisanceCandidate& nuisance : ShapeNuisances(problem, values, misfit))
     nuisances.push_back(std::move(nuisance));
   Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
