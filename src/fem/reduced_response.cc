@@ -8,6 +8,7 @@
 
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
+#include "fem/hermite.h"
 #include "fem/prediction.h"
 
 namespace lacuna {
@@ -182,11 +183,9 @@ void ReducedResponse::Respond(
     w = rate * (q - q_history);
     a = rate * (w - w_history);
     for (; next < times.size() && times[next] <= time; ++next) {
-      const double t = 1 - (time - times[next]) / h, s = 1 - t;
-      visit(static_cast<int>(next),
-            (1 + 2 * t) * s * s * q_before + t * t * (3 - 2 * t) * q +
-                h * (t * s * s * w_before - t * t * s * w),
-            6 * t * s / h * (q - q_before) + s * (1 - 3 * t) * w_before + t * (3 * t - 2) * w);
+      const Knot<Eigen::MatrixXd> at_time = Interpolate(Knot<Eigen::MatrixXd>{q_before, w_before},
+                                                        {q, w}, h, 1 - (time - times[next]) / h);
+      visit(static_cast<int>(next), at_time.position, at_time.velocity);
     }
   }
 }
