@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -17,49 +18,71 @@ constexpr size_t kFewestFrames = 8;
 constexpr double kLargestCorrelation = 0.9;
 constexpr double kCorrelationStep = 0.05;
 
+// R^(−1/2) of each column of `values` (frames × columns) of one series; 0 in frames without it.
+Eigen::MatrixXd Uncorrelated(const Eigen::MatrixXd& values, const std::vector<double>& times,
+                             const std::vector<int>& count, double correlation_time) {
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(values.rows(), values.cols());
+  Eigen::Index last = -1;
+  for (Eigen::Index f = 0; f < values.rows(); ++f) {
+    if (count[f] == 0) continue;
+    double memory = 0;
+    if (last >= 0 && correlation_time > 0)
+      memory = std::exp(-(times[f] - times[last]) / correlation_time);
+    const double scale = 1 / std::sqrt(1 - memory * memory);
+    white.row(f) = scale * std::sqrt(count[f]) * values.row(f);
+    if (memory > 0) white.row(f) -= scale * memory * std::sqrt(count[last]) * values.row(last);
+    last = f;
+  }
+  return white;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout,
                          const SeriesNoise& noise, const std::vector<char>& frames) {
   CHECK_EQ(rows.rows(), layout.Rows());
   CHECK_GT(noise.deviation, 0);
-  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(rows.rows(), rows.cols());
   const Eigen::Index frame_count = static_cast<Eigen::Index>(layout.times.size());
   const double ratio = noise.offset_deviation / noise.deviation;
-  Eigen::VectorXd one(frame_count);  // of this series, the whitened constant
-  for (int s = 0; s < layout.series; ++s) {
-    one.setZero();
-    Eigen::Index last = -1;
-    for (Eigen::Index f = 0; f < frame_count; ++f) {
-      const Eigen::Index row = f * layout.series + s;
-      if (layout.count[row] == 0 || (!frames.empty() && !frames[f])) continue;
-      double memory = 0;
-      if (last >= 0 && noise.correlation_time > 0)
-        memory = std::exp(-(layout.times[f] - layout.times[last]) / noise.correlation_time);
-      const double scale = 1 / std::sqrt(1 - memory * memory);
-      const double weight = scale * std::sqrt(layout.count[row]);
-      white.row(row) = weight / noise.deviation * rows.row(row);
-      one[f] = weight;
-      if (memory > 0) {
-        const Eigen::Index before = last * layout.series + s;
-        const double weight_before = scale * memory * std::sqrt(layout.count[before]);
-        white.row(row) -= weight_before / noise.deviation * rows.row(before);
-        one[f] -= weight_before;
+  // Series that share a common part: coordinates that turn into each other, or each alone.
+  const int width = layout.deformation.empty() ? 1 : 3;
+  CHECK_EQ(layout.series % width, 0);
+  Eigen::MatrixXd white(rows.rows(), rows.cols());
+  Eigen::MatrixXd block(width * frame_count, rows.cols());  // one coordinate after another
+  Eigen::MatrixXd common(width * frame_count, width);       // what an error along each axis does
+  for (int first = 0; first < layout.series; first += width) {
+    for (int c = 0; c < width; ++c) {
+      const int s = first + c;
+      std::vector<int> count(layout.times.size());
+      Eigen::MatrixXd own(frame_count, width);
+      for (Eigen::Index f = 0; f < frame_count; ++f) {
+        const bool is_chosen = frames.empty() || frames[f];
+        count[f] = is_chosen ? layout.count[f * layout.series + s] : 0;
+        if (width == 1)
+          own(f, 0) = 1;
+        else
+          own.row(f) = layout.deformation[(f * layout.series + first) / width].row(c);
       }
-      last = f;
+      const auto series = rows(Eigen::seqN(s, frame_count, layout.series), Eigen::all);
+      block.middleRows(c * frame_count, frame_count) =
+          Uncorrelated(series / noise.deviation, layout.times, count, noise.correlation_time);
+      common.middleRows(c * frame_count, frame_count) =
+          Uncorrelated(own, layout.times, count, noise.correlation_time);
     }
-    const double length = one.squaredNorm();
-    if (length == 0 || ratio == 0) continue;
-    // (I + ratio² 1 1ᵀ)^(−1/2) takes this share of what lies along the constant away.
-    const double share = 1 - 1 / std::sqrt(1 + length * ratio * ratio);
-    for (Eigen::Index k = 0; k < rows.cols(); ++k) {
-      double along = 0;
-      for (Eigen::Index f = 0; f < frame_count; ++f)
-        along += one[f] * white(f * layout.series + s, k);
-      along *= share / length;
-      for (Eigen::Index f = 0; f < frame_count; ++f)
-        white(f * layout.series + s, k) -= along * one[f];
+    if (ratio > 0) {
+      // (I + ratio² U Uᵀ)^(−1/2) takes these shares of what lies along U's singular vectors away.
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(common.transpose() * common);
+      const Eigen::MatrixXd along = common * eigen.eigenvectors();
+      for (int k = 0; k < width; ++k) {
+        const double square = eigen.eigenvalues()[k];
+        if (!(square > 0)) continue;  // not observed
+        const double share = (1 - 1 / std::sqrt(1 + square * ratio * ratio)) / square;
+        block -= along.col(k) * (share * (along.col(k).transpose() * block));
+      }
     }
+    for (int c = 0; c < width; ++c)
+      white(Eigen::seqN(first + c, frame_count, layout.series), Eigen::all) =
+          block.middleRows(c * frame_count, frame_count);
   }
   return white;
 }

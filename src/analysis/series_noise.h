@@ -3,8 +3,10 @@
 // Of each series y (one coordinate of one marker, say) the noise is
 //   e ~ N(0, σ² R + s² 1 1ᵀ),   R_ij = exp(−|t_i − t_j|/τ):
 // correlated over a time τ (an Ornstein–Uhlenbeck process; 0: white) and with a part that is common
-// to all frames, as a marker's place on the object is known to s only. A value that is the mean of
-// n measurements has σ/√n for σ. Rows of a recording: its series in each frame, frames outermost.
+// to all frames, as a marker's place on the object is known to s only. That part turns and
+// stretches with the object: where its deformation gradient F_t at the marker is given, the three
+// coordinates share s² F_t F_uᵀ between frames t and u. A value that is the mean of n measurements
+// has σ/√n for σ. Rows of a recording: its series in each frame, frames outermost.
 #ifndef LACUNA_ANALYSIS_SERIES_NOISE_H_
 #define LACUNA_ANALYSIS_SERIES_NOISE_H_
 
@@ -17,6 +19,8 @@ struct SeriesLayout {
   int series = 0;
   std::vector<double> times;  // s, ascending, of the frames
   std::vector<int> count;     // series × frames: n, 0 where nothing was observed
+  // (series/3) × frames: F of the point that three successive series are coordinates of; empty: 1.
+  std::vector<Eigen::Matrix3d> deformation;
 
   Eigen::Index Rows() const {
     return static_cast<Eigen::Index>(series) * static_cast<Eigen::Index>(times.size());

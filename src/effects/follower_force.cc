@@ -25,7 +25,7 @@
 #include "effects/vector_parameters.h"
 #include "fem/element_kinematics.h"
 #include "fem/polar_decomposition.h"
-#include "fem/shape_functions.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {

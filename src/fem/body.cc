@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "fem/element_kinematics.h"
-#include "fem/shape_functions.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "geometry/nearest.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {
@@ -14,21 +15,18 @@ namespace {
 // the point.
 constexpr int kCandidates = 48;
 
-Eigen::Vector4d Barycentric(const TetMesh& mesh, int tet, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d origin = mesh.nodes.col(mesh.tets(0, tet));
+// ξ_1, ξ_2, ξ_3 of a straight-edged tetrahedron are this times X − X_0: 3 × 3, 1/m.
+Eigen::Matrix3d BarycentricGradient(const TetMesh& mesh, int tet) {
   Eigen::Matrix3d edges;
-  for (int a = 0; a < 3; ++a) edges.col(a) = mesh.nodes.col(mesh.tets(a + 1, tet)) - origin;
-  const Eigen::Vector3d inner = edges.inverse() * (point - origin);
-  return {1 - inner.sum(), inner[0], inner[1], inner[2]};
+  for (int a = 0; a < 3; ++a)
+    edges.col(a) = mesh.nodes.col(mesh.tets(a + 1, tet)) - mesh.nodes.col(mesh.tets(0, tet));
+  return edges.inverse();
 }
 
-Eigen::VectorXd ShapeFunctions(const Eigen::Vector4d& l, int order) {
-  if (order == 1) return l;
-  Eigen::VectorXd shape(10);
-  for (int a = 0; a < 4; ++a) shape[a] = l[a] * (2 * l[a] - 1);
-  constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-  for (int e = 0; e < 6; ++e) shape[4 + e] = 4 * l[kEdges[e][0]] * l[kEdges[e][1]];
-  return shape;
+Eigen::Vector4d Barycentric(const TetMesh& mesh, int tet, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d inner =
+      BarycentricGradient(mesh, tet) * (point - mesh.nodes.col(mesh.tets(0, tet)));
+  return {1 - inner.sum(), inner[0], inner[1], inner[2]};
 }
 
 }  // namespace
@@ -44,16 +42,23 @@ Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points) {
 
   Embedding embedding{Eigen::VectorXi(points.cols()),
                       Eigen::MatrixXd(mesh.tets.rows(), points.cols()),
+                      std::vector<Eigen::MatrixX3d>(static_cast<size_t>(points.cols())),
                       Eigen::VectorXd(points.cols())};
   ParallelFor(points.cols(), 256, [&](int64_t j) {
     double best = -std::numeric_limits<double>::infinity();
+    Eigen::Vector4d inside;
     for (int k = 0; k < candidates; ++k) {
       const Eigen::Vector4d l = Barycentric(mesh, near.index(k, j), points.col(j));
       if (l.minCoeff() <= best) continue;
       best = l.minCoeff();
       embedding.tet[j] = near.index(k, j);
-      embedding.weight.col(j) = ShapeFunctions(l, mesh.Order());
+      inside = l;
     }
+    embedding.weight.col(j) = ShapeValues(mesh.Order(), inside);
+    Eigen::Matrix<double, 4, 3> by_place;
+    by_place.bottomRows<3>() = BarycentricGradient(mesh, embedding.tet[j]);
+    by_place.row(0) = -by_place.bottomRows<3>().colwise().sum();
+    embedding.gradient[static_cast<size_t>(j)] = ShapeDerivatives(mesh.Order(), inside) * by_place;
     embedding.outside[j] = std::max(0.0, -best);
   });
   return embedding;
@@ -66,6 +71,16 @@ Eigen::Matrix3Xd PointsAt(const Embedding& embedding, const TetMesh& mesh,
     for (Eigen::Index a = 0; a < mesh.tets.rows(); ++a)
       points.col(j) += embedding.weight(a, j) * nodes.col(mesh.tets(a, embedding.tet[j]));
   return points;
+}
+
+Eigen::Matrix3d DeformationGradientAt(const Embedding& embedding, Eigen::Index j,
+                                      const TetMesh& mesh,
+                                      const Eigen::Ref<const Eigen::Matrix3Xd>& nodes) {
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+  for (Eigen::Index a = 0; a < mesh.tets.rows(); ++a)
+    gradient += nodes.col(mesh.tets(a, embedding.tet[j])) *
+                embedding.gradient[static_cast<size_t>(j)].row(a);
+  return gradient;
 }
 
 }  // namespace lacuna

@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,17 +19,33 @@ constexpr int kBins = 10;
 // do is far less.
 constexpr double kSameMotion = 0.1;
 
-// Whether the motion is the one that the fit left its misfits of: they differ by the markers'
-// places alone, the same in all frames.
+// Whether the motion is the one that the fit left its misfits of: they differ by errors of the
+// markers' places alone, that move with the object.
 bool IsThatMotion(const ComparedRecording& recording, const ReplayedMotion& motion, double noise) {
   if (motion.predicted.cols() != recording.measured.cols() ||
       motion.predicted.rows() != recording.measured.rows())
     return false;
-  const Eigen::MatrixXd places =
-      Centred(motion.predicted - recording.measured - recording.difference);
-  return std::all_of(places.reshaped().begin(), places.reshaped().end(), [&](double place) {
-    return std::isnan(place) || std::abs(place) < kSameMotion * noise;
-  });
+  const Eigen::MatrixXd shown = motion.predicted - recording.measured - recording.difference;
+  for (Eigen::Index m = 0; m < shown.rows() / 3; ++m) {
+    const auto in_frame = [&](Eigen::Index f) -> Eigen::Vector3d {
+      return shown.col(f).segment<3>(3 * m);
+    };
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d toward = Eigen::Vector3d::Zero();
+    for (Eigen::Index f = 0; f < shown.cols(); ++f) {
+      if (!in_frame(f).allFinite()) continue;
+      const Eigen::Matrix3d& deformation = motion.deformation[f][m];
+      information += deformation.transpose() * deformation;
+      toward += deformation.transpose() * in_frame(f);
+    }
+    const Eigen::Vector3d place = information.ldlt().solve(toward);
+    for (Eigen::Index f = 0; f < shown.cols(); ++f) {
+      if (!in_frame(f).allFinite()) continue;
+      const Eigen::Vector3d other = in_frame(f) - motion.deformation[f][m] * place;
+      if (other.cwiseAbs().maxCoeff() > kSameMotion * noise) return false;
+    }
+  }
+  return true;
 }
 
 void AddAgainst(const ReplayedMotion& motion, const ComparedRecording& recording,

@@ -2,13 +2,17 @@
 
 #include <glog/logging.h>
 
+#include <Eigen/Cholesky>
+
 #include "analysis/series_noise.h"
 
 namespace lacuna {
 
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& count, int points,
-                         const MeasurementErrors& errors) {
+                         const MeasurementErrors& errors,
+                         const std::vector<Eigen::Matrix3d>& deformation) {
   SeriesLayout layout;
+  layout.deformation = deformation;
   if (!count.empty()) {
     const size_t components = static_cast<size_t>(rows.rows()) / count.size();
     layout.series = static_cast<int>(components) * points;
@@ -20,24 +24,28 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& co
 
 Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<int>& count,
                             int points, const MeasurementErrors& errors,
-                            const std::vector<char>& among) {
+                            const std::vector<char>& among,
+                            const std::vector<Eigen::Matrix3d>& deformation) {
   CHECK_EQ(count.size(), among.size() * points);
   if (count.empty()) return Eigen::MatrixXd::Zero(1, points);
   const Eigen::Index components = residual.size() / static_cast<Eigen::Index>(count.size());
-  Eigen::MatrixXd common = Eigen::MatrixXd::Zero(components, points);
-  Eigen::VectorXd seen = Eigen::VectorXd::Zero(points);
-  for (size_t f = 0; f < among.size(); ++f) {
-    if (!among[f]) continue;
-    for (int point = 0; point < points; ++point) {
-      const Eigen::Index at = static_cast<Eigen::Index>(f) * points + point;
-      if (count[at] == 0) continue;
-      common.col(point) += count[at] * residual.segment(components * at, components);
-      seen[point] += count[at];
-    }
-  }
   const double ratio = errors.common / errors.noise;
-  for (int point = 0; point < points; ++point)
-    common.col(point) *= ratio * ratio / (1 + seen[point] * ratio * ratio);
+  Eigen::MatrixXd common(components, points);
+  for (int point = 0; point < points; ++point) {
+    Eigen::MatrixXd information = Eigen::MatrixXd::Identity(components, components);
+    Eigen::VectorXd toward = Eigen::VectorXd::Zero(components);
+    for (size_t f = 0; f < among.size(); ++f) {
+      const size_t at = f * static_cast<size_t>(points) + static_cast<size_t>(point);
+      if (!among[f] || count[at] == 0) continue;
+      Eigen::MatrixXd shows = Eigen::MatrixXd::Identity(components, components);
+      if (!deformation.empty()) shows = deformation[at];
+      const double weight = count[at] * ratio * ratio;
+      information += weight * shows.transpose() * shows;
+      toward += weight * shows.transpose() *
+                residual.segment(components * static_cast<Eigen::Index>(at), components);
+    }
+    common.col(point) = information.llt().solve(toward);
+  }
   return common;
 }
 

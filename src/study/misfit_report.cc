@@ -64,7 +64,8 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
         const Eigen::Vector3d measured = observed.measured.col(m);
         Eigen::Vector3d difference = Eigen::Vector3d::Constant(kNotMeasured);
         if (misfit.count[at] > 0 && misfit.Components() == 3)
-          difference = misfit.residual.segment<3>(3 * at) - recording.place_offset.col(m);
+          difference =
+              misfit.residual.segment<3>(3 * at) - observed.Shown(m, recording.place_offset.col(m));
         if (misfit.count[at] > 0 && misfit.Components() == 1)
           difference =
               (misfit.residual[at] - recording.place_offset(0, m)) * observed.normal.col(m);

@@ -14,7 +14,7 @@ Eigen::MatrixXd LinearRows::operator*(const Eigen::Ref<const Eigen::MatrixXd>& n
 }
 
 MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
-    : recording_(recording), places_(Embed(mesh, recording.marker_places)) {
+    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.marker_places)) {
   LinearRows rows;
   for (Eigen::Index m = 0; m < places_.tet.size(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -28,9 +28,18 @@ MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
   rows_ = std::make_shared<const LinearRows>(std::move(rows));
 }
 
-Observed MarkerObserver::Observe(int frame, const Eigen::VectorXd& /*position*/) const {
+std::vector<Eigen::Matrix3d> MarkerObserver::DeformationAt(const Eigen::VectorXd& position) const {
+  std::vector<Eigen::Matrix3d> deformation;
+  const auto nodes = position.reshaped(3, mesh_.NodeCount());
+  for (Eigen::Index m = 0; m < places_.tet.size(); ++m)
+    deformation.push_back(DeformationGradientAt(places_, m, mesh_, nodes));
+  return deformation;
+}
+
+Observed MarkerObserver::Observe(int frame, const Eigen::VectorXd& position) const {
   Observed observed;
   observed.rows = rows_;
+  observed.deformation = DeformationAt(position);
   observed.measured = recording_.markers.positions[frame];
   observed.target = observed.measured.reshaped();
   observed.count.resize(observed.measured.cols());

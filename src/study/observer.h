@@ -30,9 +30,18 @@ struct Observed {
   Eigen::VectorXd target;
   Eigen::VectorXi count;      // points: measurements that each is the mean of; 0: not seen
   Eigen::Matrix3Xd measured;  // 3 × points, m, where it was measured; NaN where not seen
+  // Of points of three components, F = ∂x/∂X at each in the model: how an error of its place on the
+  // object shows in this frame. Empty: as in all others.
+  std::vector<Eigen::Matrix3d> deformation;
   // Along which a point of one component is measured: 3 × points, unit length; 3 × 0 of three.
   Eigen::Matrix3Xd normal;
   int offered = 0, used = 0;  // scanned points in the frame, and those that were compared
+
+  // How an error of a point's place (its components, m) shows in this frame.
+  Eigen::VectorXd Shown(int point, const Eigen::VectorXd& error) const {
+    if (deformation.empty()) return error;
+    return deformation[static_cast<size_t>(point)] * error;
+  }
 };
 
 class Observer {
@@ -50,6 +59,7 @@ class Observer {
 // Markers, at their places in the mesh: predicted and measured position of each.
 class MarkerObserver : public Observer {
  public:
+  // Both must outlive it.
   MarkerObserver(const Recording& recording, const TetMesh& mesh);
   int PointCount() const override { return static_cast<int>(recording_.marker_places.cols()); }
   int Components() const override { return 3; }
@@ -58,9 +68,12 @@ class MarkerObserver : public Observer {
   const Embedding& places_in_mesh() const { return places_; }
   // x, y, z of each marker from the nodes.
   const LinearRows& rows() const { return *rows_; }
+  // F at each marker, for the model's nodes at `position` (3n).
+  std::vector<Eigen::Matrix3d> DeformationAt(const Eigen::VectorXd& position) const;
 
  private:
   const Recording& recording_;
+  const TetMesh& mesh_;
   Embedding places_;
   std::shared_ptr<const LinearRows> rows_;
 };

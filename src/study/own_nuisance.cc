@@ -39,9 +39,11 @@ Eigen::VectorXd OwnNuisance(const RecordingModel& model, const MeasurementErrors
       Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
       if (!prediction.usable) return prediction;
       if (kept.empty()) kept = std::move(misfit.observed);
-      prediction.residual = Whitened(misfit.residual, misfit.count, misfit.points, errors);
-      if (with_jacobian)
-        prediction.jacobian = Whitened(misfit.by, misfit.count, misfit.points, errors);
+      const auto whitened = [&](const Eigen::MatrixXd& rows) {
+        return Whitened(rows, misfit.count, misfit.points, errors, misfit.deformation);
+      };
+      prediction.residual = whitened(misfit.residual);
+      if (with_jacobian) prediction.jacobian = whitened(misfit.by);
       return prediction;
     });
     values = fitted.parameters;

@@ -25,16 +25,17 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
   for (const Observed& seen : part.observed)
     count.insert(count.end(), seen.count.begin(), seen.count.end());
   const Eigen::VectorXd residual = misfit.residual.segment(part.first_row, part.layout.Rows());
-  const Eigen::MatrixXd places = CommonError(residual, count, static_cast<int>(points), part.errors,
-                                             std::vector<char>(part.observed.size(), 1));
+  const Eigen::MatrixXd places =
+      CommonError(residual, count, static_cast<int>(points), part.errors,
+                  std::vector<char>(part.observed.size(), 1), part.layout.deformation);
   Eigen::Matrix3Xd displacements =
       Eigen::Matrix3Xd::Constant(3, points * frames, std::numeric_limits<double>::quiet_NaN());
   for (Eigen::Index f = 0; f < frames; ++f) {
     const Observed& seen = part.observed[static_cast<size_t>(f)];
     for (Eigen::Index i = 0; i < points; ++i) {
       if (seen.count[i] == 0) continue;
-      const Eigen::VectorXd own =
-          residual.segment(components * (f * points + i), components) - places.col(i);
+      const Eigen::VectorXd own = residual.segment(components * (f * points + i), components) -
+                                  seen.Shown(static_cast<int>(i), places.col(i));
       if (components == 3)
         displacements.col(f * points + i) = own;
       else

@@ -226,6 +226,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
             }
           }
         }
+        misfit.deformation.insert(misfit.deformation.end(), seen.deformation.begin(),
+                                  seen.deformation.end());
         misfit.frames.push_back(frame);
         misfit.observed.push_back(std::move(seen));
       });

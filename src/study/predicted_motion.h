@@ -22,7 +22,8 @@ struct Misfit {
   Eigen::VectorXd residual;  // components·points·frames
   Eigen::MatrixXd by;      // ∂residual/∂(parameter), rows × columns; 0 columns: not asked for
   std::vector<int> count;  // points × frames: measurements that each is the mean of; 0: not seen
-  std::vector<Observed> observed;  // of each frame: what the prediction was compared with
+  std::vector<Eigen::Matrix3d> deformation;  // points × frames: F (Observed); empty of scans
+  std::vector<Observed> observed;            // of each frame: what the prediction was compared with
   PredictionSummary summary;
 
   Eigen::Index Components() const {

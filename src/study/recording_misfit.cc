@@ -17,9 +17,9 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
     for (int point = 0; point < misfit.points; ++point) {
       const Eigen::Index at = static_cast<Eigen::Index>(f) * misfit.points + point;
       if (misfit.count[at] == 0) continue;
-      const double distance =
-          (misfit.residual.segment(components * at, components) - recording.place_offset.col(point))
-              .norm();
+      const double distance = (misfit.residual.segment(components * at, components) -
+                               misfit.observed[f].Shown(point, recording.place_offset.col(point)))
+                                  .norm();
       squares += distance * distance;
       weighted += misfit.count[at] * distance * distance;
       measure.largest = std::max(measure.largest, distance);
@@ -53,8 +53,9 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
       recording.fitted.push_back(item.fitted && time <= item.fit_until);
       tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
     }
-    recording.place_offset = CommonError(recording.misfit.residual, recording.misfit.count,
-                                         recording.misfit.points, errors, tells_places);
+    recording.place_offset =
+        CommonError(recording.misfit.residual, recording.misfit.count, recording.misfit.points,
+                    errors, tells_places, recording.misfit.deformation);
     recording.in_fit = Measure(recording, true, errors.noise);
     recording.held_out = Measure(recording, false, errors.noise);
     all.push_back(std::move(recording));

@@ -26,7 +26,7 @@ struct RecordingMisfit {
   std::string name;
   Misfit misfit;
   std::vector<char> fitted;        // per frame of the misfit
-  Eigen::MatrixXd place_offset;    // components × points, m: what was taken for the points' places
+  Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
   MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
 };
 

@@ -60,8 +60,9 @@ struct Linearised {
 
 class Problem {
  public:
-  Problem(const RecordingModel& recording, const SmoothForce& field, double noise,
-          double place_deviation)
+  // Errors of the markers' places show as along `motion`.
+  Problem(const RecordingModel& recording, const ReplayedMotion& motion, const SmoothForce& field,
+          double noise, double place_deviation)
       : recording_(recording), field_(field), noise_(noise), place_deviation_(place_deviation) {
     shapes_ = field.Shapes();
     prior_.resize(static_cast<Eigen::Index>(recording.nuisances().size()));
@@ -78,7 +79,11 @@ class Problem {
                  static_cast<int>(kMostEntries / (3.0 * markers * kShapes * field.KnotCount())));
     const int frames = static_cast<int>(recording.item().frames.size());
     const int stride = (frames + most - 1) / most;
-    for (int frame = 0; frame < frames; frame += stride) chosen_.push_back(frame);
+    for (int frame = 0; frame < frames; frame += stride) {
+      chosen_.push_back(frame);
+      deformation_.insert(deformation_.end(), motion.deformation[frame].begin(),
+                          motion.deformation[frame].end());
+    }
   }
 
   const Eigen::VectorXd& prior() const { return prior_; }
@@ -159,7 +164,7 @@ class Problem {
       for (int m = 0; m < recording_.PointCount(); ++m)
         observed.push_back(Measured(frame).col(m).allFinite());
     return Whitened(rows, observed, recording_.PointCount(),
-                    MeasurementErrors{noise_, place_deviation_});
+                    MeasurementErrors{noise_, place_deviation_}, deformation_);
   }
 
   const RecordingModel& recording_;
@@ -169,6 +174,7 @@ class Problem {
   Eigen::VectorXd prior_;                 // deviations of the nuisances
   std::vector<Eigen::Index> held_shape_;  // of each nuisance; −1: the clock
   std::vector<int> chosen_;
+  std::vector<Eigen::Matrix3d> deformation_;  // markers × chosen frames
 };
 
 UnexplainedForce Failed(UnexplainedForce force, const std::string& why) {
@@ -190,7 +196,7 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   const int knots = std::min(kMostForceKnots, moving);
   if (moving < kFewestFrames) return Failed(force, "there are too few frames in motion");
   force.field = MakeSmoothForce(recording.model(), start, end, knots);
-  const Problem problem(recording, force.field, noise, place_deviation);
+  const Problem problem(recording, motion, force.field, noise, place_deviation);
   std::vector<Eigen::MatrixXd> priors = PriorShapes(knots);
 
   ReplayedMotion current = motion;

@@ -10,7 +10,7 @@ namespace lacuna {
 namespace {
 
 SeriesLayout Irregular() {
-  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<int>(18, 1)};
+  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<int>(18, 1), {}};
   layout.count[3] = layout.count[7] = layout.count[17] = 0;
   layout.count[0] = 4;  // the mean of four
   return layout;
@@ -36,6 +36,36 @@ TEST(SeriesNoise, WhitensItsCovariance) {
   EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
 }
 
+// An error of a marker's place turns and stretches with the object.
+TEST(SeriesNoise, WhitensPlacesThatMoveWithTheObject) {
+  SeriesLayout layout{6, {0, 0.1, 0.15, 0.4}, std::vector<int>(24, 1), {}};
+  for (const int hidden : {9, 10, 11}) layout.count[hidden] = 0;  // the second point's in frame 1
+  std::srand(1);
+  for (int k = 0; k < 8; ++k)
+    layout.deformation.push_back(Eigen::Matrix3d::Identity() + 0.8 * Eigen::Matrix3d::Random());
+  const SeriesNoise noise{0.3, 0.2, 0.7};
+  const Eigen::MatrixXd W = Whitened(Eigen::MatrixXd::Identity(24, 24), layout, noise);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(24, 24), expected = covariance;
+  for (Eigen::Index i = 0; i < 24; ++i) {
+    for (Eigen::Index j = 0; j < 24; ++j) {
+      if (!layout.count[i] || !layout.count[j]) continue;
+      expected(i, j) = i == j;
+      if (i / 3 % 2 != j / 3 % 2) continue;  // another point
+      covariance(i, j) =
+          0.49 * layout.deformation[i / 3].row(i % 3).dot(layout.deformation[j / 3].row(j % 3));
+      const double apart = std::abs(layout.times[i / 6] - layout.times[j / 6]);
+      if (i % 3 == j % 3) covariance(i, j) += 0.09 * std::exp(-apart / 0.2);
+    }
+  }
+  EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
+  // What does not move shares a plain constant.
+  layout.deformation.assign(8, Eigen::Matrix3d::Identity());
+  SeriesLayout still = layout;
+  still.deformation.clear();
+  const Eigen::MatrixXd rows = Eigen::MatrixXd::Random(24, 3);
+  EXPECT_LT((Whitened(rows, layout, noise) - Whitened(rows, still, noise)).norm(), 1e-12);
+}
+
 TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
   const SeriesLayout layout = Irregular();
   const std::vector<char> chosen = {1, 1, 1, 0, 1, 0};
@@ -48,7 +78,7 @@ TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
 }
 
 TEST(SeriesNoise, TellsHowLongNoiseLasts) {
-  SeriesLayout layout{40, {}, {}};
+  SeriesLayout layout{40, {}, {}, {}};
   for (int frame = 0; frame < 60; ++frame) layout.times.push_back(0.01 * frame);
   layout.count.assign(static_cast<size_t>(layout.Rows()), 1);
   std::mt19937 random(5);

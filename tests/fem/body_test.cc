@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "fem/shape_functions.h"
+#include "geometry/shape_functions.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {

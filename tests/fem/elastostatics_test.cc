@@ -8,8 +8,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "effects/catalogue.h"
-#include "fem/shape_functions.h"
 #include "fem/simulate.h"
+#include "geometry/shape_functions.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {

@@ -23,6 +23,9 @@ TEST(Embedding, FollowsAnAffineMotionExactlyForBothOrders) {
     Eigen::Matrix3d turn;
     turn << 1, 0.2, 0, -0.3, 1.1, 0.4, 0.1, 0, 0.9;
     EXPECT_LT((PointsAt(embedding, mesh, turn * mesh.nodes) - turn * points).norm(), 1e-12);
+    for (const int j : {0, 17, 49})
+      EXPECT_LT((DeformationGradientAt(embedding, j, mesh, turn * mesh.nodes) - turn).norm(),
+                1e-12);
   }
 }
 
@@ -32,8 +35,13 @@ TEST(Embedding, FollowsAQuadraticMotionWithQuadraticElements) {
   const Eigen::Vector3d point(0.3, 0.61, 0.17);
   Eigen::Matrix3Xd moved = mesh.nodes;
   moved.row(2) += mesh.nodes.row(0).cwiseProduct(mesh.nodes.row(1));
-  const Eigen::Vector3d found = PointsAt(Embed(mesh, point), mesh, moved);
+  const Embedding embedding = Embed(mesh, point);
+  const Eigen::Vector3d found = PointsAt(embedding, mesh, moved);
   EXPECT_NEAR(found.z(), 0.17 + 0.3 * 0.61, 1e-12);
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Identity();
+  gradient(2, 0) = 0.61;
+  gradient(2, 1) = 0.3;
+  EXPECT_LT((DeformationGradientAt(embedding, 0, mesh, moved) - gradient).norm(), 1e-12);
 }
 
 TEST(Embedding, SaysHowFarOutsideAPointIs) {

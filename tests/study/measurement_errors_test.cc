@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 namespace lacuna {
 namespace {
@@ -89,6 +90,27 @@ TEST(CommonError, IsTheMeanOfItsPosterior) {
                   .norm(),
               0);
   }
+}
+
+// A marker that lies δ off shows it turned with the object; then δ is found again.
+TEST(CommonError, IsOnTheUndeformedObject) {
+  constexpr int kFrames = 40;
+  const Eigen::Vector3d error(0.4, -1.1, 0.7);
+  std::vector<Eigen::Matrix3d> deformation;
+  Eigen::VectorXd residual(3 * kFrames);
+  for (int f = 0; f < kFrames; ++f) {
+    deformation.push_back(Eigen::AngleAxisd(0.1 * f, Eigen::Vector3d(1, 2, -1).normalized()) *
+                          Eigen::Scaling(1 + 0.01 * f));
+    residual.segment<3>(3 * f) = deformation.back() * error;
+  }
+  const std::vector<int> count(kFrames, 1);
+  const MeasurementErrors errors{1e-3, 1};  // the prior pulls by a part in 4e7
+  EXPECT_LT(
+      (CommonError(residual, count, 1, errors, std::vector<char>(kFrames, 1), deformation) - error)
+          .norm(),
+      1e-6);
+  EXPECT_LT(Whitened(residual, count, 1, errors, deformation).norm(), 2);  // |error| in priors
+  EXPECT_GT(Whitened(residual, count, 1, errors).norm(), 1000);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "fem/shape_functions.h"
+#include "geometry/shape_functions.h"
 
 #include <array>
 #include <cmath>

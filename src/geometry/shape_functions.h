@@ -1,6 +1,6 @@
 // Shape functions of the linear and the quadratic tetrahedron in barycentric coordinates.
-#ifndef LACUNA_FEM_SHAPE_FUNCTIONS_H_
-#define LACUNA_FEM_SHAPE_FUNCTIONS_H_
+#ifndef LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
+#define LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
 
 #include <Eigen/Core>
 
@@ -27,4 +27,4 @@ TetQuadrature ElementQuadrature(int order);
 
 }  // namespace lacuna
 
-#endif  // LACUNA_FEM_SHAPE_FUNCTIONS_H_
+#endif  // LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
