@@ -83,14 +83,50 @@ Eigen::Vector3d Interpolate(const Eigen::VectorXd& times, const Eigen::Matrix3Xd
   return (1 - t) * values.col(right - 1) + t * values.col(right);
 }
 
+// A cubic between neighbouring times, with the velocity at each that a parabola through it and its
+// neighbours has.
+Eigen::Vector3d Smooth(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values, double time) {
+  const Eigen::Index last = times.size() - 1;
+  const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
+  const Eigen::Index right = after - times.data();
+  if (right == 0) return values.col(0);
+  if (right > last) return values.col(last);
+  const Eigen::Index left = right - 1;
+  const auto slope = [&](Eigen::Index k) -> Eigen::Vector3d {  // between k and k + 1
+    return (values.col(k + 1) - values.col(k)) / (times[k + 1] - times[k]);
+  };
+  const auto velocity = [&](Eigen::Index k) -> Eigen::Vector3d {
+    if (k == 0) return slope(0);
+    if (k == last) return slope(last - 1);
+    const double before = times[k] - times[k - 1], behind = times[k + 1] - times[k];
+    return (behind * slope(k - 1) + before * slope(k)) / (before + behind);
+  };
+  const double h = times[right] - times[left], t = (time - times[left]) / h, s = 1 - t;
+  return (1 + 2 * t) * s * s * values.col(left) + t * t * (3 - 2 * t) * values.col(right) +
+         h * t * s * (s * velocity(left) - t * velocity(right));
+}
+
+Eigen::Matrix3d Rotation(const Eigen::Vector3d& vector) {
+  const double angle = vector.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+}
+
 }  // namespace
 
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
   return Interpolate(force.times, force.forces, time);
 }
 
-Eigen::Vector3d DisplacementAt(const RecordedGrip& grip, double time) {
-  return Interpolate(grip.times, grip.displacements, time);
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(Smooth(grip.times, grip.displacements, time));
+  if (grip.turns.cols() == 0) return motion;
+  motion.translate(grip.pivot);
+  motion.rotate(Rotation(Smooth(grip.times, grip.turns, time)) *
+                Rotation(grip.turns.col(0)).transpose());
+  motion.translate(-grip.pivot);
+  return motion;
 }
 
 std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recording,
@@ -115,6 +151,19 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recor
       grip.file = series.file;
       grip.times = series.times;
       grip.displacements = series.values.colwise() - Eigen::Vector3d(series.values.col(0));
+      if (const std::optional<Config> turn = path->OptionalChild("turn")) {
+        const DelimitedTable table = ReadTableOrArray(series.file);
+        const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
+        grip.turns.resize(3, grip.times.size());
+        for (int axis = 0; axis < 3; ++axis)
+          grip.turns.row(axis) =
+              radian *
+              table.values.col(RequireColumn(table, turn->Text(std::string(1, "xyz"[axis]))))
+                  .transpose();
+        if (!grip.turns.allFinite())
+          turn->Fail("x", series.file.string() + ": a row of the turn is not finite");
+        grip.pivot = turn->Vector("about", kLength);
+      }
     } else {
       item.Choice<int>("follows", {{"scan", 0}}, "scan");
     }

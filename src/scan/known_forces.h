@@ -11,8 +11,9 @@ namespace lacuna {
 
 // The items of `gripped`: a region and how it moves: `follows: scan` (the default),
 // `follows_markers: [..]`, or `path: {file, time, x, y, z, time_unit, length_unit}` with one row
-// per moment (columns by name or number), the first one at the undeformed place. `file_times` are
-// those of all frames in the files, also of the ones that were not chosen.
+// per moment (columns by name or number), the first one at the undeformed place; with
+// `turn: {x, y, z, unit, about}` in the path, three more columns of the same file are a rotation
+// vector. `file_times` are those of all frames in the files, also of the ones that were not chosen.
 std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recording,
                                     const std::vector<double>& file_times);
 

@@ -7,6 +7,7 @@
 #define LACUNA_SCAN_RECORDING_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,7 +29,7 @@ enum class FrameKind { kPoints, kMesh, kDepth, kMarkers };
 enum class GripMotion {
   kFollowsScan,     // as the scanned surface moves there
   kFollowsMarkers,  // rigidly with the named markers
-  kGiven            // translated along a given path
+  kGiven            // along a given path
 };
 struct RecordedGrip {
   Region region;
@@ -36,7 +37,10 @@ struct RecordedGrip {
   std::vector<std::string> markers;  // kFollowsMarkers
   Eigen::VectorXd times;             // kGiven: k, s, ascending
   Eigen::Matrix3Xd displacements;    // kGiven: 3 × k, m, from the undeformed place
-  std::filesystem::path file;        // kGiven
+  Eigen::Matrix3Xd turns;  // kGiven: 3 × k, rad, rotation vectors; 3 × 0: it does not turn
+  Eigen::Vector3d pivot =
+      Eigen::Vector3d::Zero();  // kGiven: m, what it turns about before it shifts
+  std::filesystem::path file;   // kGiven
 };
 
 // A force that was measured while scanning; it acts on the object.
@@ -50,7 +54,11 @@ struct MeasuredForce {
 
 // Linear between the measured times; before the first and after the last it stays.
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time);
-Eigen::Vector3d DisplacementAt(const RecordedGrip& grip, double time);
+
+// The rigid motion of a grip with a given path, from its undeformed place. Between the given times
+// a cubic through them whose velocity is continuous: corners in a path would shake the body. Before
+// the first and after the last it stays.
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 
 // Where the undeformed shape comes from.
 enum class ReferenceSource { kFirstFrame, kMesh, kTetMesh };

@@ -115,6 +115,7 @@ std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& g
   CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
   std::string item = FormatRegion(grip.region);
   if (grip.motion == GripMotion::kFollowsScan) return item;
+  CHECK_EQ(grip.turns.cols(), 0) << "grips of a scene shift, and do not turn";
   const std::string name = fmt::format("grip{}.csv", number + 1);
   WriteSeries(folder / name, grip.times, grip.displacements);
   item.pop_back();

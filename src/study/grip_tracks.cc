@@ -45,8 +45,11 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
           static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
     }
     tracks_.push_back(track);
-    model->grips.push_back(
-        {track->nodes, [track](double time) { return Interpolated(track->places, time); }});
+    model->grips.push_back({track->nodes, [track](double time) -> Eigen::Matrix3Xd {
+                              if (track->grip.motion == GripMotion::kGiven)
+                                return MotionAt(track->grip, time) * track->rest;
+                              return Interpolated(track->places, time);
+                            }});
   }
   Begin(recording.times.front());
 }
@@ -61,8 +64,7 @@ void GripTracks::Extend(double time, const Eigen::Matrix3Xd& before, const Eigen
     Eigen::Matrix3Xd place;
     switch (track->grip.motion) {
       case GripMotion::kGiven:
-        place = track->rest.colwise() + DisplacementAt(track->grip, time);
-        break;
+        continue;
       case GripMotion::kFollowsScan: {
         const Eigen::Matrix3Xd here = before(Eigen::all, track->nodes);
         place = RigidMotion(here, moved(Eigen::all, track->nodes)) * here;

@@ -13,8 +13,8 @@
 namespace lacuna {
 
 // Fixed regions stay where they rest. A gripped region moves as a rigid body: along its given path,
-// with its markers, or as the scanned surface moves there. Positions between two frames are
-// interpolated linearly.
+// with its markers, or as the scanned surface moves there; of the last two, positions between two
+// frames are interpolated linearly.
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
@@ -36,7 +36,7 @@ class GripTracks {
     Eigen::VectorXi nodes;
     Eigen::Matrix3Xd rest;                      // of the nodes
     std::vector<int> markers;                   // columns of the marker tracks
-    std::map<double, Eigen::Matrix3Xd> places;  // by time
+    std::map<double, Eigen::Matrix3Xd> places;  // by time; of a given path none
   };
   const Recording& recording_;
   const Model& model_;

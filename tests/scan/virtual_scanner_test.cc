@@ -229,7 +229,8 @@ TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
   EXPECT_EQ(recording.times[1], 0.25);
   ASSERT_EQ(recording.fixed.size(), 1u);
   ASSERT_EQ(recording.grips.size(), 1u);
-  EXPECT_LT((DisplacementAt(recording.grips[0], 0.125) - Eigen::Vector3d(0, 0, 0.005)).norm(),
+  EXPECT_LT((MotionAt(recording.grips[0], 0.125).translation() - Eigen::Vector3d(0, 0, 0.005))
+                .norm(),
             1e-15);
   EXPECT_TRUE(recording.warnings.empty());
   for (int i = 0; i < 2; ++i) {

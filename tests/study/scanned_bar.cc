@@ -76,7 +76,7 @@ std::vector<TriMesh> CarriedBarSurfaces(const HeldBarTruth& truth, const Eigen::
   for (int frame = 0; frame < kScans; ++frame) grip.times[frame] = ScanTime(frame);
   const Eigen::Matrix3Xd rest = model.body->mesh.nodes(Eigen::all, model.grips[0].nodes);
   model.grips[0].motion = [grip, rest](double time) -> Eigen::Matrix3Xd {
-    return rest.colwise() + DisplacementAt(grip, time);
+    return MotionAt(grip, time) * rest;
   };
   PredictionOptions options;
   options.time_step = 0.001;
