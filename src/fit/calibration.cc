@@ -19,6 +19,8 @@ constexpr double kNoticeable = 2;
 constexpr double kDead = 1e-6;
 // A start at a bound is moved inside by this much, and a value this near to one is tried at it.
 constexpr double kInside = 0.98;
+// Of fits that start near: more, and the start was not.
+constexpr int kSecantRounds = 3;
 
 double ToFree(const CalibratedParameter& parameter, double value) {
   return parameter.log_scale ? std::log(value) : value;
@@ -74,31 +76,73 @@ struct Free {
 
 // Predictions with their Jacobians, the last one kept: a point is asked for as a start, as a trial
 // and as the solution, often the same one twice running.
-class LastPrediction {
+class Predictions {
  public:
-  explicit LastPrediction(const PredictionFunction& predict) : predict_(predict) {}
+  Predictions(const PredictionFunction& predict, const std::vector<CalibratedParameter>& parameters)
+      : predict_(predict), parameters_(parameters) {}
 
+  // With the exact Jacobian, or, while secants are followed, with what they make of the last one.
   const Prediction& At(const Eigen::VectorXd& values) {
-    if (count_ == 0 || values != values_) {
-      ++count_;
-      prediction_ = predict_(values, /*with_jacobian=*/values.size() > 0);
-      values_ = values;
-    }
+    if (!follows_secants_) return ExactAt(values);
+    if (values != values_) FollowTo(values);
     return prediction_;
   }
+  const Prediction& ExactAt(const Eigen::VectorXd& values) {
+    if (count_ > 0 && is_exact_ && values == values_) return prediction_;
+    ++count_;
+    is_exact_ = true;
+    prediction_ = predict_(values, /*with_jacobian=*/values.size() > 0);
+    values_ = values;
+    if (prediction_.usable) known_ = {values, prediction_};
+    return prediction_;
+  }
+  void FollowSecants(bool follows) { follows_secants_ = follows; }
   int count() const { return count_; }
 
  private:
+  struct Known {
+    Eigen::VectorXd values;
+    Prediction prediction;
+  };
+
+  // J + (y − J s) sᵀ/(sᵀ s) for the change s of the parameters, in typical ones, and y of the
+  // residual: the least change of J that agrees with both.
+  void FollowTo(const Eigen::VectorXd& values) {
+    constexpr double kNoChange = 1e-12;  // of sᵀ s: y would be rounding
+    ++count_;
+    is_exact_ = false;
+    prediction_ = predict_(values, /*with_jacobian=*/false);
+    values_ = values;
+    if (!prediction_.usable) return;
+    const Eigen::VectorXd change = values - known_.values;
+    Eigen::VectorXd along = change;
+    for (size_t k = 0; k < parameters_.size(); ++k) {
+      const Eigen::Index at = static_cast<Eigen::Index>(k);
+      const double unit = parameters_[k].typical * (parameters_[k].log_scale ? values[at] : 1);
+      along[at] /= unit * unit;
+    }
+    prediction_.jacobian = known_.prediction.jacobian;
+    const double square = along.dot(change);
+    if (square > kNoChange)
+      prediction_.jacobian += (prediction_.residual - known_.prediction.residual -
+                               known_.prediction.jacobian * change) *
+                              (along / square).transpose();
+    known_ = {values, prediction_};
+  }
+
   const PredictionFunction& predict_;
+  const std::vector<CalibratedParameter>& parameters_;
+  bool follows_secants_ = false, is_exact_ = false;
   Eigen::VectorXd values_;
   Prediction prediction_;
+  Known known_;  // the last usable one
   int count_ = 0;
 };
 
 class PredictionCost : public ceres::CostFunction {
  public:
   PredictionCost(const std::vector<CalibratedParameter>& parameters, int residuals,
-                 LastPrediction* predictions)
+                 Predictions* predictions)
       : parameters_(parameters), predictions_(*predictions) {
     set_num_residuals(residuals);
     for (size_t k = 0; k < parameters.size(); ++k) mutable_parameter_block_sizes()->push_back(1);
@@ -127,7 +171,7 @@ class PredictionCost : public ceres::CostFunction {
 
  private:
   const std::vector<CalibratedParameter>& parameters_;
-  LastPrediction& predictions_;
+  Predictions& predictions_;
 };
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
@@ -225,7 +269,7 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::M
 
 // ½ ‖r‖² plus the priors; infinite where there is no prediction.
 double CostAt(const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
-              LastPrediction* predictions) {
+              Predictions* predictions) {
   const Prediction& prediction = predictions->At(values);
   if (!prediction.usable) return std::numeric_limits<double>::infinity();
   double cost = prediction.residual.squaredNorm();
@@ -240,8 +284,26 @@ double CostAt(const std::vector<CalibratedParameter>& parameters, const Eigen::V
   return 0.5 * cost;
 }
 
+// By which part of the cost a Gauss–Newton step would lower it.
+double ExpectedGain(ceres::Problem& problem, const std::vector<double*>& blocks) {
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  double cost = 0;
+  std::vector<double> gradient;
+  ceres::CRSMatrix jacobian;
+  if (!problem.Evaluate(options, &cost, nullptr, &gradient, &jacobian) || !(cost > 0)) return 0;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(jacobian.num_rows, jacobian.num_cols);
+  for (int row = 0; row < jacobian.num_rows; ++row)
+    for (int k = jacobian.rows[row]; k < jacobian.rows[row + 1]; ++k)
+      J(row, jacobian.cols[k]) = jacobian.values[k];
+  const Eigen::Map<const Eigen::VectorXd> g(gradient.data(), J.cols());
+  // A parameter at its bound does not move: J has no full rank there.
+  const Eigen::MatrixXd information = J.transpose() * J;
+  return 0.5 * g.dot(information.completeOrthogonalDecomposition().solve(g)) / cost;
+}
+
 // Values that have all but come to a bound, and do no worse at it, are put there.
-void SnapToBounds(const std::vector<CalibratedParameter>& parameters, LastPrediction* predictions,
+void SnapToBounds(const std::vector<CalibratedParameter>& parameters, Predictions* predictions,
                   Eigen::VectorXd* values) {
   Eigen::VectorXd snapped = *values;
   for (size_t k = 0; k < parameters.size(); ++k) {
@@ -281,7 +343,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK_GT(parameter.typical, 0) << parameter.name;
     free[k] = Free(parameter).From(ToFree(parameter, parameter.start) / parameter.typical);
   }
-  LastPrediction predictions(predict);
+  Predictions predictions(predict, parameters);
   const Prediction& first = predictions.At(calibration.parameters);
   calibration.predictions = predictions.count();
   if (!first.usable) {
@@ -308,28 +370,45 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
-    solver.max_num_iterations = options.max_iterations;
     solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
                                                              1, first.residual.size()));
     solver.parameter_tolerance = 1e-6;
     // Steps are in typical changes: one that overshoots is shortened at once.
     solver.initial_trust_region_radius = 100;
     solver.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(solver, &problem, &summary);
-    calibration.iterations = static_cast<int>(summary.iterations.size()) - 1;
-    calibration.usable = summary.termination_type == ceres::CONVERGENCE;
-    if (!calibration.usable) calibration.message = summary.message;
-    for (int k = 0; k < count; ++k)
-      calibration.parameters[k] = std::clamp(
-          FromFree(parameters[k], Free(parameters[k]).At(free[k]).first * parameters[k].typical),
-          parameters[k].min, parameters[k].max);
+    const auto values = [&] {
+      Eigen::VectorXd at(count);
+      for (int k = 0; k < count; ++k)
+        at[k] = std::clamp(
+            FromFree(parameters[k], Free(parameters[k]).At(free[k]).first * parameters[k].typical),
+            parameters[k].min, parameters[k].max);
+      return at;
+    };
+    const auto solve = [&] {
+      ceres::Solver::Summary summary;
+      solver.max_num_iterations = options.max_iterations - calibration.iterations;
+      ceres::Solve(solver, &problem, &summary);
+      calibration.iterations += static_cast<int>(summary.iterations.size()) - 1;
+      calibration.usable = summary.termination_type == ceres::CONVERGENCE;
+      calibration.message = calibration.usable ? "" : summary.message;
+    };
+    bool ended = false;
+    for (int round = 0; options.starts_near && !ended && round < kSecantRounds; ++round) {
+      predictions.FollowSecants(true);
+      solve();
+      predictions.FollowSecants(false);
+      const Prediction& end = predictions.ExactAt(values());
+      ended = calibration.iterations >= options.max_iterations || !end.usable ||
+              ExpectedGain(problem, blocks) <= solver.function_tolerance;
+    }
+    if (!ended) solve();
+    calibration.parameters = values();
     SnapToBounds(parameters, &predictions, &calibration.parameters);
   } else {
     calibration.usable = true;
   }
 
-  const Prediction& last = predictions.At(calibration.parameters);
+  const Prediction& last = predictions.ExactAt(calibration.parameters);
   calibration.predictions = predictions.count();
   CHECK(last.usable) << "the solution could be predicted before: " << last.message;
   calibration.rms = RootMeanSquare(last.residual);

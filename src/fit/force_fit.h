@@ -34,7 +34,7 @@ struct ForceFitOptions {
   double free_force_scale = 1e-3;
   // Residuals beyond this many standard deviations count linearly (Huber); 0: all squared.
   double robust_threshold = 3;
-  int max_iterations = 100;           // of Levenberg–Marquardt, each one sparse factorisation
+  int max_iterations = 100;          // of Levenberg–Marquardt, each one sparse factorisation
   double function_tolerance = 1e-6;  // relative decrease that ends the iteration
 };
 

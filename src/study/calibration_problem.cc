@@ -203,7 +203,7 @@ Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool w
     }
     if (seek) (*correspondences)[r] = std::move(misfit.observed);
     const auto whitened = [&](const Eigen::MatrixXd& what) {
-      return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model));
+      return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
     };
     residuals.emplace_back(whitened(misfit.residual));
     rows += misfit.residual.size();
@@ -255,6 +255,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
     }
     for (const int count : misfit.count)
       part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
+    part.layout.deformation = std::move(misfit.deformation);
     part.observed = std::move(misfit.observed);
     part.speed = -misfit.by.rightCols<1>();
     const Eigen::Index rows = misfit.residual.size();
@@ -347,8 +348,8 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
 Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
   progress->Begin("fit", 0);
   int evaluations = 0;
-  Calibration calibration =
-      FitOver(std::numeric_limits<double>::infinity(), start, {}, progress, &evaluations);
+  Calibration calibration = FitOver(std::numeric_limits<double>::infinity(), start,
+                                    {.starts_near = true}, progress, &evaluations);
   progress->End(calibration.message);
   calibration.predictions = evaluations;
   if (calibration.parameters.size() > 0) SetModel(calibration.parameters);

@@ -74,17 +74,23 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 
 namespace {
 
-// Compared with what `same` was compared with.
+// Compared with what `same` was compared with; with the derivatives that it has there, or, given
+// `near`, that it had there.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
+                              const AdoptedNuisances& adopted, const LinearisedMisfit& same,
+                              const FittedHypothesis* near = nullptr) {
   FittedHypothesis hypothesis;
-  hypothesis.misfit = problem.Linearise(values, true, {}, &same);
+  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &same);
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
+  hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
   Eigen::MatrixXd& by = hypothesis.misfit.by;
-  hypothesis.parameters = by.cols();
-  by.conservativeResize(Eigen::NoChange, hypothesis.parameters + adopted.by.cols());
-  by.rightCols(adopted.by.cols()) = adopted.by;
+  if (near != nullptr) {
+    by = near->misfit.by;
+  } else {
+    by.conservativeResize(Eigen::NoChange, hypothesis.parameters + adopted.by.cols());
+    by.rightCols(adopted.by.cols()) = adopted.by;
+  }
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
   hypothesis.left = hypothesis.misfit.residual;
   if (adopted.by.cols() > 0) {
@@ -132,14 +138,15 @@ Eigen::VectorXd Moved(const CalibrationProblem& problem, const Eigen::VectorXd& 
   return MovedBy(problem.parameters(), values, fit.change);
 }
 
-// The hypothesis at the parameters that are best for all frames, sought from `values`.
+// The hypothesis at the parameters that are best for all frames, sought from `values`: the held-out
+// ones move them little, and the derivatives less.
 FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
                                    const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   const NoiseLevel white;
   FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
   for (int step = 0; step < kSettlingSteps && hypothesis.misfit.usable; ++step) {
     values = Moved(problem, values, hypothesis, same);
-    FittedHypothesis next = HypothesisAt(problem, values, adopted, same);
+    FittedHypothesis next = HypothesisAt(problem, values, adopted, same, &hypothesis);
     if (!next.misfit.usable) break;
     const double gain =
         EvidenceOf(next, white).log_evidence - EvidenceOf(hypothesis, white).log_evidence;
@@ -211,15 +218,15 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   const auto calibrate_from = [&](const Eigen::VectorXd& from) {
     for (size_t k = 0; k < parameters.size(); ++k)
       parameters[k].start = from[static_cast<Eigen::Index>(k)];
-    return Calibrate(parameters,
-                     [&](const Eigen::VectorXd& at, bool with_jacobian) {
-                       const Prediction prediction = predict(at, with_jacobian);
-                       progress->Report(++evaluations, prediction.usable
-                                                           ? RootMeanSquare(prediction.residual)
-                                                           : std::nan(""));
-                       return prediction;
-                     },
-                     {.max_iterations = kIterations, .cost_tolerance = kTolerance});
+    return Calibrate(
+        parameters,
+        [&](const Eigen::VectorXd& at, bool with_jacobian) {
+          const Prediction prediction = predict(at, with_jacobian);
+          progress->Report(++evaluations,
+                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+          return prediction;
+        },
+        {.max_iterations = kIterations, .cost_tolerance = kTolerance, .starts_near = true});
   };
   refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);

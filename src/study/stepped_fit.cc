@@ -12,8 +12,10 @@ namespace {
 
 // A step is short enough when its error is below this part of σ, or of what the model leaves.
 constexpr double kOfNoise = 0.2, kOfMisfit = 0.05;
-constexpr int kMostHalvings = 6;
-constexpr int kAtOnce = 2;  // halvings that are believed before looking again
+// The next step has this part of the error that is allowed, by the scheme's second order; and it is
+// not believed to be so many times shorter before looking again.
+constexpr double kAimedAt = 0.8, kAtOnce = 4;
+constexpr int kMostSteps = 8;
 
 double StepError(const CalibrationProblem& problem, const Calibration& calibration) {
   PredictionStudy half = problem.WithGivenNoise();
@@ -32,11 +34,11 @@ double StepError(const CalibrationProblem& problem, const Calibration& calibrati
 
 SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress) {
   SteppedFit fit;
-  int halvings = 0, predictions = 0;
+  int predictions = 0;
   double start_rms = 0;
-  while (true) {
+  for (int tried = 1;; ++tried) {
     PredictionStudy further;
-    int shorter = 1;
+    double share = 0.5;  // of the step
     {
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = fit.calibration.usable;
@@ -46,7 +48,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;
       fit.calibration.start_rms = start_rms;
-      if (!study->chooses_time_step || halvings >= kMostHalvings) return fit;
+      if (!study->chooses_time_step) return fit;
       if (fit.calibration.usable) {
         progress->Begin("time step", 0);
         fit.step_error = StepError(problem, fit.calibration);
@@ -55,13 +57,12 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
         const double allowed = std::max(kOfNoise, kOfMisfit * fit.calibration.rms);
         if (fit.step_error <= allowed) return fit;
         if (std::isfinite(fit.step_error))
-          shorter = static_cast<int>(std::ceil(0.5 * std::log2(fit.step_error / allowed)));
+          share = std::max(std::sqrt(kAimedAt * allowed / fit.step_error), 1 / kAtOnce);
       }
+      if (tried == kMostSteps) return fit;
       further = problem.WithGivenNoise();
     }
-    shorter = std::clamp(shorter, 1, std::min(kAtOnce, kMostHalvings - halvings));
-    halvings += shorter;
-    further.time_step = std::ldexp(further.time_step, -shorter);
+    further.time_step *= share;
     *study = std::move(further);
   }
 }
