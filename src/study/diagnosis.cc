@@ -90,9 +90,13 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
   Diagnosis diagnosis;
   diagnosis.noise = problem.noise();
   diagnosis.errors = ErrorsOf(problem, fitted);
-  progress->Begin("discretise", 0);
-  const Eigen::VectorXd values = AtDiscretisationLimit(problem, fitted);
-  progress->End();
+  Eigen::VectorXd values = fitted;
+  // What is far off has other troubles than its discretisation.
+  if (diagnosis.errors.in_noise <= kFarOff) {
+    progress->Begin("discretise", 0);
+    values = AtMeshLimit(problem, fitted);
+    progress->End();
+  }
   EffectRanking ranking = RankEffects(problem, values, progress, options.without);
   diagnosis.scored = ranking.variants;
   diagnosis.control = ranking.control;
@@ -231,7 +235,8 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
                          {"what", nuisance.candidate.what},
                          {"evidence", nuisance.evidence},
                          {"explained_share", nuisance.explained},
-                         {"adopted", nuisance.adopted}});
+                         {"adopted", nuisance.adopted},
+                         {"doubt", nuisance.doubt}});
   nlohmann::json untried = nlohmann::json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});

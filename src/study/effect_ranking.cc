@@ -20,8 +20,11 @@ constexpr double kLookAlike = 0.95;
 constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
 constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
-// σ, of held-out frames: what is this far off has other troubles than its discretisation.
-constexpr double kFarOff = 3;
+// What the mesh changes is taken from time steps so many times as long, to find where its limit
+// would be fitted: it is simulated again from there with the right ones.
+constexpr double kLongSteps = 3;
+constexpr int kMostStepsToLimit = 4;
+constexpr double kAtLimit = 1;  // of ‖r‖², that a step no longer gains
 
 std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
   std::vector<int> range(static_cast<size_t>(count));
@@ -249,21 +252,31 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
   return moved;
 }
 
-Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
-                                      const Eigen::VectorXd& values) {
+Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
   const LinearisedMisfit misfit = problem.Linearise(values, true);
   if (!misfit.usable) return values;
-  if (HeldOutInNoise(WhitenedRows(misfit.residual, misfit, 0, false), misfit) > kFarOff)
-    return values;
-  Hypotheses hypotheses;
-  hypotheses.Add(misfit.by, PriorsAbout(problem.parameters(), values));
-  for (const NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
-    hypotheses.Add(nuisance.by, nuisance.priors);
-  const LinearFit fit = LinearModel(WhitenedRows(misfit.residual, misfit, 0, true),
-                                    WhitenedRows(hypotheses.by, misfit, 0, true), hypotheses.priors)
-                            .FitAll(1);
-  const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, fit.change);
-  return problem.Linearise(moved, false, {}, &misfit).usable ? moved : values;
+  const Eigen::VectorXd change = ChangeByMesh(problem, values, kLongSteps);
+  if (change.size() != misfit.residual.size()) return values;
+  const Eigen::MatrixXd by = WhitenedRows(misfit.by, misfit, 0, false);
+  const auto left = [&](const LinearisedMisfit& there) -> Eigen::VectorXd {
+    return WhitenedRows(there.residual + change, misfit, 0, false);
+  };
+  // The derivatives hardly change on the way: a few steps with the same ones.
+  Eigen::VectorXd best = values;
+  Eigen::VectorXd here = left(misfit);
+  for (int step = 0; step < kMostStepsToLimit; ++step) {
+    const LinearFit fit = LinearModel(here, by, PriorsAbout(problem.parameters(), best)).FitAll(1);
+    const Eigen::VectorXd moved = MovedBy(problem.parameters(), best, fit.change);
+    const LinearisedMisfit there = problem.Linearise(moved, false, {}, &misfit);
+    if (!there.usable) break;
+    const Eigen::VectorXd next = left(there);
+    const double gain = here.squaredNorm() - next.squaredNorm();
+    if (!(gain > 0)) break;
+    best = moved;
+    here = next;
+    if (gain < kAtLimit) break;
+  }
+  return best;
 }
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
@@ -305,12 +318,10 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
     if (adopted) base = Joined(base, columns);
     return columns;
   };
-  // What a finer discretisation would do is nobody's merit.
+  // What a finer discretisation would do is nobody's merit; nor is what the object's dimensions do,
+  // of which bending stiffness goes with the cube.
   std::vector<std::vector<int>> of_nuisance;
-  for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
-    of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
-  // Nor is what the object's dimensions do, of which bending stiffness goes with the cube.
-  for (NuisanceCandidate& nuisance : ShapeNuisances(problem, values, misfit))
+  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
     of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
 
   // What no effect explains is taken for noise.
@@ -340,6 +351,11 @@ EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::Vector
     const LinearFit with = weighed.all.Fit(Joined(parameters, of_nuisance[k]), variance);
     nuisance.evidence = with.log_evidence - without.log_evidence;
     nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
+    if (nuisance.candidate.unknown.cols() == 0) continue;
+    const LinearModel unknown = weighed.all.WithResidual(
+        WhitenedRows(nuisance.candidate.unknown, misfit, ranking.noise.correlation_time, false),
+        weighed.columns);
+    nuisance.doubt = 0.5 * unknown.Fit(parameters, variance).misfit / variance;
   }
   struct Entry {
     ScoredEffect scored;

@@ -51,6 +51,8 @@ struct ScoredNuisance {
   double evidence = 0;
   double explained = 0;
   bool adopted = false;  // it is so certain that the model is taken with it from here on
+  // Evidence that what is unknown of its change (unknown_share) could lend to an effect.
+  double doubt = 0;
 };
 
 // The noise that hypotheses are weighed with.
@@ -93,11 +95,10 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
-// What the study would be fitted to with elements and steps as fine as can be, to first order: what
-// they change is best known there (nuisance_candidates.h). `values` where those cannot be simulated
-// or are far from what was measured. Throws Interrupted.
-Eigen::VectorXd AtDiscretisationLimit(const CalibrationProblem& problem,
-                                      const Eigen::VectorXd& values);
+// What the study would be fitted to with elements as fine as can be, and with the held-out frames,
+// which evidence counts too: what finer elements and effects change is best known there
+// (nuisance_candidates.h). `values` where those cannot be simulated. Throws Interrupted.
+Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values);
 
 // Rows of a linearised misfit, whitened recording by recording with its errors; of the frames that
 // were fitted, or of all.

@@ -20,13 +20,21 @@ constexpr double kTurn = 0.02;   // rad
 constexpr double kShape = 0.003;
 // By how much frames may be mistimed, in parts of their distance.
 constexpr double kJitter = 0.1;
-// How much finer steps and elements are looked at; and what refining without end would change, in
-// parts of the change that this makes, and how well that is known: of second-order steps 16/15; of
-// quadratic elements 1.1 where the motion is smooth, 1.4 where a clamped edge spoils their order.
-// Less refined, they would be known less well, and then do the work of a missing effect: a mesh
-// that is a little too stiff near the clamp looks like a stiffness that falls along the bar.
-constexpr double kStepRatio = 4, kVolumeRatio = 6;
-constexpr LinearPrior kStepLimit = {1.07, 0.15, false}, kMeshLimit = {1.1, 0.4, false};
+// How much shorter steps and smaller elements are looked at; and what refining without end would
+// change, in parts of the change that this makes. Of second-order steps 16/15. Of elements, the
+// error of quadratic ones goes with their volume to the power of about 0.7 beside a clamped edge:
+// 1/(1 − ratio^−0.7), known to what it exceeds 1 by, and no better than 0.4.
+constexpr double kStepRatio = 4, kVolumePower = 0.7;
+constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+constexpr double kLimitDeviation = 0.4;
+constexpr LinearPrior kStepLimit = {1.07, 0.15, false};
+// A mesh between the two tells how well that is known. Of a bar of 160 to 190 elements, whose error
+// stands at 70 to 95 σ over all rows, a sixth of the volume leaves 8 to 14 σ in other directions
+// than its own, a twelfth 2 to 5 σ: this part of what the last halving changes there. It would do
+// the work of a missing effect: a mesh that is a little too stiff near the clamp looks like a
+// stiffness that falls along the bar.
+constexpr double kUnknownOfMesh = 0.4;
+constexpr double kUnknownOfStep = 0.2;  // of the change by kStepRatio
 // More frames than this, and single frames are too small a part to be looked at one by one.
 constexpr size_t kMostFrames = 400;
 
@@ -83,6 +91,13 @@ Eigen::VectorXd FrameColumn(const LinearisedMisfit& misfit, const LinearisedMisf
       column[part.first_row + f * part.layout.series + s] = value(f, s);
   return column;
 }
+
+// How many times smaller elements are looked at: as few as a study of the mesh needs.
+double MeshRatio(const CalibrationProblem& problem) {
+  const double elements = static_cast<double>(problem.body()->ElementCount());
+  return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
+}
+double MeshLimit(double ratio) { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
 
 }  // namespace
 
@@ -144,37 +159,80 @@ std::vector<NuisanceCandidate> GripNuisances::Candidates(const Eigen::MatrixXd& 
   return candidates;
 }
 
-std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem& problem,
-                                                       const Eigen::VectorXd& values,
-                                                       const LinearisedMisfit& misfit) {
-  std::vector<NuisanceCandidate> candidates;
-  const auto add = [&](const std::string& name, const std::string& what, const std::string& advice,
-                       const LinearPrior& limit, const LinearisedMisfit& refined) {
-    if (!refined.usable || refined.residual.size() != misfit.residual.size()) return;
-    NuisanceCandidate candidate{name, what, advice, 0, refined.residual - misfit.residual, {}};
-    candidate.priors = {limit};
-    candidates.push_back(std::move(candidate));
-  };
-  PredictionStudy fine = problem.WithGivenNoise();
-  fine.mesh.tets.max_volume /= kVolumeRatio;
+namespace {
+
+// The residual with elements that have a part of the volume; empty where it cannot be had.
+Eigen::VectorXd WithFinerMesh(const PredictionStudy& study, double ratio,
+                              const Eigen::VectorXd& values) {
+  PredictionStudy fine = study;
+  fine.mesh.tets.max_volume /= ratio;
   try {
     const ReferenceBody reference = MakeReferenceBody(fine);
-    add("mesh", "the size of the elements", "choose a smaller mesh.max_volume", kMeshLimit,
-        CalibrationProblem(fine, reference.mesh).Linearise(values, false));
+    return CalibrationProblem(fine, reference.mesh).Linearise(values, false).residual;
   } catch (const InputError&) {
-    // A shape that cannot be meshed more finely says nothing about its mesh.
+    return {};  // a shape that cannot be meshed more finely says nothing about its mesh
   }
-  PredictionStudy slow = problem.WithGivenNoise();
-  slow.time_step /= kStepRatio;
-  add("time_step", "the length of the step", "choose a smaller motion.time_step", kStepLimit,
-      CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false));
-  problem.SetModel(values);  // the refined models share its effects
-  return candidates;
 }
 
-std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
-                                              const Eigen::VectorXd& values,
-                                              const LinearisedMisfit& misfit) {
+}  // namespace
+
+Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                             double steps) {
+  PredictionStudy study = problem.WithGivenNoise();
+  study.time_step *= steps;
+  const double ratio = MeshRatio(problem);
+  const Eigen::VectorXd coarse =
+      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
+  const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
+  problem.SetModel(values);  // the refined model shares its effects
+  if (fine.size() != coarse.size()) return {};
+  return MeshLimit(ratio) * (fine - coarse);
+}
+
+namespace {
+
+std::vector<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
+                                            const Eigen::VectorXd& values,
+                                            const LinearisedMisfit& misfit) {
+  const PredictionStudy study = problem.WithGivenNoise();
+  const double ratio = MeshRatio(problem);
+  const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
+  const Eigen::VectorXd between = WithFinerMesh(study, ratio / 2, values);
+  problem.SetModel(values);
+  if (fine.size() != misfit.residual.size() || between.size() != fine.size()) return {};
+  NuisanceCandidate candidate{"mesh", "the size of the elements",
+                              "choose a smaller mesh.max_volume"};
+  candidate.by.resize(fine.size(), 2);
+  candidate.by << fine - misfit.residual, fine - between;
+  const double limit = MeshLimit(ratio);
+  candidate.priors = {{limit, std::max(kLimitDeviation, limit - 1), false},
+                      {0, kUnknownOfMesh, false}};
+  candidate.is_always_taken = true;
+  candidate.unknown = kUnknownOfMesh * candidate.by.col(1);
+  return {candidate};
+}
+
+std::vector<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
+                                            const Eigen::VectorXd& values,
+                                            const LinearisedMisfit& misfit) {
+  PredictionStudy slow = problem.WithGivenNoise();
+  slow.time_step /= kStepRatio;
+  const LinearisedMisfit refined =
+      CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false);
+  problem.SetModel(values);
+  if (!refined.usable || refined.residual.size() != misfit.residual.size()) return {};
+  NuisanceCandidate candidate{"time_step", "the length of the step",
+                              "choose a smaller motion.time_step"};
+  candidate.by = refined.residual - misfit.residual;
+  candidate.priors = {kStepLimit};
+  candidate.is_always_taken = true;
+  candidate.unknown = kUnknownOfStep * candidate.by;
+  return {candidate};
+}
+
+std::vector<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem,
+                                             const Eigen::VectorXd& values,
+                                             const LinearisedMisfit& misfit) {
   const Model& model = problem.models().front().model();
   const TetMesh& mesh = problem.body()->mesh;
   // What is gripped at a face stays at it.
@@ -182,9 +240,9 @@ std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
   if (!model.grips.empty() && model.grips.front().nodes.size() > 0)
     centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
   const PredictionStudy study = problem.WithGivenNoise();
-  NuisanceCandidate candidate{"shape", "the object's dimensions", "measure the object again", 0, {},
-                              {}};
+  NuisanceCandidate candidate{"shape", "the object's dimensions", "measure the object again"};
   candidate.by = Eigen::MatrixXd::Zero(misfit.residual.size(), 3);
+  candidate.is_always_taken = true;
   for (int axis = 0; axis < 3; ++axis) {
     TetMesh larger = mesh;
     larger.nodes.row(axis).array() += kShape * (mesh.nodes.row(axis).array() - centre[axis]);
@@ -195,6 +253,19 @@ std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
   }
   problem.SetModel(values);
   return {candidate};
+}
+
+}  // namespace
+
+std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& problem,
+                                                    const Eigen::VectorXd& values,
+                                                    const LinearisedMisfit& misfit) {
+  std::vector<NuisanceCandidate> all = MeshNuisance(problem, values, misfit);
+  for (NuisanceCandidate& candidate : StepNuisance(problem, values, misfit))
+    all.push_back(std::move(candidate));
+  for (NuisanceCandidate& candidate : ShapeNuisance(problem, values, misfit))
+    all.push_back(std::move(candidate));
+  return all;
 }
 
 std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& problem,

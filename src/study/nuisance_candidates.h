@@ -14,12 +14,17 @@
 namespace lacuna {
 
 struct NuisanceCandidate {
-  std::string name;                 // "grip_compliance"
-  std::string what;                 // in words, with its place or time
-  std::string advice;               // what to do about it
-  double price = 0;                 // ln of how many of its kind were tried
-  Eigen::MatrixXd by;               // rows of a LinearisedMisfit × directions, m per unit
-  std::vector<LinearPrior> priors;  // per direction
+  std::string name;                      // "grip_compliance"
+  std::string what;                      // in words, with its place or time
+  std::string advice;                    // what to do about it
+  double price = 0;                      // ln of how many of its kind were tried
+  Eigen::MatrixXd by = {};               // rows of a LinearisedMisfit × directions, m per unit
+  std::vector<LinearPrior> priors = {};  // per direction
+  // It is simulated, bounded and always there: part of every model, evidence or none.
+  bool is_always_taken = false;
+  // What it changes is known but for something of the size of `unknown` (rows × columns, as `by`)
+  // that may lie in any direction; 0 columns: for nothing.
+  Eigen::MatrixXd unknown = {};
 };
 
 // Directions to be simulated along the fitted motion (LinearisedMisfit::by): the placement of each
@@ -44,17 +49,18 @@ class GripNuisances {
   std::vector<Kind> kinds_;
 };
 
-// The difference that a finer mesh makes, and a smaller step; none where the refined model cannot
-// be made. Their priors expect the difference to the limit, known to about a half.
-std::vector<NuisanceCandidate> DiscretisationNuisances(const CalibrationProblem& problem,
-                                                       const Eigen::VectorXd& values,
-                                                       const LinearisedMisfit& misfit);
+// What is part of every model: the difference that a finer mesh makes, and a shorter step, none
+// where the refined model cannot be made, their priors expecting the difference to the limit; and
+// the object's three dimensions, each known to a part of itself, by runs of a body that is that
+// much larger.
+std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& problem,
+                                                    const Eigen::VectorXd& values,
+                                                    const LinearisedMisfit& misfit);
 
-// The object's three dimensions, each known to a part of itself; by runs of a body that is that
-// much larger. None where one of them fails.
-std::vector<NuisanceCandidate> ShapeNuisances(const CalibrationProblem& problem,
-                                              const Eigen::VectorXd& values,
-                                              const LinearisedMisfit& misfit);
+// By how much elements as fine as can be would change the residual, to the best of what one finer
+// mesh tells; with steps so many times as long. Empty where it cannot be simulated.
+Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                             double steps);
 
 // Those that need no simulation: a clock that is late, frames at uncertain times, one frame out of
 // place, a measuring frame that drifts. `left`: what the fit leaves of each row, in σ; it points at

@@ -19,6 +19,9 @@ constexpr double kNamed = 5;
 // off by makes the better of two that explain about the same by chance. So the lead must be a part
 // of the evidence itself, and never needs to be more than the last of these.
 constexpr double kLeastLead = 3, kLeadShare = 0.4, kMostLead = 20;
+// The unknown part of what mesh and step change may lie along an effect, or tilt two rivals by
+// twice its evidence.
+constexpr double kDoubtful = 2;
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
 // An effect may make the held-out error larger by this factor at most, which is chance.
@@ -71,10 +74,6 @@ double ExcessExplained(double before, double after) {
   return std::clamp((before * before - after * after) / (before * before - 1), 0.0, 1.0);
 }
 
-bool IsAlwaysTaken(const NuisanceCandidate& nuisance) {
-  return nuisance.name == "mesh" || nuisance.name == "time_step" || nuisance.name == "shape";
-}
-
 // Nothing of the catalogue is needed, or nothing of it helps.
 void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noise) {
   const std::string error = fmt::format(
@@ -82,7 +81,7 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
   std::vector<std::string> advice;
   double most_explained = 0;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
-    const bool counts = IsAlwaysTaken(nuisance.candidate)
+    const bool counts = nuisance.candidate.is_always_taken
                             ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed &&
                                   diagnosis->errors.in_noise > kAtNoise
                             : nuisance.adopted || nuisance.evidence > kNamed;
@@ -135,7 +134,7 @@ void Decide(Diagnosis* diagnosis) {
     if (!nuisance.adopted) continue;
     corrected = true;
     // What mesh, step and dimensions change is simulated and bounded: no free directions.
-    if (!IsAlwaysTaken(nuisance.candidate)) in_the_model += std::max(0.0, nuisance.evidence);
+    if (!nuisance.candidate.is_always_taken) in_the_model += std::max(0.0, nuisance.evidence);
   }
   if (evidence < std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model})) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);
@@ -151,11 +150,15 @@ void Decide(Diagnosis* diagnosis) {
         Titles({best.scored.candidate.type}), 100 * excess, best.left_in_noise);
     return;
   }
-  const double lead = std::clamp(kLeadShare * evidence, kLeastLead, kMostLead);
+  double doubt = 0;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances) doubt += nuisance.doubt;
+  const double lead =
+      std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   diagnosis->effects = {best.scored.candidate.type};
   for (size_t k = 1; k < refitted.size(); ++k)
-    if (refitted[k]->evidence > evidence - lead)
+    if (refitted[k]->evidence > evidence - std::max(lead, kDoubtful * doubt))
       diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
+  std::vector<std::string> refine;
   // Look-alikes that were not refitted cannot be ruled out either.
   for (const std::string& other : best.scored.look_alikes) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
@@ -163,7 +166,10 @@ void Decide(Diagnosis* diagnosis) {
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : kOtherRival;
-    if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
+    if (kDoubtful * nuisance.doubt > evidence - kLeastLead) {
+      diagnosis->effects.push_back(nuisance.candidate.name);
+      refine.push_back(nuisance.candidate.advice);
+    } else if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
   }
   const std::string drop =
@@ -179,7 +185,9 @@ void Decide(Diagnosis* diagnosis) {
     diagnosis->explanation =
         fmt::format("{}: these recordings cannot tell them apart; with the best {}",
                     Titles(diagnosis->effects), drop);
-    diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
+    diagnosis->experiment = refine.empty()
+                                ? best.scored.candidate.effect->Card().separating_experiment
+                                : fmt::format("{}, and fit again", fmt::join(refine, "; "));
   }
 }
 

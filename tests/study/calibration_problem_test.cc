@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "study/effect_ranking.h"
 #include "study/held_bar.h"
 #include "study/recording_misfit.h"
 #include "support/temporary_folder.h"
@@ -15,7 +16,7 @@ namespace lacuna {
 namespace {
 
 // Coarser than what was filmed.
-TetMesh StudyMesh() { return BarMesh({6, 1, 1}, 2); }
+TetMesh StudyMesh() { return BarMesh({7, 2, 2}, 2); }
 
 Calibration FitOf(const CalibrationProblem& problem) {
   ProgressOptions silent;
@@ -41,17 +42,24 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
   at.tail(4) << 0.01, 0.03, -0.02, 0.001;
   const Eigen::VectorXd steps =
       (Eigen::VectorXd(8) << 200, 1e-3, 1e-2, 1e-2, 2e-3, 2e-3, 2e-3, 1e-4).finished();
-  const Prediction here = problem.Predict(at, true);
+  // How errors of the markers' places show is what it is at `at`.
+  const LinearisedMisfit here = problem.Linearise(at, true);
   ASSERT_TRUE(here.usable) << here.message;
-  ASSERT_EQ(here.jacobian.cols(), 8);
+  ASSERT_EQ(here.by.cols(), 8);
   for (Eigen::Index k = 0; k < 8; ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(8, k);
-    const Eigen::VectorXd difference = (problem.Predict(at + shift, false).residual -
-                                        problem.Predict(at - shift, false).residual) /
+    const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
+                                        problem.Linearise(at - shift, false, {}, &here).residual) /
                                        (2 * steps[k]);
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
-    EXPECT_LT((here.jacobian.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
+    EXPECT_LT((here.by.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
   }
+  // And the fitted frames of that, whitened, are what is fitted.
+  const Prediction fitted = problem.Predict(at, true);
+  ASSERT_TRUE(fitted.usable) << fitted.message;
+  const Eigen::MatrixXd white = WhitenedRows(here.by, here, 0, true);
+  EXPECT_LT((fitted.jacobian - white.topRows(fitted.jacobian.rows())).norm(),
+            1e-6 * fitted.jacobian.norm());
 }
 
 TEST(CalibrationProblem, RecoversWhatWasFilmed) {

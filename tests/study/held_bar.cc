@@ -112,9 +112,9 @@ material: {{law: neo_hookean, young_modulus: 0.15 MPa, poisson_ratio: 0.4}}
 effects:
   - {{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}}
   - {{type: mass_damping, alpha: 1 1/s}}
-motion: {{time_step: 3 ms}}
+motion: {{time_step: 1.5 ms}}
 noise: 0.05 mm
-place_deviation: 0.5 mm
+place_deviation: 0.2 mm
 fit: {{parameters: [{{name: young_modulus}}, {{name: mass_damping.alpha}}]}}
 recordings:
   - recording: {}
@@ -144,7 +144,7 @@ Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
-  const TetMesh mesh = BarMesh({6, 1, 1}, 2);
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
   const CalibrationProblem problem(study, mesh);
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;

@@ -47,7 +47,7 @@ TEST(ScanPrediction, RecoversWhatWasScanned) {
   const HeldBarTruth truth;
   WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape);
   std::map<std::string, std::string> replaced = kUntil;
-  replaced["motion: {time_step: 3 ms}"] = "motion: {time_step: 2 ms}";
+  replaced["motion: {time_step: 1.5 ms}"] = "motion: {time_step: 2 ms}";
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
   const CalibrationProblem problem(study, BarMesh({8, 2, 2}, 2));
   EXPECT_EQ(problem.noise(), 0);  // there are no markers
@@ -148,7 +148,7 @@ TEST(ScanPrediction, GoesTogetherWithMarkers) {
                        "    fit_until: 0.1001 s\n    hold:\n      region: {half_space: {point: "
                        "[0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n      release: 0.0437 s\n"},
                       {"    fit_until: 0.1501 s\n", "    fit_until: 0.1001 s\n"}});
-  const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+  const CalibrationProblem problem(study, BarMesh({7, 2, 2}, 2));
   const Prediction start = problem.Predict(problem.Start(), false);
   ASSERT_TRUE(start.usable) << start.message;
   EXPECT_EQ(start.residual.size(), 6 * 150 + 11 * 3 * kMarkers);  // frames to 0.1 s of each
@@ -237,7 +237,7 @@ TEST_F(CarriedBar, IsFittedFromItsScansAlone) {
       {{"name: bar\n",
         "name: bar\noutput: run\nscan: {patches: 60, surface: {edge_length: 5 mm}}\n"},
        {"order: 2", "order: 1"},
-       {"motion: {time_step: 3 ms}", "motion: {time_step: 5 ms}"}});
+       {"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder_ / "study.yaml"));
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;

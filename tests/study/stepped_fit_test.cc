@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-const std::map<std::string, std::string> kWithoutStep{{"motion: {time_step: 3 ms}\n", ""}};
+const std::map<std::string, std::string> kWithoutStep{{"motion: {time_step: 1.5 ms}\n", ""}};
 
 class SteppedFitOfABar : public testing::Test {
  protected:
@@ -38,7 +38,7 @@ TEST_F(SteppedFitOfABar, ShortensTheStepUntilItHardlyMatters) {
   EXPECT_LT(fit.step_error, 0.2);
 
   PredictionStudy coarse =
-      ReadBarStudy(folder_.Path(), {{"motion: {time_step: 3 ms}", "motion: {time_step: 5 ms}"}});
+      ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
   const SteppedFit with_coarse = Fit(&coarse);
   EXPECT_EQ(coarse.time_step, 0.005);  // as it was told
   EXPECT_EQ(with_coarse.step_error, 0);
@@ -50,7 +50,7 @@ TEST_F(SteppedFitOfABar, ShortensTheStepUntilItHardlyMatters) {
 TEST_F(SteppedFitOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
   PredictionStudy study = ReadBarStudy(
       folder_.Path(),
-      {{"motion: {time_step: 3 ms}\n", ""},
+      {{"motion: {time_step: 1.5 ms}\n", ""},
        {"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}",
         "fit: {parameters: []}"},
        {"noise: 0.05 mm", "noise: 0.0005 mm"},

@@ -21,7 +21,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
                        "fit: {parameters: []}"},
                       {"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
                       {"alpha: 1 1/s", "alpha: 2 1/s"},
-                      {"motion: {time_step: 3 ms}", "motion: {time_step: 2 ms}"}});
+                      {"motion: {time_step: 1.5 ms}", "motion: {time_step: 2 ms}"}});
   const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
