@@ -19,12 +19,12 @@
 namespace lacuna {
 namespace {
 
-constexpr int kFrames = 50;
+constexpr int kFrames = 60;
 constexpr double kSpacing = 0.01;    // s
-constexpr double kRelease = 0.1237;  // s
-constexpr double kFitUntil = 0.381;  // s
+constexpr double kRelease = 0.1037;  // s
+constexpr double kFitUntil = 0.451;  // s
 constexpr double kFace = 1e-5;       // m: the clamp and the hand hold the faces at the ends
-constexpr double kTrueVolume = 2e-7, kModelVolume = 1e-6, kCoarseVolume = 4e-6;  // m³, tetrahedra
+constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7, kCoarseVolume = 4e-6;  // m³, tetrahedra
 constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;                         // s
 constexpr int kMarkers = 8;
 constexpr double kPlaceError = 1e-4;  // m, per axis
@@ -44,11 +44,37 @@ Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {
   return places;
 }
 
-// The second recording is shaken at its clamp.
-Eigen::Vector3d BaseMotion(int recording, double time) {
-  if (recording == 0 || time <= kRelease) return Eigen::Vector3d::Zero();
-  const double phase = 2 * std::numbers::pi * 3 * (time - kRelease);
-  return 0.004 * (1 - std::cos(phase)) / 2 * Eigen::Vector3d(0, 0.6, 0.8);
+// What the clamp does once the bar has swung freely: it turns, so that weight acts another way and
+// what is fixed to the object parts from what is fixed in space; and it shakes, so that the second
+// mode takes part and the bar moves with and against what stands still.
+struct ClampProgram {
+  Eigen::Vector3d turn, shake;  // rad, m
+  double frequency;             // Hz
+};
+const ClampProgram kPrograms[] = {{{1.4, 0, 0}, {0, 1.2e-3, 1.6e-3}, 7},
+                                  {{0, -0.7, 0}, {0, 1.6e-3, -1.2e-3}, 11}};
+constexpr double kProgramBegins = 0.25, kTurnTime = 0.2;  // s
+
+// From 0 to 1 with no acceleration at either end.
+double SmoothStep(double t) {
+  const double s = std::clamp(t, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
+
+// Rotation vector and shift of the clamp.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> ClampMotion(int recording, double time) {
+  const ClampProgram& program = kPrograms[recording];
+  const double since = time - kProgramBegins, risen = SmoothStep(since / kTurnTime);
+  return {risen * program.turn,
+          risen * std::sin(2 * std::numbers::pi * program.frequency * since) * program.shake};
+}
+
+Eigen::Isometry3d ClampPlace(int recording, double time) {
+  const auto [turn, shift] = ClampMotion(recording, time);
+  Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
+  place.translate(shift);
+  if (turn.norm() > 0) place.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  return place;
 }
 
 Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double high) {
@@ -87,7 +113,7 @@ std::vector<Eigen::Matrix3Xd> Film(const TrialCase& trial, int recording, bool r
   const Eigen::VectorXi clamped = NodesBetween(nodes, -1, trial.clamp_error + kFace);
   const Eigen::Matrix3Xd rest = nodes(Eigen::all, clamped);
   model.grips = {{clamped, [rest, recording](double time) -> Eigen::Matrix3Xd {
-                    return rest.colwise() + BaseMotion(recording, time);
+                    return ClampPlace(recording, time) * rest;
                   }}};
   const Eigen::VectorXd share = BoundaryShares(
       *model.body, NodesBetween(nodes, trial.true_size[0] - kFace, trial.true_size[0] + 1));
@@ -157,18 +183,21 @@ void WriteRecording(const TrialCase& trial, int recording,
 
   std::string csv = "t";
   for (int m = 0; m < kMarkers; ++m) csv += fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
-  std::string path = "t,x,y,z\n";
+  std::string path = "t,x,y,z,rx,ry,rz\n";
   for (size_t f = 0; f < frames.size(); ++f) {
     csv += fmt::format("\n{}", kSpacing * static_cast<double>(f));
     for (const double coordinate : frames[f].reshaped()) csv += fmt::format(",{:.9f}", coordinate);
   }
   for (int k = 0; k <= 10 * kFrames; ++k) {
     const double time = 0.1 * kSpacing * k;
-    const Eigen::Vector3d base = BaseMotion(recording, time);
-    path += fmt::format("{},{:.9f},{:.9f},{:.9f}\n", time, base.x(), base.y(), base.z());
+    const auto [turn, shift] = ClampMotion(recording, time);
+    path += fmt::format("{}", time);
+    for (const double coordinate : shift) path += fmt::format(",{:.9f}", coordinate);
+    for (const double angle : turn) path += fmt::format(",{:.9f}", angle);
+    path += "\n";
   }
   WriteFileAtomically(folder / "markers.csv", csv + "\n");
-  WriteFileAtomically(folder / "base.csv", path);
+  WriteFileAtomically(folder / "clamp.csv", path);
   std::string yaml = fmt::format(
       "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n"
       "  kind: markers\n  file: markers.csv\n  columns: {{time: t}}\n  marker_places:\n",
@@ -182,7 +211,8 @@ void WriteRecording(const TrialCase& trial, int recording,
   }
   yaml += fmt::format(
       "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
-      "path: {{file: base.csv, time: t, x: x, y: y, z: z, time_unit: s, length_unit: m}}}}\n"
+      "path: {{file: clamp.csv, time: t, x: x, y: y, z: z, turn: {{x: rx, y: ry, z: rz, about: [0, "
+      "0, 0]}}}}}}\n"
       "reference: {{from: mesh, file: box.off}}\n",
       kFace);
   WriteFileAtomically(folder / "recording.yaml", yaml);

@@ -118,9 +118,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const Eigen::Index known = values.size();
   std::vector<NuisanceCandidate> nuisances =
       grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
-  for (NuisanceCandidate& nuisance : DiscretisationNuisances(problem, values, misfit))
-    nuisances.push_back(std::move(nuisance));
-  for (NuisanceCandidate& nuisance : ShapeNuisances(problem, values, misfit))
+  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
     nuisances.push_back(std::move(nuisance));
   Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
