@@ -21,7 +21,7 @@ void AddMarkerStrains(const PredictionStudy& study, const RecordingMisfit& misfi
     if (offset.norm() > kStrained * study.place_deviation)
       strains->push_back(
           fmt::format("{}: the model would have marker {} ({:.1f}, {:.1f}, {:.1f}) mm from where "
-                      "it is, in all frames alike; place_deviation allows {:.1f} mm",
+                      "it is on the undeformed object; place_deviation allows {:.1f} mm",
                       misfit.name, names[m], 1e3 * offset[0], 1e3 * offset[1], 1e3 * offset[2],
                       1e3 * study.place_deviation));
   }
