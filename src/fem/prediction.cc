@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "fem/hermite.h"
+#include "geometry/hermite.h"
 
 namespace lacuna {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
-#include "fem/hermite.h"
 #include "fem/prediction.h"
+#include "geometry/hermite.h"
 
 namespace lacuna {
 namespace {

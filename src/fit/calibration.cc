@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/secant_predictions.h"
+
 namespace lacuna {
 namespace {
 
@@ -74,75 +76,10 @@ struct Free {
   }
 };
 
-// Predictions with their Jacobians, the last one kept: a point is asked for as a start, as a trial
-// and as the solution, often the same one twice running.
-class Predictions {
- public:
-  Predictions(const PredictionFunction& predict, const std::vector<CalibratedParameter>& parameters)
-      : predict_(predict), parameters_(parameters) {}
-
-  // With the exact Jacobian, or, while secants are followed, with what they make of the last one.
-  const Prediction& At(const Eigen::VectorXd& values) {
-    if (!follows_secants_) return ExactAt(values);
-    if (values != values_) FollowTo(values);
-    return prediction_;
-  }
-  const Prediction& ExactAt(const Eigen::VectorXd& values) {
-    if (count_ > 0 && is_exact_ && values == values_) return prediction_;
-    ++count_;
-    is_exact_ = true;
-    prediction_ = predict_(values, /*with_jacobian=*/values.size() > 0);
-    values_ = values;
-    if (prediction_.usable) known_ = {values, prediction_};
-    return prediction_;
-  }
-  void FollowSecants(bool follows) { follows_secants_ = follows; }
-  int count() const { return count_; }
-
- private:
-  struct Known {
-    Eigen::VectorXd values;
-    Prediction prediction;
-  };
-
-  // J + (y − J s) sᵀ/(sᵀ s) for the change s of the parameters, in typical ones, and y of the
-  // residual: the least change of J that agrees with both.
-  void FollowTo(const Eigen::VectorXd& values) {
-    constexpr double kNoChange = 1e-12;  // of sᵀ s: y would be rounding
-    ++count_;
-    is_exact_ = false;
-    prediction_ = predict_(values, /*with_jacobian=*/false);
-    values_ = values;
-    if (!prediction_.usable) return;
-    const Eigen::VectorXd change = values - known_.values;
-    Eigen::VectorXd along = change;
-    for (size_t k = 0; k < parameters_.size(); ++k) {
-      const Eigen::Index at = static_cast<Eigen::Index>(k);
-      const double unit = parameters_[k].typical * (parameters_[k].log_scale ? values[at] : 1);
-      along[at] /= unit * unit;
-    }
-    prediction_.jacobian = known_.prediction.jacobian;
-    const double square = along.dot(change);
-    if (square > kNoChange)
-      prediction_.jacobian += (prediction_.residual - known_.prediction.residual -
-                               known_.prediction.jacobian * change) *
-                              (along / square).transpose();
-    known_ = {values, prediction_};
-  }
-
-  const PredictionFunction& predict_;
-  const std::vector<CalibratedParameter>& parameters_;
-  bool follows_secants_ = false, is_exact_ = false;
-  Eigen::VectorXd values_;
-  Prediction prediction_;
-  Known known_;  // the last usable one
-  int count_ = 0;
-};
-
 class PredictionCost : public ceres::CostFunction {
  public:
   PredictionCost(const std::vector<CalibratedParameter>& parameters, int residuals,
-                 Predictions* predictions)
+                 SecantPredictions* predictions)
       : parameters_(parameters), predictions_(*predictions) {
     set_num_residuals(residuals);
     for (size_t k = 0; k < parameters.size(); ++k) mutable_parameter_block_sizes()->push_back(1);
@@ -171,7 +108,7 @@ class PredictionCost : public ceres::CostFunction {
 
  private:
   const std::vector<CalibratedParameter>& parameters_;
-  Predictions& predictions_;
+  SecantPredictions& predictions_;
 };
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
@@ -269,7 +206,7 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::M
 
 // ½ ‖r‖² plus the priors; infinite where there is no prediction.
 double CostAt(const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
-              Predictions* predictions) {
+              SecantPredictions* predictions) {
   const Prediction& prediction = predictions->At(values);
   if (!prediction.usable) return std::numeric_limits<double>::infinity();
   double cost = prediction.residual.squaredNorm();
@@ -303,8 +240,8 @@ double ExpectedGain(ceres::Problem& problem, const std::vector<double*>& blocks)
 }
 
 // Values that have all but come to a bound, and do no worse at it, are put there.
-void SnapToBounds(const std::vector<CalibratedParameter>& parameters, Predictions* predictions,
-                  Eigen::VectorXd* values) {
+void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
+                  SecantPredictions* predictions, Eigen::VectorXd* values) {
   Eigen::VectorXd snapped = *values;
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
@@ -343,7 +280,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK_GT(parameter.typical, 0) << parameter.name;
     free[k] = Free(parameter).From(ToFree(parameter, parameter.start) / parameter.typical);
   }
-  Predictions predictions(predict, parameters);
+  SecantPredictions predictions(predict, parameters);
   const Prediction& first = predictions.At(calibration.parameters);
   calibration.predictions = predictions.count();
   if (!first.usable) {

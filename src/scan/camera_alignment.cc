@@ -14,6 +14,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/rotation.h"
+
 namespace lacuna {
 namespace {
 
@@ -139,9 +141,8 @@ class PinnedDownEstimation
       step += mode * (mode.dot(force) / value);
     }
     const Eigen::Vector3d turn = step.head<3>() / radius;
-    const double angle = turn.norm();
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    if (angle > 0) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).matrix();
+    motion.linear() = RotationBy(turn);
     motion.translation() = center + step.tail<3>() - motion.linear() * center;
     matrix = motion.matrix();
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "core/npy.h"
+#include "geometry/hermite.h"
+#include "geometry/rotation.h"
 #include "scan/delimited_table.h"
 
 namespace lacuna {
@@ -72,50 +74,48 @@ TimeSeries ReadSeries(const Config& config, const Recording& recording,
   return series;
 }
 
-Eigen::Vector3d Interpolate(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                            double time) {
+// `time` lies the part t of the way from one of the times to another.
+struct Between {
+  Eigen::Index left, right;  // the same before the first time and after the last
+  double t;
+};
+
+Between Bracket(const Eigen::VectorXd& times, double time) {
   const Eigen::Index last = times.size() - 1;
   const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
   const Eigen::Index right = after - times.data();
-  if (right == 0) return values.col(0);
-  if (right > last) return values.col(last);
-  const double t = (time - times[right - 1]) / (times[right] - times[right - 1]);
-  return (1 - t) * values.col(right - 1) + t * values.col(right);
+  if (right == 0) return {0, 0, 0};
+  if (right > last) return {last, last, 0};
+  return {right - 1, right, (time - times[right - 1]) / (times[right] - times[right - 1])};
+}
+
+Eigen::Vector3d Linear(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values, double time) {
+  const auto [left, right, t] = Bracket(times, time);
+  return (1 - t) * values.col(left) + t * values.col(right);
 }
 
 // A cubic between neighbouring times, with the velocity at each that a parabola through it and its
 // neighbours has.
 Eigen::Vector3d Smooth(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values, double time) {
+  const auto [left, right, t] = Bracket(times, time);
+  if (left == right) return values.col(left);
   const Eigen::Index last = times.size() - 1;
-  const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
-  const Eigen::Index right = after - times.data();
-  if (right == 0) return values.col(0);
-  if (right > last) return values.col(last);
-  const Eigen::Index left = right - 1;
   const auto slope = [&](Eigen::Index k) -> Eigen::Vector3d {  // between k and k + 1
     return (values.col(k + 1) - values.col(k)) / (times[k + 1] - times[k]);
   };
-  const auto velocity = [&](Eigen::Index k) -> Eigen::Vector3d {
-    if (k == 0) return slope(0);
-    if (k == last) return slope(last - 1);
+  const auto knot = [&](Eigen::Index k) -> Knot<Eigen::Vector3d> {
+    if (k == 0) return {values.col(0), slope(0)};
+    if (k == last) return {values.col(last), slope(last - 1)};
     const double before = times[k] - times[k - 1], behind = times[k + 1] - times[k];
-    return (behind * slope(k - 1) + before * slope(k)) / (before + behind);
+    return {values.col(k), (behind * slope(k - 1) + before * slope(k)) / (before + behind)};
   };
-  const double h = times[right] - times[left], t = (time - times[left]) / h, s = 1 - t;
-  return (1 + 2 * t) * s * s * values.col(left) + t * t * (3 - 2 * t) * values.col(right) +
-         h * t * s * (s * velocity(left) - t * velocity(right));
-}
-
-Eigen::Matrix3d Rotation(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
+  return Interpolate(knot(left), knot(right), times[right] - times[left], t).position;
 }
 
 }  // namespace
 
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
-  return Interpolate(force.times, force.forces, time);
+  return Linear(force.times, force.forces, time);
 }
 
 Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
@@ -123,8 +123,8 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
   motion.translate(Smooth(grip.times, grip.displacements, time));
   if (grip.turns.cols() == 0) return motion;
   motion.translate(grip.pivot);
-  motion.rotate(Rotation(Smooth(grip.times, grip.turns, time)) *
-                Rotation(grip.turns.col(0)).transpose());
+  motion.rotate(RotationBy(Smooth(grip.times, grip.turns, time)) *
+                RotationBy(grip.turns.col(0)).transpose());
   motion.translate(-grip.pivot);
   return motion;
 }

@@ -1,4 +1,3 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -8,6 +7,7 @@
 #include "study/calibration_run.h"
 #include "study/comparison.h"
 #include "study/comparison_fields.h"
+#include "study/measurement_errors.h"
 #include "study/replayed_motion.h"
 
 namespace lacuna {
@@ -18,6 +18,7 @@ constexpr int kBins = 10;
 // How far a replayed difference may be from the recorded one, in σ: what another order of sums can
 // do is far less.
 constexpr double kSameMotion = 0.1;
+constexpr double kAnyPlace = 1;  // m: a place that nothing is known of
 
 // Whether the motion is the one that the fit left its misfits of: they differ by errors of the
 // markers' places alone, that move with the object.
@@ -26,24 +27,18 @@ bool IsThatMotion(const ComparedRecording& recording, const ReplayedMotion& moti
       motion.predicted.rows() != recording.measured.rows())
     return false;
   const Eigen::MatrixXd shown = motion.predicted - recording.measured - recording.difference;
-  for (Eigen::Index m = 0; m < shown.rows() / 3; ++m) {
-    const auto in_frame = [&](Eigen::Index f) -> Eigen::Vector3d {
-      return shown.col(f).segment<3>(3 * m);
-    };
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d toward = Eigen::Vector3d::Zero();
-    for (Eigen::Index f = 0; f < shown.cols(); ++f) {
-      if (!in_frame(f).allFinite()) continue;
-      const Eigen::Matrix3d& deformation = motion.deformation[f][m];
-      information += deformation.transpose() * deformation;
-      toward += deformation.transpose() * in_frame(f);
-    }
-    const Eigen::Vector3d place = information.ldlt().solve(toward);
-    for (Eigen::Index f = 0; f < shown.cols(); ++f) {
-      if (!in_frame(f).allFinite()) continue;
-      const Eigen::Vector3d other = in_frame(f) - motion.deformation[f][m] * place;
-      if (other.cwiseAbs().maxCoeff() > kSameMotion * noise) return false;
-    }
+  const int markers = static_cast<int>(shown.rows() / 3);
+  std::vector<int> seen;
+  for (Eigen::Index f = 0; f < shown.cols(); ++f)
+    for (int m = 0; m < markers; ++m) seen.push_back(shown.col(f).segment<3>(3 * m).allFinite());
+  const Eigen::MatrixXd places =
+      CommonError(shown.reshaped(), seen, markers, {noise, kAnyPlace},
+                  std::vector<char>(static_cast<size_t>(shown.cols()), 1), motion.deformation);
+  for (size_t k = 0; k < seen.size(); ++k) {
+    const Eigen::Index m = static_cast<Eigen::Index>(k) % markers;
+    const Eigen::Vector3d other = shown.reshaped().segment<3>(3 * static_cast<Eigen::Index>(k)) -
+                                  motion.deformation[k] * places.col(m);
+    if (seen[k] && other.cwiseAbs().maxCoeff() > kSameMotion * noise) return false;
   }
   return true;
 }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "analysis/linear_evidence.h"
-#include "analysis/series_noise.h"
 #include "core/progress.h"
 #include "study/calibration_problem.h"
 #include "study/candidates.h"
+#include "study/linear_misfit.h"
 #include "study/nuisance_candidates.h"
 #include "study/pilot_hypotheses.h"
 
@@ -51,14 +51,9 @@ struct ScoredNuisance {
   double evidence = 0;
   double explained = 0;
   bool adopted = false;  // it is so certain that the model is taken with it from here on
-  // Evidence that what is unknown of its change (unknown_share) could lend to an effect.
+  // Evidence that what is unknown of its change (NuisanceCandidate::unknown) could lend to an
+  // effect.
   double doubt = 0;
-};
-
-// The noise that hypotheses are weighed with.
-struct NoiseLevel {
-  double correlation_time = 0;  // s
-  double variance = 1;  // of the whitened rows: more than 1 where the best hypothesis leaves more
 };
 
 // Columns of nuisances that are part of the model, in rows of a LinearisedMisfit.
@@ -85,36 +80,10 @@ struct EffectRanking {
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without = {});
 
-// Priors of the problem's parameters as changes from `values`, per unit of the parameter (also
-// where they are searched on a logarithmic scale).
-std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
-                                     const Eigen::VectorXd& values);
-
-// `values` after such changes, within the parameters' bounds; a parameter on a logarithmic scale by
-// their exponential.
-Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
-                        const Eigen::VectorXd& values, const Eigen::VectorXd& change);
-
 // What the study would be fitted to with elements as fine as can be, and with the held-out frames,
 // which evidence counts too: what finer elements and effects change is best known there
 // (nuisance_candidates.h). `values` where those cannot be simulated. Throws Interrupted.
 Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values);
-
-// Rows of a linearised misfit, whitened recording by recording with its errors; of the frames that
-// were fitted, or of all.
-Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
-                             double correlation_time, bool fitted_only);
-
-// The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and larger
-// than the study's own where it is larger.
-NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
-                   Eigen::Index parameters);
-
-// Rows that were observed.
-Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
-
-// √ of the mean square of the observed rows that were held out (all where none were), in σ.
-double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);
 
 }  // namespace lacuna
 

@@ -144,13 +144,15 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
                                    const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
   const NoiseLevel white;
   FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
-  for (int step = 0; step < kSettlingSteps && hypothesis.misfit.usable; ++step) {
+  if (!hypothesis.misfit.usable) return hypothesis;
+  double evidence = EvidenceOf(hypothesis, white).log_evidence;
+  for (int step = 0; step < kSettlingSteps; ++step) {
     values = Moved(problem, values, hypothesis, same);
     FittedHypothesis next = HypothesisAt(problem, values, adopted, same, &hypothesis);
     if (!next.misfit.usable) break;
-    const double gain =
-        EvidenceOf(next, white).log_evidence - EvidenceOf(hypothesis, white).log_evidence;
+    const double gain = EvidenceOf(next, white).log_evidence - evidence;
     if (!(gain > 0)) break;
+    evidence += gain;
     hypothesis = std::move(next);
     if (gain < kSettled) break;
   }

@@ -191,15 +191,14 @@ Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::Vec
 
 namespace {
 
-std::vector<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
-                                            const Eigen::VectorXd& values,
-                                            const LinearisedMisfit& misfit) {
+std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
+                                              const Eigen::VectorXd& values,
+                                              const LinearisedMisfit& misfit) {
   const PredictionStudy study = problem.WithGivenNoise();
   const double ratio = MeshRatio(problem);
   const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
   const Eigen::VectorXd between = WithFinerMesh(study, ratio / 2, values);
-  problem.SetModel(values);
-  if (fine.size() != misfit.residual.size() || between.size() != fine.size()) return {};
+  if (fine.size() != misfit.residual.size() || between.size() != fine.size()) return std::nullopt;
   NuisanceCandidate candidate{"mesh", "the size of the elements",
                               "choose a smaller mesh.max_volume"};
   candidate.by.resize(fine.size(), 2);
@@ -209,30 +208,29 @@ std::vector<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
                       {0, kUnknownOfMesh, false}};
   candidate.is_always_taken = true;
   candidate.unknown = kUnknownOfMesh * candidate.by.col(1);
-  return {candidate};
+  return candidate;
 }
 
-std::vector<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
-                                            const Eigen::VectorXd& values,
-                                            const LinearisedMisfit& misfit) {
+std::optional<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
+                                              const Eigen::VectorXd& values,
+                                              const LinearisedMisfit& misfit) {
   PredictionStudy slow = problem.WithGivenNoise();
   slow.time_step /= kStepRatio;
   const LinearisedMisfit refined =
       CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false);
-  problem.SetModel(values);
-  if (!refined.usable || refined.residual.size() != misfit.residual.size()) return {};
+  if (!refined.usable || refined.residual.size() != misfit.residual.size()) return std::nullopt;
   NuisanceCandidate candidate{"time_step", "the length of the step",
                               "choose a smaller motion.time_step"};
   candidate.by = refined.residual - misfit.residual;
   candidate.priors = {kStepLimit};
   candidate.is_always_taken = true;
   candidate.unknown = kUnknownOfStep * candidate.by;
-  return {candidate};
+  return candidate;
 }
 
-std::vector<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem,
-                                             const Eigen::VectorXd& values,
-                                             const LinearisedMisfit& misfit) {
+std::optional<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem,
+                                               const Eigen::VectorXd& values,
+                                               const LinearisedMisfit& misfit) {
   const Model& model = problem.models().front().model();
   const TetMesh& mesh = problem.body()->mesh;
   // What is gripped at a face stays at it.
@@ -247,12 +245,11 @@ std::vector<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem,
     TetMesh larger = mesh;
     larger.nodes.row(axis).array() += kShape * (mesh.nodes.row(axis).array() - centre[axis]);
     const LinearisedMisfit changed = CalibrationProblem(study, larger).Linearise(values, false);
-    if (!changed.usable || changed.residual.size() != misfit.residual.size()) return {};
+    if (!changed.usable || changed.residual.size() != misfit.residual.size()) return std::nullopt;
     candidate.by.col(axis) = changed.residual - misfit.residual;
     candidate.priors.push_back({0, 1, false});
   }
-  problem.SetModel(values);
-  return {candidate};
+  return candidate;
 }
 
 }  // namespace
@@ -260,11 +257,11 @@ std::vector<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem,
 std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& problem,
                                                     const Eigen::VectorXd& values,
                                                     const LinearisedMisfit& misfit) {
-  std::vector<NuisanceCandidate> all = MeshNuisance(problem, values, misfit);
-  for (NuisanceCandidate& candidate : StepNuisance(problem, values, misfit))
-    all.push_back(std::move(candidate));
-  for (NuisanceCandidate& candidate : ShapeNuisance(problem, values, misfit))
-    all.push_back(std::move(candidate));
+  std::vector<NuisanceCandidate> all;
+  for (const auto& make : {MeshNuisance, StepNuisance, ShapeNuisance})
+    if (std::optional<NuisanceCandidate> candidate = make(problem, values, misfit))
+      all.push_back(*std::move(candidate));
+  problem.SetModel(values);  // the changed models share its effects
   return all;
 }
 

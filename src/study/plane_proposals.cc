@@ -11,7 +11,6 @@
 namespace lacuna {
 namespace {
 
-constexpr double kClear = 3;       // σ: a crossing by less is noise
 constexpr double kSameWay = 0.98;  // cosine of directions that are tried once
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
@@ -135,13 +134,17 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
   problem.SetModel(values);
   std::vector<Eigen::Matrix3Xd> displacements;
   Eigen::Vector3d largest = Eigen::Vector3d::Zero();
-  double clear = 0;
+  double noise = 0;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     displacements.push_back(Displacements(misfit, part));
-    clear = std::max(clear, kClear * part.errors.noise);
+    noise = std::max(noise, part.errors.noise);
     for (const auto& displacement : displacements.back().colwise())
       if (displacement.norm() > largest.norm()) largest = displacement;
   }
+
+  // The largest of so many errors is about √(2 ln count) σ: a crossing by less is noise.
+  const double clear =
+      noise * std::sqrt(2 * std::log(static_cast<double>(misfit.residual.size()) + 1));
 
   // The measured points alone tell where nothing is crossed.
   Reach of_points(Ways(problem.study(), largest));

@@ -98,7 +98,8 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
     const int frame = index < at_start ? index : index - 1;
     motion.predicted.col(frame) = observer.rows() * state.position;
     motion.velocity.col(frame) = observer.rows() * state.velocity;
-    motion.deformation.push_back(observer.DeformationAt(state.position));
+    for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
+      motion.deformation.push_back(deformation);
     for (Eigen::Index m = 0; m < markers; ++m) {
       const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
       motion.strain(m, frame) = LargestPrincipal(strain.strain);

@@ -18,10 +18,10 @@ namespace lacuna {
 struct ReplayedMotion {
   PredictionSummary summary;
   double delay = 0;  // s, by which the recording's clock is late: model time = time − delay
-  Eigen::VectorXd nuisance;                               // of the recording
-  Eigen::MatrixXd predicted;                              // m, the markers' places
-  Eigen::MatrixXd velocity;                               // m/s
-  std::vector<std::vector<Eigen::Matrix3d>> deformation;  // of each frame: F at each marker
+  Eigen::VectorXd nuisance;                  // of the recording
+  Eigen::MatrixXd predicted;                 // m, the markers' places
+  Eigen::MatrixXd velocity;                  // m/s
+  std::vector<Eigen::Matrix3d> deformation;  // markers × frames: F at each
   // Of the element that the marker sits in, the mean over it: the largest magnitude among the
   // principal Green–Lagrange strains, and among those of the strain's rate, 1/s.
   Eigen::MatrixXd strain, strain_rate;

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "geometry/nearest.h"
+#include "geometry/rotation.h"
 
 namespace lacuna {
 namespace {
@@ -128,8 +129,7 @@ Fit FitOnce(const Part& part, const SurfaceSearch& search, const ScannedPoints& 
 Eigen::Isometry3d MotionOf(const Part& part, const Twist& step) {
   const Eigen::Vector3d turn = step.head<3>() / part.radius;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  if (turn.norm() > 0)
-    motion.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  motion.linear() = RotationBy(turn);
   motion.translation() = part.centre + step.tail<3>() - motion.linear() * part.centre;
   return motion;
 }

@@ -81,8 +81,8 @@ class Problem {
     const int stride = (frames + most - 1) / most;
     for (int frame = 0; frame < frames; frame += stride) {
       chosen_.push_back(frame);
-      deformation_.insert(deformation_.end(), motion.deformation[frame].begin(),
-                          motion.deformation[frame].end());
+      const auto at_markers = motion.deformation.begin() + frame * markers;
+      deformation_.insert(deformation_.end(), at_markers, at_markers + markers);
     }
   }
 

@@ -156,7 +156,7 @@ void Decide(Diagnosis* diagnosis) {
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   diagnosis->effects = {best.scored.candidate.type};
   for (size_t k = 1; k < refitted.size(); ++k)
-    if (refitted[k]->evidence > evidence - std::max(lead, kDoubtful * doubt))
+    if (refitted[k]->evidence > evidence - lead)
       diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
   std::vector<std::string> refine;
   // Look-alikes that were not refitted cannot be ruled out either.

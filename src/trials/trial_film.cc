@@ -12,6 +12,7 @@
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/embedding.h"
+#include "geometry/rotation.h"
 #include "geometry/rounded_box.h"
 #include "meshing/tetrahedralize.h"
 #include "scan/random_bits.h"
@@ -73,7 +74,7 @@ Eigen::Isometry3d ClampPlace(int recording, double time) {
   const auto [turn, shift] = ClampMotion(recording, time);
   Eigen::Isometry3d place = Eigen::Isometry3d::Identity();
   place.translate(shift);
-  if (turn.norm() > 0) place.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+  place.rotate(RotationBy(turn));
   return place;
 }
 

@@ -52,7 +52,7 @@ struct PilotsOfBar {
   explicit PilotsOfBar(const HeldBarTruth& truth) {
     WriteBarRecording(folder.Path(), FilmHeldBar(truth));
     study = ReadBarStudy(folder.Path());
-    const CalibrationProblem problem(study, BarMesh({7, 2, 2}, 2));
+    const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
     Eigen::VectorXd values = problem.Start();
     values[0] = truth.young_modulus;
     values[1] = truth.alpha;
@@ -132,7 +132,7 @@ TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   const RankedEffect* contact = Find(diagnosis, "plane_contact");
   EXPECT_EQ(contact == nullptr, IsUntried(diagnosis.untried, "plane_contact"));
-  // A plane that a marker's noise has proposed.
+  // A plane that the mesh's error has proposed: effects are tried where the limit would be fitted.
   if (contact != nullptr) {
     EXPECT_LT(contact->scored.score.evidence, 3);
   }

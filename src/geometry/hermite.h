@@ -1,6 +1,6 @@
-// Cubic Hermite interpolation between the ends of a step.
-#ifndef LACUNA_FEM_HERMITE_H_
-#define LACUNA_FEM_HERMITE_H_
+// Cubic Hermite interpolation between two times.
+#ifndef LACUNA_GEOMETRY_HERMITE_H_
+#define LACUNA_GEOMETRY_HERMITE_H_
 
 namespace lacuna {
 
@@ -22,4 +22,4 @@ Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, doubl
 
 }  // namespace lacuna
 
-#endif  // LACUNA_FEM_HERMITE_H_
+#endif  // LACUNA_GEOMETRY_HERMITE_H_
