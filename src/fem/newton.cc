@@ -93,18 +93,40 @@ class Newton {
   template <typename RightHandSide>
   bool SolveLinearised(const Iterate& at, const RightHandSide& right, Eigen::VectorXd* step) {
     LinearSolveSummary solved;
-    const std::vector<Eigen::Matrix3d> rotations =
-        NodeRotations(problem_.equation.body(), at.position);
+    rotations_ = NodeRotations(problem_.equation.body(), at.position);
     for (int attempt = 0; attempt < 2; ++attempt) {
       AssembleTangent(at);
       const Eigen::VectorXd b = right();
-      solved = solver_.Solve(tangent_, b, step, &rotations);
-      if (solved.IsUsable() && step->allFinite() && step->dot(b) >= 0) return true;
+      solved = solver_.Solve(tangent_, b, step, &rotations_);
+      const bool goes_down = solved.IsUsable() && step->allFinite() && step->dot(b) >= 0;
+      has_tangent_ = goes_down && !convexify_;
+      if (goes_down) return true;
       if (convexify_) break;
       convexify_ = true;
     }
     Fail(NewtonSummary::Status::kLinearSolverFailed,
          fmt::format("the linearised step could not be solved: {}", solved.message));
+    return false;
+  }
+
+  // Near the solution the tangent of an earlier iterate does nearly as well, and assembling a new
+  // one costs more than a step (the chord method). False, with `at` as it was, where it does not.
+  bool FollowChord(Iterate* at) {
+    constexpr double kGoesOn = 0.2;  // of the residual
+    if (!has_tangent_ || convexify_) return false;
+    Eigen::VectorXd step;
+    const Eigen::VectorXd b = -at->residual;
+    const LinearSolveSummary solved = solver_.Solve(tangent_, b, &step, &rotations_);
+    if (solved.IsUsable() && step.allFinite()) {
+      Iterate next = Evaluate(at->position + step);
+      const double ratio = next.residual.norm() / at->residual.norm();
+      has_tangent_ = ratio <= kGoesOn;
+      if (has_tangent_) {
+        *at = std::move(next);
+        return true;
+      }
+    }
+    has_tangent_ = false;
     return false;
   }
 
@@ -149,6 +171,7 @@ class Newton {
   // far ahead, where a line search would creep along the bottom. So a climb is forgiven when the
   // step after it ends below where it began (the watchdog technique, Chamberlain et al. 1982).
   bool Advance(Iterate* at) {
+    if (FollowChord(at)) return true;
     Eigen::VectorXd step;
     if (!NewtonStep(*at, &step)) return false;
     Iterate full = Evaluate(at->position + step);
@@ -261,6 +284,8 @@ class Newton {
   NewtonSummary summary_;
   bool convexify_ = false;
   bool may_climb_ = true;
+  bool has_tangent_ = false;  // `tangent_` is the exact one of an earlier iterate
+  std::vector<Eigen::Matrix3d> rotations_;  // of the nodes there
   Iterate beyond_;
   // N: residuals below this are rounding errors; known once there is a tangent
   double rounding_ = std::numeric_limits<double>::infinity();
