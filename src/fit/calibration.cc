@@ -205,9 +205,8 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::M
 }
 
 // ½ ‖r‖² plus the priors; infinite where there is no prediction.
-double CostAt(const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
-              SecantPredictions* predictions) {
-  const Prediction& prediction = predictions->At(values);
+double CostOf(const Prediction& prediction, const std::vector<CalibratedParameter>& parameters,
+              const Eigen::VectorXd& values) {
   if (!prediction.usable) return std::numeric_limits<double>::infinity();
   double cost = prediction.residual.squaredNorm();
   for (size_t k = 0; k < parameters.size(); ++k) {
@@ -242,6 +241,7 @@ double ExpectedGain(ceres::Problem& problem, const std::vector<double*>& blocks)
 // Values that have all but come to a bound, and do no worse at it, are put there.
 void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
                   SecantPredictions* predictions, Eigen::VectorXd* values) {
+  constexpr double kNoWorse = 0.5;  // of a cost whose unit is one standard deviation
   Eigen::VectorXd snapped = *values;
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
@@ -252,9 +252,9 @@ void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
     if (ToFree(parameter, parameter.max) - now < near) value = parameter.max;
   }
   if (snapped == *values) return;
-  const double before = CostAt(parameters, *values, predictions);
-  constexpr double kNoWorse = 0.5;  // of a cost whose unit is one standard deviation
-  if (CostAt(parameters, snapped, predictions) <= before + kNoWorse) *values = snapped;
+  const double before = CostOf(predictions->ExactAt(*values), parameters, *values);
+  const Prediction there = predictions->WithoutJacobianAt(snapped);
+  if (CostOf(there, parameters, snapped) <= before + kNoWorse) *values = snapped;
 }
 
 }  // namespace
@@ -330,7 +330,8 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
       calibration.message = calibration.usable ? "" : summary.message;
     };
     bool ended = false;
-    for (int round = 0; options.starts_near && !ended && round < kSecantRounds; ++round) {
+    const bool is_near = calibration.start_rms <= options.near_rms;
+    for (int round = 0; is_near && !ended && round < kSecantRounds; ++round) {
       predictions.FollowSecants(true);
       solve();
       predictions.FollowSecants(false);

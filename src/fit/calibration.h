@@ -44,9 +44,10 @@ struct CalibrationOptions {
   // Stop when a step lowers the cost by less than this share of a measurement's mean cost; smaller:
   // more iterations for changes within the intervals.
   double cost_tolerance = 0.05;
-  // The start is near: a Jacobian there and one at the end, and in between Broyden's (Math. Comp.
-  // 19, 1965), which costs no more than the residuals. Where the end is none, once more from there.
-  bool starts_near = false;
+  // A start that leaves no more than this, rms in standard deviations, is near: a Jacobian there
+  // and one at the end, and in between Broyden's (Math. Comp. 19, 1965), which costs no more than
+  // the residuals. Where the end is none, once more from there.
+  double near_rms = 0;
 };
 
 // What the data says of one parameter.

@@ -20,6 +20,11 @@ class SecantPredictions {
   // With the exact Jacobian, or, while secants are followed, with what they make of the last one.
   const Prediction& At(const Eigen::VectorXd& values);
   const Prediction& ExactAt(const Eigen::VectorXd& values);
+  // Not kept.
+  Prediction WithoutJacobianAt(const Eigen::VectorXd& values) {
+    ++count_;
+    return predict_(values, /*with_jacobian=*/false);
+  }
   void FollowSecants(bool follows) { follows_secants_ = follows; }
   int count() const { return count_; }  // of calls of the function
 

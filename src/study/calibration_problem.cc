@@ -323,41 +323,55 @@ double CalibrationProblem::LongestFitted() const {
   return longest;
 }
 
-Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress,
-                                    const CalibrationOptions& options) const {
-  const double longest = LongestFitted();
-  Calibration calibration;
-  Eigen::VectorXd values = start;
+Calibration CalibrationProblem::FitBeginning(const Eigen::VectorXd& start,
+                                             Progress* progress) const {
+  progress->Begin("fit, first part", 0);
   int evaluations = 0;
-  for (const double share : {kShortHorizon, 1.0}) {
-    progress->Begin(share < 1 ? "fit, first part" : "fit", 0);
-    const double horizon = share < 1 ? share * longest : std::numeric_limits<double>::infinity();
-    calibration = FitOver(horizon, values, options, progress, &evaluations);
-    progress->End(calibration.usable ? "" : calibration.message);
-    if (calibration.parameters.size() > 0) values = calibration.parameters;
-  }
-  calibration.predictions = evaluations;
-  // "Before" is where the caller started, not where the first part ended.
-  const Prediction before = Predict(start, /*with_jacobian=*/false);
-  calibration.start_rms =
-      before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
-  SetModel(values);
-  return calibration;
-}
-
-Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
-  progress->Begin("fit", 0);
-  int evaluations = 0;
-  Calibration calibration = FitOver(std::numeric_limits<double>::infinity(), start,
-                                    {.starts_near = true}, progress, &evaluations);
+  Calibration calibration =
+      FitOver(kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
   progress->End(calibration.message);
   calibration.predictions = evaluations;
   if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
   return calibration;
 }
 
-Calibration CalibrationProblem::FitFromStart(Progress* progress) const {
-  Calibration calibration = Fit(Start(), progress);
+Calibration CalibrationProblem::FitWhole(const Eigen::VectorXd& start, const Calibration& beginning,
+                                         Progress* progress) const {
+  int evaluations = beginning.predictions;
+  const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
+  progress->Begin("fit", 0);
+  Calibration calibration = FitOver(std::numeric_limits<double>::infinity(), near,
+                                    {.near_rms = kMayBeAstray}, progress, &evaluations);
+  progress->End(calibration.message);
+  calibration.predictions = evaluations;
+  // "Before" is where the caller started, not where the first part ended.
+  const Prediction before = Predict(start, /*with_jacobian=*/false);
+  calibration.start_rms =
+      before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
+  SetModel(calibration.parameters.size() > 0 ? calibration.parameters : near);
+  return calibration;
+}
+
+Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress) const {
+  return FitWhole(start, FitBeginning(start, progress), progress);
+}
+
+Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
+  progress->Begin("fit", 0);
+  int evaluations = 0;
+  Calibration calibration =
+      FitOver(std::numeric_limits<double>::infinity(), start,
+              {.near_rms = std::numeric_limits<double>::infinity()}, progress, &evaluations);
+  progress->End(calibration.message);
+  calibration.predictions = evaluations;
+  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
+  return calibration;
+}
+
+Calibration CalibrationProblem::FitFromStart(Progress* progress,
+                                             const Calibration* beginning) const {
+  Calibration calibration =
+      beginning != nullptr ? FitWhole(Start(), *beginning, progress) : Fit(Start(), progress);
   if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;
   const auto is_modulus = [&](size_t k) {
     return parameters_[k].log_scale && study_.fitted[k].unit == "Pa";

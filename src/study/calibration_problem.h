@@ -81,15 +81,16 @@ class CalibrationProblem {
   // First over a short horizon, where a wrong model is least wrong, then over all fitted frames. Of
   // scans, the points' places on the surface are kept during a fit and sought again after it, until
   // the parameters settle; where they do not, the result is not usable.
-  Calibration Fit(const Eigen::VectorXd& start, Progress* progress,
-                  const CalibrationOptions& options = {}) const;
+  Calibration Fit(const Eigen::VectorXd& start, Progress* progress) const;
+  Calibration FitBeginning(const Eigen::VectorXd& start, Progress* progress) const;
 
   // Over all fitted frames at once, from near the solution.
   Calibration FitOn(const Eigen::VectorXd& start, Progress* progress) const;
 
   // From Start(). A fit from far away may end where it is off by a period of a vibration: where it
   // leaves far more than noise, the moduli are started from elsewhere too, and the best is kept.
-  Calibration FitFromStart(Progress* progress) const;
+  // `beginning`: its first part, where that has been fitted before.
+  Calibration FitFromStart(Progress* progress, const Calibration* beginning = nullptr) const;
 
  private:
   // Of each fitted recording, what its frames are compared with; empty: found while predicting.
@@ -104,6 +105,8 @@ class CalibrationProblem {
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
   double LongestFitted() const;  // s, of any recording after its start
+  Calibration FitWhole(const Eigen::VectorXd& start, const Calibration& beginning,
+                       Progress* progress) const;
   Calibration FitOver(double horizon, const Eigen::VectorXd& start,
                       const CalibrationOptions& options, Progress* progress,
                       int* evaluations) const;

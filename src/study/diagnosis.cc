@@ -65,6 +65,122 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   return found;
 }
 
+// The refits of a diagnosis, one per effect of its ranking.
+class Refits {
+ public:
+  // `ranking`: without its effects, which `diagnosis` has.
+  Refits(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+         const EffectRanking& ranking, Progress* progress, Diagnosis* diagnosis)
+      : problem_(problem),
+        values_(values),
+        ranking_(ranking),
+        progress_(*progress),
+        diagnosis_(*diagnosis),
+        present_(Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress)),
+        refits_(diagnosis->ranking.size()) {
+    CHECK(present_.message.empty()) << present_.message;
+    diagnosis_.errors.without_nuisances = present_.errors.without_nuisances;
+    diagnosis_.present_in_noise = InNoise(present_.hypothesis);
+  }
+
+  // Those that first order finds best.
+  void RunBest(int count) {
+    const double most =
+        diagnosis_.ranking.empty() ? 0 : diagnosis_.ranking.front().scored.score.evidence;
+    for (size_t k = 0; k < diagnosis_.ranking.size(); ++k) {
+      const double evidence = diagnosis_.ranking[k].scored.score.evidence;
+      if (evidence < kNoEvidence) break;
+      if (static_cast<int>(k) < count || evidence > most - kCloseBehind) Run(k);
+    }
+  }
+
+  // Those that are best early on, with their place, direction or time, their size and their
+  // look-alikes as they are found there.
+  void RunEarly(const std::vector<ScoredEffect>& found, int count) {
+    for (size_t k = 0; k < found.size() && static_cast<int>(k) < count; ++k) {
+      if (found[k].score.evidence < kNoEvidence) break;
+      for (size_t at = 0; at < diagnosis_.ranking.size(); ++at) {
+        RankedEffect& ranked = diagnosis_.ranking[at];
+        if (ranked.scored.candidate.type != found[k].candidate.type || ranked.refitted) continue;
+        const Score late = std::exchange(ranked.scored, found[k]).score;
+        Run(at);
+        ranked.scored.score = late;
+      }
+    }
+  }
+
+  // First order cannot tell the best from its look-alikes; a refit may.
+  void RunLookAlikesOfBest() {
+    const auto best = std::max_element(
+        diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
+        [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
+    if (best == diagnosis_.ranking.end() || best->evidence <= 0) return;
+    const std::vector<std::string> look_alikes = best->scored.look_alikes;
+    for (size_t k = 0; k < diagnosis_.ranking.size(); ++k)
+      if (std::count(look_alikes.begin(), look_alikes.end(),
+                     diagnosis_.ranking[k].scored.candidate.type) > 0)
+        Run(k);
+  }
+
+  // The noise is what the best of them leaves; evidence is weighed with that.
+  void Weigh() {
+    const FittedHypothesis& best = Best();
+    diagnosis_.noise_level = LevelOf(best.left, best.misfit, best.misfit.by.cols());
+    diagnosis_.left_in_noise = InNoise(best);
+    const HypothesisEvidence before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level);
+    for (size_t k = 0; k < refits_.size(); ++k) {
+      if (!IsUsable(k)) continue;
+      RankedEffect& ranked = diagnosis_.ranking[k];
+      const HypothesisEvidence after = EvidenceOf(refits_[k].hypothesis, diagnosis_.noise_level);
+      ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis_.ranking.size());
+      if (!std::isfinite(ranked.evidence)) {
+        ranked.evidence = 0;
+        ranked.refit_message = "it ended where its evidence has no value";
+        continue;
+      }
+      ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
+      ranked.left_in_noise = InNoise(refits_[k].hypothesis);
+    }
+  }
+
+ private:
+  bool IsUsable(size_t k) const {
+    return diagnosis_.ranking[k].refitted && diagnosis_.ranking[k].refit_message.empty();
+  }
+  void Run(size_t k) {
+    RankedEffect& ranked = diagnosis_.ranking[k];
+    if (ranked.refitted || done_ == kMostRefits) return;
+    ++done_;
+    ranked.refitted = true;
+    refits_[k] =
+        Refit(problem_, values_, &ranked.scored, ranking_.adopted, ranking_.misfit, &progress_);
+    ranked.refit_message = refits_[k].message;
+    ranked.errors = refits_[k].errors;
+    ranked.calibration = refits_[k].calibration;
+  }
+  const FittedHypothesis& Best() const {
+    const FittedHypothesis* best = &present_.hypothesis;
+    double least = EvidenceOf(*best, ranking_.noise).misfit;
+    for (size_t k = 0; k < refits_.size(); ++k) {
+      if (!IsUsable(k)) continue;
+      const double misfit = EvidenceOf(refits_[k].hypothesis, ranking_.noise).misfit;
+      if (misfit >= least) continue;
+      least = misfit;
+      best = &refits_[k].hypothesis;
+    }
+    return *best;
+  }
+
+  const CalibrationProblem& problem_;
+  const Eigen::VectorXd& values_;
+  const EffectRanking& ranking_;
+  Progress& progress_;
+  Diagnosis& diagnosis_;
+  EffectRefit present_;  // the model as it is
+  std::vector<EffectRefit> refits_;
+  int done_ = 0;
+};
+
 }  // namespace
 
 std::string VerdictName(Verdict verdict) {
@@ -106,90 +222,13 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
     diagnosis.ranking.back().scored = std::move(effect);
   }
 
-  const EffectRefit as_it_is =
-      Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress);
-  CHECK(as_it_is.message.empty()) << as_it_is.message;
-  const FittedHypothesis& present = as_it_is.hypothesis;
-  diagnosis.errors.without_nuisances = as_it_is.errors.without_nuisances;
-  diagnosis.present_in_noise = InNoise(present);
-
-  std::vector<EffectRefit> refits(diagnosis.ranking.size());
-  int done = 0;
-  const auto refit = [&](size_t k) {
-    RankedEffect& ranked = diagnosis.ranking[k];
-    if (ranked.refitted || done == kMostRefits) return;
-    ++done;
-    ranked.refitted = true;
-    refits[k] = Refit(problem, values, &ranked.scored, ranking.adopted, ranking.misfit, progress);
-    ranked.refit_message = refits[k].message;
-    ranked.errors = refits[k].errors;
-    ranked.calibration = refits[k].calibration;
-  };
-  const double most =
-      diagnosis.ranking.empty() ? 0 : diagnosis.ranking.front().scored.score.evidence;
-  for (size_t k = 0; k < diagnosis.ranking.size(); ++k) {
-    const double evidence = diagnosis.ranking[k].scored.score.evidence;
-    if (evidence < kNoEvidence) break;
-    if (static_cast<int>(k) < options.refits || evidence > most - kCloseBehind) refit(k);
-  }
-
-  if (diagnosis.present_in_noise > kFarOff) {
-    const std::vector<ScoredEffect> found = RankEarly(problem, values, options.without, progress);
-    for (size_t k = 0; k < found.size() && static_cast<int>(k) < options.refits; ++k) {
-      if (found[k].score.evidence < kNoEvidence) break;
-      for (size_t at = 0; at < diagnosis.ranking.size(); ++at) {
-        ScoredEffect& scored = diagnosis.ranking[at].scored;
-        if (scored.candidate.type != found[k].candidate.type || diagnosis.ranking[at].refitted)
-          continue;
-        // Its place, direction or time, its size and its look-alikes as they are found early.
-        const Score late = std::exchange(scored, found[k]).score;
-        refit(at);
-        scored.score = late;
-      }
-    }
-  }
-
-  // The noise is what the best of them leaves.
-  const auto weigh = [&] {
-    const FittedHypothesis* best = &present;
-    double least = EvidenceOf(present, ranking.noise).misfit;
-    for (size_t k = 0; k < refits.size(); ++k) {
-      if (!diagnosis.ranking[k].refitted || !refits[k].message.empty()) continue;
-      const double misfit = EvidenceOf(refits[k].hypothesis, ranking.noise).misfit;
-      if (misfit >= least) continue;
-      least = misfit;
-      best = &refits[k].hypothesis;
-    }
-    diagnosis.noise_level = LevelOf(best->left, best->misfit, best->misfit.by.cols());
-    const HypothesisEvidence before = EvidenceOf(present, diagnosis.noise_level);
-    for (size_t k = 0; k < refits.size(); ++k) {
-      RankedEffect& ranked = diagnosis.ranking[k];
-      if (!ranked.refitted || !refits[k].message.empty()) continue;
-      const HypothesisEvidence after = EvidenceOf(refits[k].hypothesis, diagnosis.noise_level);
-      ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis.ranking.size());
-      if (!std::isfinite(ranked.evidence)) {
-        ranked.evidence = 0;
-        refits[k].message = ranked.refit_message = "it ended where its evidence has no value";
-        continue;
-      }
-      ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
-      ranked.left_in_noise = InNoise(refits[k].hypothesis);
-    }
-    return best;
-  };
-  weigh();
-  // First order cannot tell the best from its look-alikes; a refit may.
-  const auto best = std::max_element(
-      diagnosis.ranking.begin(), diagnosis.ranking.end(),
-      [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
-  if (best != diagnosis.ranking.end() && best->evidence > 0) {
-    const std::vector<std::string> look_alikes = best->scored.look_alikes;
-    for (size_t k = 0; k < diagnosis.ranking.size(); ++k)
-      if (std::count(look_alikes.begin(), look_alikes.end(),
-                     diagnosis.ranking[k].scored.candidate.type) > 0)
-        refit(k);
-  }
-  diagnosis.left_in_noise = InNoise(*weigh());
+  Refits refits(problem, values, ranking, progress, &diagnosis);
+  refits.RunBest(options.refits);
+  if (diagnosis.present_in_noise > kFarOff)
+    refits.RunEarly(RankEarly(problem, values, options.without, progress), options.refits);
+  refits.Weigh();
+  refits.RunLookAlikesOfBest();
+  refits.Weigh();
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   problem.SetModel(fitted);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "scan/random_bits.h"
@@ -59,8 +60,8 @@ struct Weighed {
   Eigen::MatrixXd columns;
 };
 
-Weighed Weigh(const LinearisedMisfit& misfit, const Hypotheses& hypotheses,
-              double correlation_time) {
+Weighed MakeWeighed(const LinearisedMisfit& misfit, const Hypotheses& hypotheses,
+                    double correlation_time) {
   Eigen::MatrixXd rows(misfit.residual.size(), hypotheses.by.cols() + 1);
   rows << misfit.residual, hypotheses.by;
   const Eigen::MatrixXd all = WhitenedRows(rows, misfit, correlation_time, false);
@@ -163,6 +164,218 @@ double Duration(const PredictionStudy& study) {
   return duration;
 }
 
+// All hypotheses along one trajectory, as columns: the model's own parameters, the effects in their
+// variants, the nuisances.
+class HypothesisRanking {
+ public:
+  HypothesisRanking(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                    const std::vector<std::string>& without);
+
+  // Weighs them all. What is certain of the nuisances is taken into the model, and then all are
+  // weighed again.
+  void Weigh();
+  EffectRanking Result();
+
+ private:
+  // One effect, in the best of its variants.
+  struct Entry {
+    ScoredEffect scored;
+    std::vector<int> own;  // columns
+    int variants = 0;
+  };
+
+  void AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots);
+  void AddNuisance(NuisanceCandidate candidate, bool adopted);
+  // The residual after a fit of these columns.
+  Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
+  void ScoreDiscretisation();
+  void ScoreEffects(const LinearFit& before);
+  // The best nuisance that is not in the model; −1: there is none.
+  int ScoreNuisances(const LinearFit& before);
+  void FindLookAlikes(Entry* entry) const;
+
+  const Eigen::VectorXd values_;
+  const Eigen::Index known_;  // the problem's parameters
+  std::vector<CandidateEffect> candidates_;
+  LinearisedMisfit misfit_;
+  Hypotheses hypotheses_;
+  std::vector<int> parameters_, base_;  // columns: of the problem's parameters; of the model
+  std::vector<std::vector<int>> of_candidate_, of_nuisance_;
+  EffectRanking ranking_;
+  std::optional<Weighed> weighed_;
+  std::vector<Entry> entries_;
+};
+
+HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
+                                     const Eigen::VectorXd& values,
+                                     const std::vector<std::string>& without)
+    : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
+  const PredictionStudy& study = problem.study();
+  problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
+  candidates_ =
+      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without});
+  const GripNuisances grips(problem);
+  std::vector<MisfitDirection> directions = DirectionsOf(candidates_);
+  const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());
+  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  misfit_ = problem.Linearise(values, true, directions);
+  CHECK(misfit_.usable) << "the fitted model could be predicted before: " << misfit_.message;
+
+  parameters_ = base_ =
+      hypotheses_.Add(misfit_.by.leftCols(known_), PriorsAbout(problem.parameters(), values));
+  AddEffects(misfit_.by.middleCols(known_, of_effects),
+             RunPilots(problem, values, misfit_, without));
+  // What a finer discretisation would do is nobody's merit; nor is what the object's dimensions do,
+  // of which bending stiffness goes with the cube.
+  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit_))
+    AddNuisance(std::move(nuisance), true);
+
+  // What no effect explains is taken for noise.
+  const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
+  ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols());
+  for (NuisanceCandidate& nuisance :
+       grips.Candidates(misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects)))
+    AddNuisance(std::move(nuisance), false);
+  for (NuisanceCandidate& nuisance : MeasurementNuisances(
+           problem, misfit_,
+           WhitenedRows(LeftBy(base_), misfit_, ranking_.noise.correlation_time, false)))
+    AddNuisance(std::move(nuisance), false);
+  weighed_ = MakeWeighed(misfit_, hypotheses_, ranking_.noise.correlation_time);
+}
+
+void HypothesisRanking::AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots) {
+  Eigen::Index column = 0;
+  for (const CandidateEffect& candidate : candidates_) {
+    const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
+    of_candidate_.push_back(hypotheses_.Add(by.middleCols(column, width), PriorsOf(candidate)));
+    column += width;
+  }
+  for (PilotHypothesis& pilot : pilots.tried) {
+    of_candidate_.push_back(hypotheses_.Add(pilot.by, PriorsOf(pilot.candidate)));
+    candidates_.push_back(std::move(pilot.candidate));
+  }
+  ranking_.untried = std::move(pilots.untried);
+}
+
+void HypothesisRanking::AddNuisance(NuisanceCandidate candidate, bool adopted) {
+  of_nuisance_.push_back(hypotheses_.Add(candidate.by, candidate.priors));
+  ranking_.nuisances.push_back({std::move(candidate), 0, 0, adopted});
+  if (adopted) base_ = Joined(base_, of_nuisance_.back());
+}
+
+Eigen::VectorXd HypothesisRanking::LeftBy(const std::vector<int>& chosen) const {
+  const LinearFit fit =
+      LinearModel(WhitenedRows(misfit_.residual, misfit_, 0, false),
+                  WhitenedRows(hypotheses_.by, misfit_, 0, false), hypotheses_.priors)
+          .Fit(chosen, 1);
+  return misfit_.residual + hypotheses_.by(Eigen::all, chosen) * fit.change;
+}
+
+void HypothesisRanking::Weigh() {
+  ScoreDiscretisation();
+  for (int adopted = 0;; ++adopted) {
+    const LinearFit before = weighed_->all.Fit(base_, ranking_.noise.variance);
+    ScoreEffects(before);
+    const int best = ScoreNuisances(before);
+    const double rival = entries_.empty() ? 0 : std::max(0.0, entries_[0].scored.score.evidence);
+    if (best < 0 || adopted == kMostAdopted) break;
+    ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
+    if (nuisance.evidence < rival + kAdopted) break;
+    nuisance.adopted = true;
+    base_ = Joined(base_, of_nuisance_[static_cast<size_t>(best)]);
+  }
+}
+
+void HypothesisRanking::ScoreDiscretisation() {
+  const double variance = ranking_.noise.variance;
+  const LinearFit without = weighed_->all.Fit(parameters_, variance);
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (!nuisance.adopted) continue;
+    const LinearFit with = weighed_->all.Fit(Joined(parameters_, of_nuisance_[k]), variance);
+    nuisance.evidence = with.log_evidence - without.log_evidence;
+    nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
+    if (nuisance.candidate.unknown.cols() == 0) continue;
+    const LinearModel unknown = weighed_->all.WithResidual(
+        WhitenedRows(nuisance.candidate.unknown, misfit_, ranking_.noise.correlation_time, false),
+        weighed_->columns);
+    nuisance.doubt = 0.5 * unknown.Fit(parameters_, variance).misfit / variance;
+  }
+}
+
+void HypothesisRanking::ScoreEffects(const LinearFit& before) {
+  entries_.clear();
+  for (size_t c = 0; c < candidates_.size(); ++c) {
+    const CandidateEffect& candidate = candidates_[c];
+    Score score =
+        ScoreOf(*weighed_, base_, before, of_candidate_[c], ranking_.noise.variance, misfit_);
+    auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+      return entry.scored.candidate.type == candidate.type;
+    });
+    if (same == entries_.end()) same = entries_.insert(entries_.end(), Entry{});
+    ++same->variants;
+    if (same->variants > 1 && score.evidence <= same->scored.score.evidence) continue;
+    same->scored.candidate = candidate;
+    same->scored.score = std::move(score);
+    same->own = of_candidate_[c];
+  }
+  for (Entry& entry : entries_)
+    entry.scored.score.evidence -= Price(entry.variants) + Price(entries_.size());
+  std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+    return a.scored.score.evidence > b.scored.score.evidence;
+  });
+}
+
+int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
+  int best = -1;
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (nuisance.adopted) continue;
+    const LinearFit with =
+        weighed_->all.Fit(Joined(base_, of_nuisance_[k]), ranking_.noise.variance);
+    nuisance.evidence = with.log_evidence - before.log_evidence - nuisance.candidate.price -
+                        Price(ranking_.nuisances.size());
+    nuisance.explained = std::clamp(1 - with.misfit / before.misfit, 0.0, 1.0);
+    if (best < 0 || nuisance.evidence > ranking_.nuisances[static_cast<size_t>(best)].evidence)
+      best = static_cast<int>(k);
+  }
+  return best;
+}
+
+void HypothesisRanking::FindLookAlikes(Entry* entry) const {
+  for (const Entry& other : entries_)
+    if (&other != entry && weighed_->all.Collinearity(base_, entry->own, other.own,
+                                                      ranking_.noise.variance) > kLookAlike)
+      entry->scored.look_alikes.push_back(other.scored.candidate.type);
+}
+
+EffectRanking HypothesisRanking::Result() {
+  const double variance = ranking_.noise.variance;
+  ranking_.variants = static_cast<int>(candidates_.size());
+  const std::vector<int> adopted(base_.begin() + known_, base_.end());
+  ranking_.adopted.by = hypotheses_.by(Eigen::all, adopted);
+  for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
+  std::vector<int> best_fit = base_;
+  if (!entries_.empty() && entries_[0].scored.score.evidence > 0)
+    best_fit = Joined(base_, entries_[0].own);
+  ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
+                     Price(candidates_.size());
+  for (Entry& entry : entries_) {
+    ScoredEffect& scored = entry.scored;
+    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
+      scored.parameters.push_back(amount.name);
+      scored.units.push_back(amount.unit);
+    }
+    const LinearFit fit = weighed_->fitted.Fit(Joined(base_, entry.own), variance);
+    scored.fitted = values_ + fit.change.head(known_);
+    FindLookAlikes(&entry);
+  }
+  for (Entry& entry : entries_) ranking_.effects.push_back(std::move(entry.scored));
+  misfit_.by.resize(0, 0);
+  ranking_.misfit = std::move(misfit_);
+  return std::move(ranking_);
+}
+
 }  // namespace
 
 double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
@@ -196,154 +409,11 @@ Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::Vect
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without) {
-  EffectRanking ranking;
-  const PredictionStudy& study = problem.study();
   progress->Begin("score", 0);
-  problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
-  std::vector<CandidateEffect> candidates =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without});
-  const GripNuisances grips(problem);
-  std::vector<MisfitDirection> directions = DirectionsOf(candidates);
-  const Eigen::Index effect_columns = static_cast<Eigen::Index>(directions.size());
-  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
-  const LinearisedMisfit misfit = problem.Linearise(values, true, directions);
-  CHECK(misfit.usable) << "the fitted model could be predicted before: " << misfit.message;
-  const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
-
-  Hypotheses hypotheses;
-  const std::vector<int> parameters =
-      hypotheses.Add(misfit.by.leftCols(known), PriorsAbout(problem.parameters(), values));
-  std::vector<std::vector<int>> own;  // columns of each candidate
-  Eigen::Index column = known;
-  for (const CandidateEffect& candidate : candidates) {
-    const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
-    own.push_back(hypotheses.Add(misfit.by.middleCols(column, width), PriorsOf(candidate)));
-    column += width;
-  }
-  PilotHypotheses pilots = RunPilots(problem, values, misfit, without);
-  for (PilotHypothesis& pilot : pilots.tried) {
-    own.push_back(hypotheses.Add(pilot.by, PriorsOf(pilot.candidate)));
-    candidates.push_back(std::move(pilot.candidate));
-  }
-  ranking.untried = std::move(pilots.untried);
-  std::vector<int> base = parameters;
-  const auto add_nuisance = [&](NuisanceCandidate candidate, bool adopted) {
-    const std::vector<int> columns = hypotheses.Add(candidate.by, candidate.priors);
-    ranking.nuisances.push_back({std::move(candidate), 0, 0, adopted});
-    if (adopted) base = Joined(base, columns);
-    return columns;
-  };
-  // What a finer discretisation would do is nobody's merit; nor is what the object's dimensions do,
-  // of which bending stiffness goes with the cube.
-  std::vector<std::vector<int>> of_nuisance;
-  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
-    of_nuisance.push_back(add_nuisance(std::move(nuisance), true));
-
-  // What no effect explains is taken for noise.
-  const auto left_by = [&](const std::vector<int>& chosen) -> Eigen::VectorXd {
-    const LinearFit fit =
-        LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                    WhitenedRows(hypotheses.by, misfit, 0, false), hypotheses.priors)
-            .Fit(chosen, 1);
-    return misfit.residual + hypotheses.by(Eigen::all, chosen) * fit.change;
-  };
-  const Eigen::VectorXd left = left_by(Range(0, hypotheses.by.cols()));
-  ranking.noise = LevelOf(left, misfit, hypotheses.by.cols());
-  for (NuisanceCandidate& nuisance : grips.Candidates(
-           misfit.by.middleCols(known + effect_columns, misfit.by.cols() - known - effect_columns)))
-    of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
-  for (NuisanceCandidate& nuisance : MeasurementNuisances(
-           problem, misfit,
-           WhitenedRows(left_by(base), misfit, ranking.noise.correlation_time, false)))
-    of_nuisance.push_back(add_nuisance(std::move(nuisance), false));
-
-  const Weighed weighed = Weigh(misfit, hypotheses, ranking.noise.correlation_time);
-  const double variance = ranking.noise.variance;
-  for (size_t k = 0; k < ranking.nuisances.size(); ++k) {
-    ScoredNuisance& nuisance = ranking.nuisances[k];
-    if (!nuisance.adopted) continue;
-    const LinearFit without = weighed.all.Fit(parameters, variance);
-    const LinearFit with = weighed.all.Fit(Joined(parameters, of_nuisance[k]), variance);
-    nuisance.evidence = with.log_evidence - without.log_evidence;
-    nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
-    if (nuisance.candidate.unknown.cols() == 0) continue;
-    const LinearModel unknown = weighed.all.WithResidual(
-        WhitenedRows(nuisance.candidate.unknown, misfit, ranking.noise.correlation_time, false),
-        weighed.columns);
-    nuisance.doubt = 0.5 * unknown.Fit(parameters, variance).misfit / variance;
-  }
-  struct Entry {
-    ScoredEffect scored;
-    std::vector<int> own;
-    int variants = 0;
-  };
-  std::vector<Entry> entries;
-  for (int adopted = 0;; ++adopted) {
-    entries.clear();
-    const LinearFit before = weighed.all.Fit(base, variance);
-    for (size_t c = 0; c < candidates.size(); ++c) {
-      const CandidateEffect& candidate = candidates[c];
-      Score score = ScoreOf(weighed, base, before, own[c], variance, misfit);
-      auto same = std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) {
-        return entry.scored.candidate.type == candidate.type;
-      });
-      if (same == entries.end()) same = entries.insert(entries.end(), Entry{});
-      ++same->variants;
-      if (same->variants > 1 && score.evidence <= same->scored.score.evidence) continue;
-      same->scored.candidate = candidate;
-      same->scored.score = std::move(score);
-      same->own = own[c];
-    }
-    for (Entry& entry : entries)
-      entry.scored.score.evidence -= Price(entry.variants) + Price(entries.size());
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-      return a.scored.score.evidence > b.scored.score.evidence;
-    });
-    ScoredNuisance* best = nullptr;
-    std::vector<int> columns;
-    for (size_t k = 0; k < ranking.nuisances.size(); ++k) {
-      ScoredNuisance& nuisance = ranking.nuisances[k];
-      if (nuisance.adopted) continue;
-      const LinearFit with = weighed.all.Fit(Joined(base, of_nuisance[k]), variance);
-      nuisance.evidence = with.log_evidence - before.log_evidence - nuisance.candidate.price -
-                          Price(ranking.nuisances.size());
-      nuisance.explained = std::clamp(1 - with.misfit / before.misfit, 0.0, 1.0);
-      if (best != nullptr && nuisance.evidence <= best->evidence) continue;
-      best = &nuisance;
-      columns = of_nuisance[k];
-    }
-    const double rival = entries.empty() ? 0 : std::max(0.0, entries[0].scored.score.evidence);
-    if (best == nullptr || adopted == kMostAdopted || best->evidence < rival + kAdopted) break;
-    best->adopted = true;
-    base = Joined(base, columns);
-  }
-
-  ranking.variants = static_cast<int>(candidates.size());
-  const std::vector<int> adopted(base.begin() + known, base.end());
-  ranking.adopted.by = hypotheses.by(Eigen::all, adopted);
-  for (const int k : adopted) ranking.adopted.priors.push_back(hypotheses.priors[k]);
-  for (Entry& entry : entries) {
-    ScoredEffect& scored = entry.scored;
-    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
-      scored.parameters.push_back(amount.name);
-      scored.units.push_back(amount.unit);
-    }
-    const LinearFit fit = weighed.fitted.Fit(Joined(base, entry.own), variance);
-    scored.fitted = values + fit.change.head(known);
-    for (const Entry& other : entries)
-      if (&other != &entry &&
-          weighed.all.Collinearity(base, entry.own, other.own, variance) > kLookAlike)
-        scored.look_alikes.push_back(other.scored.candidate.type);
-  }
-  std::vector<int> best_fit = base;
-  if (!entries.empty() && entries[0].scored.score.evidence > 0)
-    best_fit = Joined(base, entries[0].own);
-  for (Entry& entry : entries) ranking.effects.push_back(std::move(entry.scored));
-  ranking.control =
-      ControlEvidence(weighed, misfit, best_fit, base, own, variance) - Price(candidates.size());
-  ranking.misfit = misfit;
-  ranking.misfit.by.resize(0, 0);
-  progress->End(fmt::format("{} effects in {} variants", entries.size(), candidates.size()));
+  HypothesisRanking hypotheses(problem, values, without);
+  hypotheses.Weigh();
+  EffectRanking ranking = hypotheses.Result();
+  progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));
   return ranking;
 }
 

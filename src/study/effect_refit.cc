@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "study/model_change.h"
 #include "study/recording_misfit.h"
@@ -220,15 +221,17 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   const auto calibrate_from = [&](const Eigen::VectorXd& from) {
     for (size_t k = 0; k < parameters.size(); ++k)
       parameters[k].start = from[static_cast<Eigen::Index>(k)];
-    return Calibrate(
-        parameters,
-        [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction = predict(at, with_jacobian);
-          progress->Report(++evaluations,
-                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
-          return prediction;
-        },
-        {.max_iterations = kIterations, .cost_tolerance = kTolerance, .starts_near = true});
+    return Calibrate(parameters,
+                     [&](const Eigen::VectorXd& at, bool with_jacobian) {
+                       const Prediction prediction = predict(at, with_jacobian);
+                       progress->Report(++evaluations, prediction.usable
+                                                           ? RootMeanSquare(prediction.residual)
+                                                           : std::nan(""));
+                       return prediction;
+                     },
+                     {.max_iterations = kIterations,
+                      .cost_tolerance = kTolerance,
+                      .near_rms = std::numeric_limits<double>::infinity()});
   };
   refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);

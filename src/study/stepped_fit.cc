@@ -17,23 +17,53 @@ constexpr double kOfNoise = 0.2, kOfMisfit = 0.05;
 constexpr double kAimedAt = 0.8, kAtOnce = 4;
 constexpr int kMostSteps = 8;
 
-double StepError(const CalibrationProblem& problem, const Calibration& calibration) {
+struct StepCheck {
+  double error = std::numeric_limits<double>::infinity();  // σ; and what is allowed:
+  double allowed = kOfNoise;
+
+  // The part of the step that would do.
+  double Share() const {
+    if (!std::isfinite(error)) return 0.5;
+    return error <= allowed ? 1 : std::max(std::sqrt(kAimedAt * allowed / error), 1 / kAtOnce);
+  }
+};
+
+StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                    Progress* progress) {
+  progress->Begin("time step", 0);
   PredictionStudy half = problem.WithGivenNoise();
   half.time_step /= 2;
   const CalibrationProblem refined(half, problem.body()->mesh);
   // Scans are compared where they lie, so patches may be other ones; of the rest the difference is
   // that of the predictions.
-  const Prediction now = problem.Predict(calibration.parameters, false);
-  const Prediction then = refined.Predict(calibration.parameters, false);
-  if (!now.usable || !then.usable || now.residual.size() != then.residual.size())
-    return std::numeric_limits<double>::infinity();
-  return RootMeanSquare(Eigen::VectorXd(then.residual - now.residual));
+  const Prediction now = problem.Predict(values, false);
+  const Prediction then = refined.Predict(values, false);
+  StepCheck check;
+  if (now.usable && then.usable && now.residual.size() == then.residual.size()) {
+    check.error = RootMeanSquare(Eigen::VectorXd(then.residual - now.residual));
+    check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now.residual));
+  }
+  progress->End(fmt::format("{:.3g} ms, good to {:.2g} σ", 2e3 * half.time_step, check.error));
+  return check;
 }
 
 }  // namespace
 
 SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress) {
   SteppedFit fit;
+  Calibration beginning;
+  if (study->chooses_time_step) {
+    // A first look at how fast things go.
+    PredictionStudy further = *study;
+    {
+      const CalibrationProblem problem(*study, mesh);
+      beginning = problem.FitBeginning(problem.Start(), progress);
+      further = problem.WithGivenNoise();
+      if (beginning.usable)
+        further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
+    }
+    *study = std::move(further);
+  }
   int predictions = 0;
   double start_rms = 0;
   for (int tried = 1;; ++tried) {
@@ -42,22 +72,19 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
     {
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = fit.calibration.usable;
+      const bool has_begun = tried == 1 && beginning.usable;
       fit.calibration = goes_on ? problem.FitOn(fit.calibration.parameters, progress)
-                                : problem.FitFromStart(progress);
+                                : problem.FitFromStart(progress, has_begun ? &beginning : nullptr);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;
       fit.calibration.start_rms = start_rms;
       if (!study->chooses_time_step) return fit;
       if (fit.calibration.usable) {
-        progress->Begin("time step", 0);
-        fit.step_error = StepError(problem, fit.calibration);
-        progress->End(
-            fmt::format("{:.3g} ms, good to {:.2g} σ", 1e3 * study->time_step, fit.step_error));
-        const double allowed = std::max(kOfNoise, kOfMisfit * fit.calibration.rms);
-        if (fit.step_error <= allowed) return fit;
-        if (std::isfinite(fit.step_error))
-          share = std::max(std::sqrt(kAimedAt * allowed / fit.step_error), 1 / kAtOnce);
+        const StepCheck check = CheckStep(problem, fit.calibration.parameters, progress);
+        fit.step_error = check.error;
+        share = check.Share();
+        if (share == 1) return fit;
       }
       if (tried == kMostSteps) return fit;
       further = problem.WithGivenNoise();
