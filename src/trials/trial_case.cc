@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -53,6 +54,13 @@ bool IsLaw(const HiddenEffect& hidden) {
   return FindEntry(hidden.type)->kind == CatalogueEntry::Kind::kMaterial;
 }
 
+bool IsKnown(const std::string& type) { return type == "gravity" || type == "stiffness_damping"; }
+
+bool TrialCase::Hides(const std::string& type) const {
+  return std::any_of(hidden.begin(), hidden.end(),
+                     [&](const HiddenEffect& effect) { return effect.type == type; });
+}
+
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    const std::string& nuisance) {
   TrialCase trial;
@@ -87,6 +95,7 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   }
   trial.hold_forces.resize(static_cast<size_t>(recordings));
   trial.noise_correlation_time = 0.01 * draws.Between(0.5, 1.5);
+  trial.damping = draws.LogBetween(3e-4, 1e-3);
   return trial;
 }
 
@@ -160,6 +169,7 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
                               {"hidden", hidden},
                               {"young_modulus", trial.young_modulus},
                               {"poisson_ratio", trial.poisson_ratio},
+                              {"damping", trial.damping},
                               {"size", ToJson(trial.size)},
                               {"true_size", ToJson(trial.true_size)},
                               {"clamp_error", trial.clamp_error},
@@ -185,6 +195,7 @@ TrialCase LoadCase(const std::filesystem::path& file) {
                               effect.at("factor")});
     trial.young_modulus = json.at("young_modulus");
     trial.poisson_ratio = json.at("poisson_ratio");
+    trial.damping = json.at("damping");
     trial.size = VectorOf(json.at("size"));
     trial.true_size = VectorOf(json.at("true_size"));
     trial.clamp_error = json.at("clamp_error");

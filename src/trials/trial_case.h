@@ -26,6 +26,8 @@ struct HiddenEffect {
 };
 std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden);
 bool IsLaw(const HiddenEffect& hidden);
+// What the model has of itself, unless it is what is hidden.
+bool IsKnown(const std::string& type);
 
 struct TrialCase {
   std::string name;
@@ -41,12 +43,15 @@ struct TrialCase {
 
   // Drawn from the seed.
   double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
+  double damping = 0;                                // s, of the stiffness, as soft rubber has it
   Eigen::Vector3d size{0.08, 0.02, 0.02};            // m, as the model has it
   Eigen::Vector3d true_size = size;                  // m
   double clamp_error = 0;                            // m
   std::vector<Eigen::Vector3d> hold_forces;          // N, per recording
   double noise = 1e-4;                               // m, of a coordinate
   double noise_correlation_time = 0;                 // s
+
+  bool Hides(const std::string& type) const;
 };
 
 // Without a hidden effect yet.

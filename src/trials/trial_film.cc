@@ -100,9 +100,12 @@ std::vector<Eigen::Matrix3Xd> Film(const TrialCase& trial, int recording, bool r
   model.body = std::make_shared<const Body>(MakeBody(mesh.mesh, kDensity));
   model.effects = {MakeEffect("neo_hookean", {{"young_modulus", trial.young_modulus},
                                               {"poisson_ratio", trial.poisson_ratio}})};
-  bool hides_gravity = false;
-  for (const HiddenEffect& hidden : trial.hidden) hides_gravity |= hidden.type == "gravity";
-  if (!hides_gravity)
+  if (!trial.Hides("stiffness_damping"))
+    model.effects.push_back(
+        MakeEffect("stiffness_damping", {{"beta", trial.damping},
+                                         {"young_modulus", trial.young_modulus},
+                                         {"poisson_ratio", trial.poisson_ratio}}));
+  if (!trial.Hides("gravity"))
     model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.80665}}));
   for (const HiddenEffect& hidden : trial.hidden) {
     if (IsLaw(hidden))
@@ -223,16 +226,21 @@ void WriteRecording(const TrialCase& trial, int recording,
 
 void FilmCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough) {
   MakeFolder(folder);
-  bool hides_gravity = false;
-  for (const HiddenEffect& hidden : trial.hidden) hides_gravity |= hidden.type == "gravity";
+  std::string known, fitted = "{name: young_modulus}, {name: poisson_ratio}";
+  if (!trial.Hides("stiffness_damping")) {
+    known += "  - {type: stiffness_damping, beta: 0.5 ms}\n";
+    fitted += ", {name: stiffness_damping.beta}";
+  }
+  if (!trial.Hides("gravity"))
+    known += "  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n";
   std::string yaml = fmt::format(
       "schema_version: 1\nname: {}\nmesh: {{max_volume: {} m^3, order: 2, preserve_surface: "
       "false}}\n"
-      "material: {{law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\neffects: "
-      "[{}]\n"
+      "material: {{law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
+      "effects:{}\nfit: {{parameters: [{}]}}\n"
       "{}place_deviation: {} m\nrecordings:\n",
       trial.name, trial.nuisance == "coarse_mesh" ? kCoarseVolume : kModelVolume,
-      hides_gravity ? "" : "{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}",
+      known.empty() ? " []" : "\n" + known, fitted,
       rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "", 2 * kPlaceError);
   for (int r = 0; r < trial.recordings; ++r) {
     std::vector<Eigen::Matrix3Xd> frames = Film(trial, r, rough);

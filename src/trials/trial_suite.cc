@@ -83,7 +83,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
                   const std::filesystem::path& folder) {
   TrialCase without = trial;
   without.hidden.clear();
-  if (hidden.type == "gravity") {
+  if (IsKnown(hidden.type)) {
     // The model must not have what is hidden; its absence is no effect of its own here.
     without.hidden.push_back(hidden);
     for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
@@ -95,9 +95,11 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   Eigen::VectorXd values = problem.Start();
   values[0] = trial.young_modulus;
   values[1] = trial.poisson_ratio;
+  const Eigen::Index of_body = static_cast<Eigen::Index>(study.fitted.size());
+  if (!without.Hides("stiffness_damping")) values[2] = trial.damping;
   for (size_t r = 0; r < trial.hold_forces.size(); ++r)
-    values.segment<3>(2 + 3 * static_cast<Eigen::Index>(r)) = trial.hold_forces[r];
-  CHECK_EQ(values.size(), 2 + 3 * trial.recordings);
+    values.segment<3>(of_body + 3 * static_cast<Eigen::Index>(r)) = trial.hold_forces[r];
+  CHECK_EQ(values.size(), of_body + 3 * trial.recordings);
 
   HiddenEffect none = hidden;
   const EffectCard& card = *FindEntry(hidden.type)->card;
