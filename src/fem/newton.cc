@@ -284,7 +284,7 @@ class Newton {
   NewtonSummary summary_;
   bool convexify_ = false;
   bool may_climb_ = true;
-  bool has_tangent_ = false;  // `tangent_` is the exact one of an earlier iterate
+  bool has_tangent_ = false;                // `tangent_` is the exact one of an earlier iterate
   std::vector<Eigen::Matrix3d> rotations_;  // of the nodes there
   Iterate beyond_;
   // N: residuals below this are rounding errors; known once there is a tangent

@@ -89,18 +89,31 @@ std::vector<Variant> Places(const Extent& extent, const std::vector<double>& sha
   return variants;
 }
 
-std::vector<Variant> Directions(const Extent& extent, int count) {
+Variant AlongDirection(const Eigen::Vector3d& axis) {
+  Variant variant;
+  variant.name = AxisName(axis);
+  SetVector("axis", axis, &variant.values);
+  variant.values["azimuth"] = std::atan2(axis.y(), axis.x());
+  variant.values["inclination"] = std::asin(std::clamp(axis.z(), -1.0, 1.0));
+  return variant;
+}
+
+Variant AlongLength(const Extent& extent) {
+  Variant variant = AlongDirection(extent.axis.col(0));
+  SetVector("origin", extent.centre, &variant.values);
+  variant.values["length"] = extent.length[0];
+  return variant;
+}
+
+// The object's axes, and the diagonals between two and all of them: none is farther than 27° from
+// one of these.
+std::vector<Variant> Directions(const Extent& extent) {
   std::vector<Variant> variants;
-  for (int k = 0; k < count; ++k) {
-    Variant variant;
-    const Eigen::Vector3d axis = extent.axis.col(k);
-    variant.name = AxisName(axis);
-    SetVector("axis", axis, &variant.values);
-    variant.values["azimuth"] = std::atan2(axis.y(), axis.x());
-    variant.values["inclination"] = std::asin(std::clamp(axis.z(), -1.0, 1.0));
-    SetVector("origin", extent.centre, &variant.values);
-    variant.values["length"] = extent.length[k];
-    variants.push_back(variant);
+  for (int code = 1; code < 27; ++code) {
+    const Eigen::Vector3d steps((code + 1) % 3 - 1, (code / 3 + 1) % 3 - 1, (code / 9 + 1) % 3 - 1);
+    // Of two opposite ones, the one whose last step is forwards.
+    const double last = steps[2] != 0 ? steps[2] : steps[1] != 0 ? steps[1] : steps[0];
+    if (last > 0) variants.push_back(AlongDirection((extent.axis * steps).normalized()));
   }
   return variants;
 }
@@ -124,15 +137,16 @@ std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
   return times;
 }
 
+// Of the length: where an effect may be whose place is not sought any further.
+const std::vector<double> kAlongLength = {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
+
 std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
                                 const CandidateSetting& setting) {
   if (type == "inclusion") return Places(extent, {0.2, 0.5, 0.8}, 0.15);
-  if (type == "attached_mass") return Places(extent, {0.05, 0.5, 0.95}, 0.05);
-  if (type == "point_force" || type == "follower_force")
-    return Places(extent, {0.05, 0.5, 0.95}, 0.1);
-  if (type == "fibre_stiffness") return Directions(extent, 3);
-  if (type == "active_contraction") return Directions(extent, 3);
-  if (type == "stiffness_gradient" || type == "density_gradient") return Directions(extent, 1);
+  if (type == "attached_mass") return Places(extent, kAlongLength, 0.05);
+  if (type == "point_force" || type == "follower_force") return Places(extent, kAlongLength, 0.1);
+  if (type == "fibre_stiffness" || type == "active_contraction") return Directions(extent);
+  if (type == "stiffness_gradient" || type == "density_gradient") return {AlongLength(extent)};
   if (type == "viscoelastic_branch")
     return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
   if (type == "elastoplastic_branch")
