@@ -8,8 +8,8 @@ namespace lacuna {
 
 void AddedMass::SetParameters(const Eigen::VectorXd& values) {
   CHECK_EQ(values.size(), static_cast<Eigen::Index>(Card().parameters.size()));
-  const Eigen::Index settings = values.size() - 1;
-  if (parameters_.size() == 0 || parameters_.tail(settings) != values.tail(settings)) {
+  const Eigen::Index others = values.size() - 1;
+  if (parameters_.size() == 0 || parameters_.tail(others) != values.tail(others)) {
     mass_.Forget();
   }
   parameters_ = values;
@@ -19,15 +19,18 @@ std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
   return mass_.Of(body, [this](const Body& at_rest) { return MassPerUnit(at_rest); });
 }
 
-void AddedMass::AddScaledForce(const Kinematics& at, double size, Eigen::VectorXd* force) const {
-  const auto mass = Mass(at.body);
-  for (int i = 0; i < at.body.NodeCount(); ++i) {
-    force->segment<3>(3 * i) += size * (*mass)[i] * (Gravity() - at.acceleration.segment<3>(3 * i));
-  }
+Eigen::VectorXd AddedMass::MassPerUnitBy(const Body&, int, const Eigen::VectorXd&) const {
+  LOG(FATAL) << "its other parameters are settings";
+}
+
+void AddedMass::AddForceOf(const Kinematics& at, const Eigen::VectorXd& mass,
+                           Eigen::VectorXd* force) const {
+  for (int i = 0; i < at.body.NodeCount(); ++i)
+    force->segment<3>(3 * i) += mass[i] * (Gravity() - at.acceleration.segment<3>(3 * i));
 }
 
 void AddedMass::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
-  AddScaledForce(at, Size(), force);
+  AddForceOf(at, Size() * *Mass(at.body), force);
 }
 
 void AddedMass::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
@@ -42,8 +45,12 @@ void AddedMass::AddTangents(const Kinematics& at, const TangentWeights& weights,
 
 void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
                                        Eigen::VectorXd* derivative) const {
-  CHECK_EQ(parameter, 0) << "the others are settings";
-  AddScaledForce(at, 1, derivative);
+  const auto mass = Mass(at.body);
+  if (parameter == 0) {
+    AddForceOf(at, *mass, derivative);
+  } else {
+    AddForceOf(at, Size() * MassPerUnitBy(at.body, parameter, *mass), derivative);
+  }
 }
 
 std::optional<double> AddedMass::Energy(const Kinematics& at) const {

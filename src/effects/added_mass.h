@@ -34,6 +34,10 @@ class AddedMass : public Effect {
   // μ: kg per unit of θ at each node (n), from the settings and the body at rest.
   virtual Eigen::VectorXd MassPerUnit(const Body& body) const = 0;
 
+  // ∂μ/∂(parameter), of those that are no settings; `mass`: μ.
+  virtual Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
+                                        const Eigen::VectorXd& mass) const;
+
   // In the order of the card: θ first, the three components of g last.
   Eigen::VectorXd parameters_;
 
@@ -41,7 +45,8 @@ class AddedMass : public Effect {
   double Size() const { return parameters_[0]; }
   Eigen::Vector3d Gravity() const { return parameters_.tail<3>(); }
   std::shared_ptr<const Eigen::VectorXd> Mass(const Body& body) const;
-  void AddScaledForce(const Kinematics& at, double size, Eigen::VectorXd* force) const;
+  // Of masses at the nodes, kg.
+  void AddForceOf(const Kinematics& at, const Eigen::VectorXd& mass, Eigen::VectorXd* force) const;
 
   RestQuantity<Eigen::VectorXd> mass_;
 };

@@ -4,6 +4,8 @@
 // volume around each node, so that the result tends to a limit as the mesh is refined. With r well
 // below the element size it falls on the nearest nodes; then only the mesh knows where it is.
 // It adds no stiffness, and turns with the body only as its nodes do.
+#include <glog/logging.h>
+
 #include <limits>
 
 #include "effects/added_mass.h"
@@ -34,6 +36,12 @@ class AttachedMassEffect final : public AddedMass {
                       NodeVolumes(body));
   }
 
+  Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
+                                const Eigen::VectorXd& mass) const override {
+    CHECK(parameter >= kCentre && parameter < kRadius) << "the others are settings";
+    return BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], body.mesh.nodes, mass);
+  }
+
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "attached_mass",
@@ -62,7 +70,7 @@ class AttachedMassEffect final : public AddedMass {
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
-    AppendPlaceSettings("place of the mass on the body at rest", &card);
+    AppendPlace("place of the mass on the body at rest", &card);
     AppendGravitySetting(&card);
     return card;
   }

@@ -80,7 +80,8 @@ class FollowerForceEffect final : public Effect {
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddTurned(at, parameters_.head<3>(), force);
+    const auto spread = GetSpread(at.body);
+    AddTurned(at, *spread, spread->share, parameters_.head<3>(), force);
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
@@ -95,13 +96,22 @@ class FollowerForceEffect final : public Effect {
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
-    CHECK(parameter >= 0 && parameter < 3) << "the others are settings";
-    AddTurned(at, Eigen::Vector3d::Unit(parameter), derivative);
+    CHECK(parameter >= 0 && parameter < kRadius) << "the others are settings";
+    const auto spread = GetSpread(at.body);
+    if (parameter < kCentre) {
+      AddTurned(at, *spread, spread->share, Eigen::Vector3d::Unit(parameter), derivative);
+    } else {
+      AddTurned(at, *spread,
+                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], spread->place,
+                                   spread->share),
+                parameters_.head<3>(), derivative);
+    }
   }
 
  private:
   struct Spread {
     Eigen::MatrixXd shape;   // N_a at the points of an element (nodes × points)
+    Eigen::Matrix3Xd place;  // X_q, m
     Eigen::VectorXd share;   // s_q
     std::vector<char> felt;  // elements: whether any of their points has a share
   };
@@ -134,22 +144,22 @@ class FollowerForceEffect final : public Effect {
                   .plausible_min = -5,
                   .plausible_max = 5},
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
-    AppendPlaceSettings("the place on the body at rest where it acts,", &card);
+    AppendPlace("the place on the body at rest where it acts,", &card);
     return card;
   }
 
   Spread MakeSpread(const Body& body) const {
-    Spread spread{ShapesAtPoints(body.mesh.Order()), {}, {}};
-    Eigen::Matrix3Xd place = Eigen::Matrix3Xd::Zero(3, body.PointCount());
+    Spread spread{ShapesAtPoints(body.mesh.Order()), {}, {}, {}};
+    spread.place.setZero(3, body.PointCount());
     for (int q = 0; q < body.PointCount(); ++q) {
       const int e = q / body.points_per_element;
       for (Eigen::Index a = 0; a < body.mesh.tets.rows(); ++a) {
-        place.col(q) += spread.shape(a, q % body.points_per_element) *
-                        body.mesh.nodes.col(body.mesh.tets(a, e));
+        spread.place.col(q) += spread.shape(a, q % body.points_per_element) *
+                               body.mesh.nodes.col(body.mesh.tets(a, e));
       }
     }
-    spread.share =
-        BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], place, body.weight);
+    spread.share = BumpShares(parameters_.segment<3>(kCentre), parameters_[kRadius], spread.place,
+                              body.weight);
     spread.felt.assign(body.ElementCount(), 0);
     for (int q = 0; q < body.PointCount(); ++q) {
       if (spread.share[q] > 0) spread.felt[q / body.points_per_element] = 1;
@@ -173,23 +183,23 @@ class FollowerForceEffect final : public Effect {
     });
   }
 
-  void AddTurned(const Kinematics& at, const Eigen::Vector3d& at_rest,
-                 Eigen::VectorXd* force) const {
+  // Σ_q share_q N_a R_q F
+  void AddTurned(const Kinematics& at, const Spread& spread, const Eigen::VectorXd& share,
+                 const Eigen::Vector3d& at_rest, Eigen::VectorXd* force) const {
     if (at.body.mesh.Order() == 1) {
-      AddTurned<4>(at, at_rest, force);
+      AddTurned<4>(at, spread, share, at_rest, force);
     } else {
-      AddTurned<10>(at, at_rest, force);
+      AddTurned<10>(at, spread, share, at_rest, force);
     }
   }
 
   template <int kNodes>
-  void AddTurned(const Kinematics& at, const Eigen::Vector3d& at_rest,
-                 Eigen::VectorXd* force) const {
-    const auto spread = GetSpread(at.body);
+  void AddTurned(const Kinematics& at, const Spread& spread, const Eigen::VectorXd& share,
+                 const Eigen::Vector3d& at_rest, Eigen::VectorXd* force) const {
     ForEachPoint<kNodes>(
-        at, *spread,
+        at, spread,
         [&](int e, int q, const Eigen::Vector<double, kNodes>& shape, const Eigen::Matrix3d& F) {
-          const Eigen::Vector3d turned = spread->share[q] * (PolarRotation(F) * at_rest);
+          const Eigen::Vector3d turned = share[q] * (PolarRotation(F) * at_rest);
           ScatterNodes<kNodes>(at.body, e, turned * shape.transpose(), force);
         });
   }

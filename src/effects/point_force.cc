@@ -42,15 +42,23 @@ class PointForceEffect final : public Effect {
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddShares(at, parameters_.head<3>(), force);
+    AddShares(at, *Shares(at.body), parameters_.head<3>(), force);
   }
 
   void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
-    CHECK(parameter >= 0 && parameter < 3) << "the others are settings";
-    AddShares(at, Eigen::Vector3d::Unit(parameter), derivative);
+    CHECK(parameter >= 0 && parameter < kRadius) << "the others are settings";
+    const auto shares = Shares(at.body);
+    if (parameter < kCentre) {
+      AddShares(at, *shares, Eigen::Vector3d::Unit(parameter), derivative);
+    } else {
+      AddShares(at,
+                BumpSharesByCentre(parameter - kCentre, parameters_[kRadius], at.body.mesh.nodes,
+                                   *shares),
+                parameters_.head<3>(), derivative);
+    }
   }
 
   std::optional<double> Energy(const Kinematics& at) const override {
@@ -88,7 +96,7 @@ class PointForceEffect final : public Effect {
                   .plausible_min = -5,
                   .plausible_max = 5},
                  Eigen::Vector3d::Constant(kMustBeGiven), &card);
-    AppendPlaceSettings("the place on the body at rest where it acts,", &card);
+    AppendPlace("the place on the body at rest where it acts,", &card);
     card.parameters.push_back({.name = "start",
                                .meaning = "time from which it acts",
                                .dimension = kTime,
@@ -123,9 +131,9 @@ class PointForceEffect final : public Effect {
     return std::clamp((std::min(stop, at.time) - from) / at.time_step, 0.0, 1.0);
   }
 
-  void AddShares(const Kinematics& at, const Eigen::Vector3d& total, Eigen::VectorXd* force) const {
-    const auto shares = Shares(at.body);
-    force->reshaped(3, shares->size()) += PresentShare(at) * total * shares->transpose();
+  void AddShares(const Kinematics& at, const Eigen::VectorXd& shares, const Eigen::Vector3d& total,
+                 Eigen::VectorXd* force) const {
+    force->reshaped(3, shares.size()) += PresentShare(at) * total * shares.transpose();
   }
 
   Eigen::VectorXd parameters_;  // in the order of the card

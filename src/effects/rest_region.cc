@@ -35,6 +35,12 @@ Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
   return share / share.sum();
 }
 
+Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3Xd& places,
+                                   const Eigen::VectorXd& shares) {
+  const Eigen::VectorXd along = places.row(axis);
+  return shares.array() * (along.array() - shares.dot(along)) / (radius * radius);
+}
+
 Eigen::VectorXd NodeVolumes(const Body& body) { return body.node_mass / body.density; }
 
 Eigen::VectorXd InHalfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,

@@ -17,6 +17,10 @@ Eigen::VectorXd BumpAround(const Eigen::Vector3d& centre, double radius, const B
 Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
                            const Eigen::Matrix3Xd& places, const Eigen::VectorXd& measure);
 
+// ∂(those shares)/∂c along a coordinate: s_i (X_i − Σ_j s_j X_j)/r².
+Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3Xd& places,
+                                   const Eigen::VectorXd& shares);
+
 // Volume around each node (n, m³): its share of the lumped mass by the density.
 Eigen::VectorXd NodeVolumes(const Body& body);
 

@@ -30,15 +30,14 @@ std::string VectorNameAt(const EffectCard& card, size_t k) {
   return complete ? name : "";
 }
 
-void AppendPlaceSettings(const std::string& meaning, EffectCard* card) {
+void AppendPlace(const std::string& meaning, EffectCard* card) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   AppendVector({.name = "centre",
                 .meaning = meaning,
                 .dimension = kLength,
                 .null_value = kNone,
-                .plausible_min = -1,
-                .plausible_max = 1,
-                .setting = true},
+                .plausible_min = -0.2,
+                .plausible_max = 0.2},
                Eigen::Vector3d::Constant(kNone), card);
   card->parameters.push_back({.name = "radius",
                               .meaning = "spread about that place (standard deviation), r",

@@ -18,9 +18,9 @@ void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_va
 // "axis" where the parameters axis_x, axis_y, axis_z begin, else "".
 std::string VectorNameAt(const EffectCard& card, size_t k);
 
-// `centre` and `radius` as settings: a place on the body at rest, "where the mass sits", and how
-// far the effect is spread about it.
-void AppendPlaceSettings(const std::string& meaning, EffectCard* card);
+// `centre`, a place on the body at rest, "where the mass sits", and the setting `radius`, how far
+// the effect is spread about it.
+void AppendPlace(const std::string& meaning, EffectCard* card);
 
 // `gravity` as a setting: the acceleration of free fall, by default 9.80665 m/s² down z.
 void AppendGravitySetting(EffectCard* card);

@@ -77,8 +77,8 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
 }
 
 // The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
-// from what a grip or dimensions that are off, an unknown force of the hand and the discretisation
-// could do.
+// from what a grip, dimensions or a clock that are off, a drift of the camera, an unknown force of
+// the hand and the discretisation could do.
 double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
                   const std::filesystem::path& folder) {
   TrialCase without = trial;
@@ -122,6 +122,9 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
       grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
   for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
     nuisances.push_back(std::move(nuisance));
+  for (NuisanceCandidate& nuisance : MeasurementNuisances(problem, misfit, misfit.residual))
+    if (nuisance.name == "clock" || nuisance.name == "registration_drift")
+      nuisances.push_back(std::move(nuisance));
   Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
   const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
