@@ -23,14 +23,14 @@ Eigen::VectorXd AddedMass::MassPerUnitBy(const Body&, int, const Eigen::VectorXd
   LOG(FATAL) << "its other parameters are settings";
 }
 
-void AddedMass::AddForceOf(const Kinematics& at, const Eigen::VectorXd& mass,
-                           Eigen::VectorXd* force) const {
+void AddedMass::AddScaledForce(const Kinematics& at, double size, const Eigen::VectorXd& mass,
+                               Eigen::VectorXd* force) const {
   for (int i = 0; i < at.body.NodeCount(); ++i)
-    force->segment<3>(3 * i) += mass[i] * (Gravity() - at.acceleration.segment<3>(3 * i));
+    force->segment<3>(3 * i) += size * mass[i] * (Gravity() - at.acceleration.segment<3>(3 * i));
 }
 
 void AddedMass::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
-  AddForceOf(at, Size() * *Mass(at.body), force);
+  AddScaledForce(at, Size(), *Mass(at.body), force);
 }
 
 void AddedMass::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
@@ -47,9 +47,9 @@ void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
                                        Eigen::VectorXd* derivative) const {
   const auto mass = Mass(at.body);
   if (parameter == 0) {
-    AddForceOf(at, *mass, derivative);
+    AddScaledForce(at, 1, *mass, derivative);
   } else {
-    AddForceOf(at, Size() * MassPerUnitBy(at.body, parameter, *mass), derivative);
+    AddScaledForce(at, Size(), MassPerUnitBy(at.body, parameter, *mass), derivative);
   }
 }
 

@@ -31,7 +31,7 @@ class AddedMass : public Effect {
   void SetParameters(const Eigen::VectorXd& values) override;
 
  protected:
-  // μ: kg per unit of θ at each node (n), from the settings and the body at rest.
+  // μ: kg per unit of θ at each node (n), from the other parameters and the body at rest.
   virtual Eigen::VectorXd MassPerUnit(const Body& body) const = 0;
 
   // ∂μ/∂(parameter), of those that are no settings; `mass`: μ.
@@ -45,8 +45,8 @@ class AddedMass : public Effect {
   double Size() const { return parameters_[0]; }
   Eigen::Vector3d Gravity() const { return parameters_.tail<3>(); }
   std::shared_ptr<const Eigen::VectorXd> Mass(const Body& body) const;
-  // Of masses at the nodes, kg.
-  void AddForceOf(const Kinematics& at, const Eigen::VectorXd& mass, Eigen::VectorXd* force) const;
+  void AddScaledForce(const Kinematics& at, double size, const Eigen::VectorXd& mass,
+                      Eigen::VectorXd* force) const;
 
   RestQuantity<Eigen::VectorXd> mass_;
 };

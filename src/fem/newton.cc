@@ -114,20 +114,15 @@ class Newton {
   bool FollowChord(Iterate* at) {
     constexpr double kGoesOn = 0.2;  // of the residual
     if (!has_tangent_ || convexify_) return false;
-    Eigen::VectorXd step;
-    const Eigen::VectorXd b = -at->residual;
-    const LinearSolveSummary solved = solver_.Solve(tangent_, b, &step, &rotations_);
-    if (solved.IsUsable() && step.allFinite()) {
-      Iterate next = Evaluate(at->position + step);
-      const double ratio = next.residual.norm() / at->residual.norm();
-      has_tangent_ = ratio <= kGoesOn;
-      if (has_tangent_) {
-        *at = std::move(next);
-        return true;
-      }
-    }
     has_tangent_ = false;
-    return false;
+    Eigen::VectorXd step;
+    const LinearSolveSummary solved = solver_.Solve(tangent_, -at->residual, &step, &rotations_);
+    if (!solved.IsUsable() || !step.allFinite()) return false;
+    Iterate next = Evaluate(at->position + step);
+    if (!(next.residual.norm() / at->residual.norm() <= kGoesOn)) return false;
+    has_tangent_ = true;
+    *at = std::move(next);
+    return true;
   }
 
   bool NewtonStep(const Iterate& at, Eigen::VectorXd* step) {

@@ -15,7 +15,7 @@ namespace lacuna {
 namespace {
 
 struct TimeSeries {
-  std::filesystem::path file;
+  DelimitedTable table;     // that it was read from
   Eigen::VectorXd times;    // s
   Eigen::Matrix3Xd values;  // 3 × k, SI
 };
@@ -39,21 +39,25 @@ DelimitedTable ReadTableOrArray(const std::filesystem::path& file) {
   return table;
 }
 
+// Three columns of a table, as rows.
+Eigen::Matrix3Xd VectorColumns(const DelimitedTable& table, const std::array<std::string, 3>& names,
+                               double unit) {
+  Eigen::Matrix3Xd vectors(3, table.values.rows());
+  for (int axis = 0; axis < 3; ++axis)
+    vectors.row(axis) = unit * table.values.col(RequireColumn(table, names[axis])).transpose();
+  return vectors;
+}
+
 // Columns `time`, `x`, `y`, `z`; without a time there must be one row for each frame.
 TimeSeries ReadSeries(const Config& config, const Recording& recording,
                       const std::vector<double>& file_times, double unit) {
   const std::filesystem::path file = recording.data_folder / config.Text("file");
-  const DelimitedTable table = ReadTableOrArray(file);
-  const std::string time = config.Text("time", "");
-  const std::array<std::string, 3> names = {config.Text("x", "1"), config.Text("y", "2"),
-                                            config.Text("z", "3")};
   TimeSeries series;
-  series.file = file;
-  series.values.resize(3, table.values.rows());
-  for (int axis = 0; axis < 3; ++axis) {
-    series.values.row(axis) =
-        unit * table.values.col(RequireColumn(table, names[axis])).transpose();
-  }
+  series.table = ReadTableOrArray(file);
+  const DelimitedTable& table = series.table;
+  const std::string time = config.Text("time", "");
+  series.values = VectorColumns(
+      table, {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
   if (!time.empty()) {
     series.times =
         ReadUnit(config, "time_unit", kTime, "s") * table.values.col(RequireColumn(table, time));
@@ -148,20 +152,15 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recor
       grip.motion = GripMotion::kGiven;
       const double unit = ReadUnit(*path, "length_unit", kLength, recording.length_unit);
       const TimeSeries series = ReadSeries(*path, recording, file_times, unit);
-      grip.file = series.file;
+      grip.file = series.table.file;
       grip.times = series.times;
       grip.displacements = series.values.colwise() - Eigen::Vector3d(series.values.col(0));
       if (const std::optional<Config> turn = path->OptionalChild("turn")) {
-        const DelimitedTable table = ReadTableOrArray(series.file);
         const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
-        grip.turns.resize(3, grip.times.size());
-        for (int axis = 0; axis < 3; ++axis)
-          grip.turns.row(axis) =
-              radian *
-              table.values.col(RequireColumn(table, turn->Text(std::string(1, "xyz"[axis]))))
-                  .transpose();
+        grip.turns = VectorColumns(series.table,
+                                   {turn->Text("x"), turn->Text("y"), turn->Text("z")}, radian);
         if (!grip.turns.allFinite())
-          turn->Fail("x", series.file.string() + ": a row of the turn is not finite");
+          turn->Fail("x", grip.file.string() + ": a row of the turn is not finite");
         grip.pivot = turn->Vector("about", kLength);
       }
     } else {
@@ -188,7 +187,7 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const Recording& rec
     } else {
       const double unit = ReadUnit(item, "unit", kForce, "N");
       const TimeSeries series = ReadSeries(item, recording, file_times, unit);
-      force.file = series.file;
+      force.file = series.table.file;
       force.times = series.times;
       force.forces = series.values;
     }

@@ -15,6 +15,7 @@ namespace {
 
 // Share of the fitted time that is fitted first.
 constexpr double kShortHorizon = 0.25;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 // A fit that may be astray is tried from these parts of the moduli's start values.
 constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
 // Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
@@ -323,14 +324,22 @@ double CalibrationProblem::LongestFitted() const {
   return longest;
 }
 
+Calibration CalibrationProblem::FitStage(const std::string& name, double horizon,
+                                         const Eigen::VectorXd& start,
+                                         const CalibrationOptions& options, Progress* progress,
+                                         int* evaluations) const {
+  progress->Begin(name, 0);
+  Calibration calibration = FitOver(horizon, start, options, progress, evaluations);
+  progress->End(calibration.message);
+  calibration.predictions = *evaluations;
+  return calibration;
+}
+
 Calibration CalibrationProblem::FitBeginning(const Eigen::VectorXd& start,
                                              Progress* progress) const {
-  progress->Begin("fit, first part", 0);
   int evaluations = 0;
-  Calibration calibration =
-      FitOver(kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
-  progress->End(calibration.message);
-  calibration.predictions = evaluations;
+  const Calibration calibration = FitStage("fit, first part", kShortHorizon * LongestFitted(),
+                                           start, {}, progress, &evaluations);
   if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
   return calibration;
 }
@@ -339,15 +348,11 @@ Calibration CalibrationProblem::FitWhole(const Eigen::VectorXd& start, const Cal
                                          Progress* progress) const {
   int evaluations = beginning.predictions;
   const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
-  progress->Begin("fit", 0);
-  Calibration calibration = FitOver(std::numeric_limits<double>::infinity(), near,
-                                    {.near_rms = kMayBeAstray}, progress, &evaluations);
-  progress->End(calibration.message);
-  calibration.predictions = evaluations;
+  Calibration calibration =
+      FitStage("fit", kUnlimited, near, {.near_rms = kMayBeAstray}, progress, &evaluations);
   // "Before" is where the caller started, not where the first part ended.
   const Prediction before = Predict(start, /*with_jacobian=*/false);
-  calibration.start_rms =
-      before.usable ? RootMeanSquare(before.residual) : std::numeric_limits<double>::infinity();
+  calibration.start_rms = before.usable ? RootMeanSquare(before.residual) : kUnlimited;
   SetModel(calibration.parameters.size() > 0 ? calibration.parameters : near);
   return calibration;
 }
@@ -357,13 +362,9 @@ Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* prog
 }
 
 Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
-  progress->Begin("fit", 0);
   int evaluations = 0;
-  Calibration calibration =
-      FitOver(std::numeric_limits<double>::infinity(), start,
-              {.near_rms = std::numeric_limits<double>::infinity()}, progress, &evaluations);
-  progress->End(calibration.message);
-  calibration.predictions = evaluations;
+  const Calibration calibration =
+      FitStage("fit", kUnlimited, start, {.near_rms = kUnlimited}, progress, &evaluations);
   if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
   return calibration;
 }
@@ -377,21 +378,19 @@ Calibration CalibrationProblem::FitFromStart(Progress* progress,
     return parameters_[k].log_scale && study_.fitted[k].unit == "Pa";
   };
   int evaluations = calibration.predictions;
-  double least = calibration.usable ? calibration.rms : std::numeric_limits<double>::infinity();
+  double least = calibration.usable ? calibration.rms : kUnlimited;
   Eigen::VectorXd nearest;
   for (const double factor : kOtherStarts) {
     Eigen::VectorXd start = Start();
     for (size_t k = 0; k < study_.fitted.size(); ++k)
       if (is_modulus(k)) start[static_cast<Eigen::Index>(k)] *= factor;
     if (start == Start()) return calibration;
-    progress->Begin(fmt::format("fit, moduli from {:g} of their start", factor), 0);
     const Calibration first =
-        FitOver(kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
+        FitStage(fmt::format("fit, moduli from {:g} of their start", factor),
+                 kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
     const Prediction whole =
         first.estimates.empty() ? Prediction{} : Predict(first.parameters, false);
-    const double left =
-        whole.usable ? RootMeanSquare(whole.residual) : std::numeric_limits<double>::infinity();
-    progress->End(first.message);
+    const double left = whole.usable ? RootMeanSquare(whole.residual) : kUnlimited;
     if (left >= least) continue;
     least = left;
     nearest = first.parameters;

@@ -107,6 +107,9 @@ class CalibrationProblem {
   double LongestFitted() const;  // s, of any recording after its start
   Calibration FitWhole(const Eigen::VectorXd& start, const Calibration& beginning,
                        Progress* progress) const;
+  Calibration FitStage(const std::string& name, double horizon, const Eigen::VectorXd& start,
+                       const CalibrationOptions& options, Progress* progress,
+                       int* evaluations) const;
   Calibration FitOver(double horizon, const Eigen::VectorXd& start,
                       const CalibrationOptions& options, Progress* progress,
                       int* evaluations) const;

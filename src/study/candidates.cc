@@ -105,7 +105,7 @@ Variant AlongLength(const Extent& extent) {
   return variant;
 }
 
-// The object's axes, and the diagonals between two and all of them: none is farther than 27° from
+// The object's axes, and the diagonals between two and all of them: none is farther than 28° from
 // one of these.
 std::vector<Variant> Directions(const Extent& extent) {
   std::vector<Variant> variants;
@@ -137,7 +137,7 @@ std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
   return times;
 }
 
-// Of the length: where an effect may be whose place is not sought any further.
+// Of the length: the places from which that of a mass or a force is sought.
 const std::vector<double> kAlongLength = {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
 
 std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,

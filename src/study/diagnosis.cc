@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/atomic_file.h"
+#include "study/mesh_limit.h"
 #include "study/verdict.h"
 
 namespace lacuna {

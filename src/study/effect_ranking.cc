@@ -21,11 +21,6 @@ constexpr double kLookAlike = 0.95;
 constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
 constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
-// What the mesh changes is taken from time steps so many times as long, to find where its limit
-// would be fitted: it is simulated again from there with the right ones.
-constexpr double kLongSteps = 3;
-constexpr int kMostStepsToLimit = 4;
-constexpr double kAtLimit = 1;  // of ‖r‖², that a step no longer gains
 
 std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
   std::vector<int> range(static_cast<size_t>(count));
@@ -379,33 +374,6 @@ EffectRanking HypothesisRanking::Result() {
 }  // namespace
 
 double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
-
-Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
-  if (!misfit.usable) return values;
-  const Eigen::VectorXd change = ChangeByMesh(problem, values, kLongSteps);
-  if (change.size() != misfit.residual.size()) return values;
-  const Eigen::MatrixXd by = WhitenedRows(misfit.by, misfit, 0, false);
-  const auto left = [&](const LinearisedMisfit& there) -> Eigen::VectorXd {
-    return WhitenedRows(there.residual + change, misfit, 0, false);
-  };
-  // The derivatives hardly change on the way: a few steps with the same ones.
-  Eigen::VectorXd best = values;
-  Eigen::VectorXd here = left(misfit);
-  for (int step = 0; step < kMostStepsToLimit; ++step) {
-    const LinearFit fit = LinearModel(here, by, PriorsAbout(problem.parameters(), best)).FitAll(1);
-    const Eigen::VectorXd moved = MovedBy(problem.parameters(), best, fit.change);
-    const LinearisedMisfit there = problem.Linearise(moved, false, {}, &misfit);
-    if (!there.usable) break;
-    const Eigen::VectorXd next = left(there);
-    const double gain = here.squaredNorm() - next.squaredNorm();
-    if (!(gain > 0)) break;
-    best = moved;
-    here = next;
-    if (gain < kAtLimit) break;
-  }
-  return best;
-}
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without) {

@@ -80,11 +80,6 @@ struct EffectRanking {
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without = {});
 
-// What the study would be fitted to with elements as fine as can be, and with the held-out frames,
-// which evidence counts too: what finer elements and effects change is best known there
-// (nuisance_candidates.h). `values` where those cannot be simulated. Throws Interrupted.
-Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_STUDY_EFFECT_RANKING_H_

@@ -17,6 +17,7 @@ constexpr double kOfNoise = 0.2, kOfMisfit = 0.05;
 constexpr double kAimedAt = 0.8, kAtOnce = 4;
 constexpr int kMostSteps = 8;
 
+// Of a step that could not be checked: half of it may do.
 struct StepCheck {
   double error = std::numeric_limits<double>::infinity();  // σ; and what is allowed:
   double allowed = kOfNoise;
@@ -54,7 +55,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
   Calibration beginning;
   if (study->chooses_time_step) {
     // A first look at how fast things go.
-    PredictionStudy further = *study;
+    PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
       beginning = problem.FitBeginning(problem.Start(), progress);
@@ -68,7 +69,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
   double start_rms = 0;
   for (int tried = 1;; ++tried) {
     PredictionStudy further;
-    double share = 0.5;  // of the step
+    StepCheck check;
     {
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = fit.calibration.usable;
@@ -81,15 +82,14 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
       fit.calibration.start_rms = start_rms;
       if (!study->chooses_time_step) return fit;
       if (fit.calibration.usable) {
-        const StepCheck check = CheckStep(problem, fit.calibration.parameters, progress);
+        check = CheckStep(problem, fit.calibration.parameters, progress);
         fit.step_error = check.error;
-        share = check.Share();
-        if (share == 1) return fit;
+        if (check.Share() == 1) return fit;
       }
       if (tried == kMostSteps) return fit;
       further = problem.WithGivenNoise();
     }
-    further.time_step *= share;
+    further.time_step *= check.Share();
     *study = std::move(further);
   }
 }
