@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <glog/logging.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -47,21 +46,6 @@ void RefuseForeignFolder(const fs::path& folder) {
                      fmt::format("is not a run folder (it has no {}) and not empty; choose another",
                                  kManifestName));
   }
-}
-
-int Lock(const fs::path& folder) {
-  const fs::path file = folder / kLockName;
-  const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) {
-    throw InputError({folder.string()}, fmt::format("cannot be written: {}", std::strerror(errno)));
-  }
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int error = errno;
-  close(descriptor);
-  if (error == EWOULDBLOCK) {
-    throw InputError({folder.string()}, "is in use by another run that has not ended");
-  }
-  throw InputError({folder.string()}, fmt::format("cannot be locked: {}", std::strerror(error)));
 }
 
 void SyncFile(const fs::path& file) {
@@ -117,27 +101,25 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
     throw InputError({folder_.string()}, "cannot be made a run folder: " + cause);
   }
   RefuseForeignFolder(folder_);
-  lock_ = Lock(folder_);
-  try {
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-      if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
-    }
-    if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
-    // Other code or other libraries may give other results; the manifest names one set of both.
-    if (manifest_.program_version != ProgramVersion() ||
-        manifest_.library_versions != LibraryVersions()) {
-      manifest_.stages.clear();
-    }
-    manifest_.schema_version = kManifestSchemaVersion;
-    manifest_.program_version = ProgramVersion();
-    manifest_.library_versions = LibraryVersions();
-  } catch (...) {
-    close(lock_);
-    throw;
+  const fs::path file = folder_ / kLockName;
+  lock_.emplace(file);
+  if (!lock_->holds()) {
+    throw InputError({folder_.string()},
+                     fmt::format("is in use by another run ({})", HolderOf(file)));
   }
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
+  }
+  if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
+  // Other code or other libraries may give other results; the manifest names one set of both.
+  if (manifest_.program_version != ProgramVersion() ||
+      manifest_.library_versions != LibraryVersions()) {
+    manifest_.stages.clear();
+  }
+  manifest_.schema_version = kManifestSchemaVersion;
+  manifest_.program_version = ProgramVersion();
+  manifest_.library_versions = LibraryVersions();
 }
-
-RunDirectory::~RunDirectory() { close(lock_); }
 
 void RunDirectory::Begin(const nlohmann::json& configuration,
                          const std::map<std::string, std::string>& inputs, uint64_t seed) {

@@ -14,9 +14,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "core/claim.h"
 #include "record/manifest.h"
 
 namespace lacuna {
@@ -34,9 +36,6 @@ class RunDirectory {
   // however that ends. Throws InputError when the folder cannot be written, is used by another run,
   // or holds something else than a run.
   explicit RunDirectory(const std::filesystem::path& folder);
-  ~RunDirectory();
-  RunDirectory(const RunDirectory&) = delete;
-  RunDirectory& operator=(const RunDirectory&) = delete;
 
   const std::filesystem::path& Folder() const { return folder_; }
   std::filesystem::path StageFolder(const std::string& stage) const { return folder_ / stage; }
@@ -68,7 +67,7 @@ class RunDirectory {
   void Save() const;
 
   std::filesystem::path folder_;
-  int lock_ = -1;
+  std::optional<Claim> lock_;
   Manifest manifest_;
   std::set<std::string> current_;  // stages stored or found ready since Begin
 };
