@@ -109,12 +109,17 @@ class ExpressionForceEffect final : public Effect {
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     if (!convexify) {
-      AddBlocks(at, weights.position, weights.velocity, 1, false, tangent);
+      AddBlocks(at, weights.position, weights.velocity, 1, Part::kSymmetric, tangent);
       return;
     }
     // Each by itself: the definite part of a sum is not the sum of the definite parts.
-    AddBlocks(at, 1, 0, weights.position, true, tangent);
-    AddBlocks(at, 0, 1, weights.velocity, true, tangent);
+    AddBlocks(at, 1, 0, weights.position, Part::kDefinite, tangent);
+    AddBlocks(at, 0, 1, weights.velocity, Part::kDefinite, tangent);
+  }
+
+  bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
+                       BlockMatrix* tangent) const override {
+    return AddBlocks(at, weights.position, weights.velocity, 1, Part::kSkew, tangent);
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -226,13 +231,16 @@ class ExpressionForceEffect final : public Effect {
             law_.force[2].At(values.data())};
   }
 
-  // Adds scale · (by_position ∂f/∂x + by_velocity ∂f/∂v), of that the symmetric, and perhaps the
-  // definite, part.
-  void AddBlocks(const Kinematics& at, double by_position, double by_velocity, double scale,
-                 bool definite, BlockMatrix* tangent) const {
+  // Of a derivative; kDefinite: of its symmetric part.
+  enum class Part { kSymmetric, kDefinite, kSkew };
+
+  // Adds a part of scale · (by_position ∂f/∂x + by_velocity ∂f/∂v). Returns whether it may be
+  // anything but 0.
+  bool AddBlocks(const Kinematics& at, double by_position, double by_velocity, double scale,
+                 Part part, BlockMatrix* tangent) const {
     const bool moves = by_position != 0 && (UsesAny(kPosition, 3) || UsesAny(kDisplacement, 3));
     const bool flows = by_velocity != 0 && UsesAny(kVelocity, 3);
-    if (scale == 0 || !(moves || flows)) return;
+    if (scale == 0 || !(moves || flows)) return false;
     FirstNode undefined;
     ForEachNode<Dual<3>>(at, [&](int node, double measure, Values<Dual<3>>& values) {
       Eigen::Matrix3d block;
@@ -243,15 +251,17 @@ class ExpressionForceEffect final : public Effect {
       }
       for (int axis = 0; axis < 3; ++axis)
         block.row(axis) = law_.force[axis].At(values.data()).derivative;
-      block = 0.5 * (block + block.transpose()).eval();
+      const Eigen::Matrix3d mirror = (part == Part::kSkew ? -1 : 1) * block.transpose();
+      block = 0.5 * (block + mirror);
       if (!block.allFinite()) {
         undefined.Tell(node);
-      } else if (definite) {
+      } else if (part == Part::kDefinite) {
         block = NegativePart(block);
       }
       tangent->Block(tangent->pattern().diagonal[node]) += scale * measure * block;
     });
     if (!undefined.IsNone()) WarnOnce(at, undefined.node());
+    return true;
   }
 
   // Tells what is not defined at a node.

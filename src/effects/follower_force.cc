@@ -88,10 +88,21 @@ class FollowerForceEffect final : public Effect {
                    BlockMatrix* tangent) const override {
     if (convexify || weights.position == 0) return;
     if (at.body.mesh.Order() == 1) {
-      AddStiffness<4>(at, weights.position, tangent);
+      AddStiffness<4, 1>(at, weights.position, tangent);
     } else {
-      AddStiffness<10>(at, weights.position, tangent);
+      AddStiffness<10, 1>(at, weights.position, tangent);
     }
+  }
+
+  bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
+                       BlockMatrix* tangent) const override {
+    if (weights.position == 0 || parameters_.head<3>().isZero(0)) return false;
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<4, -1>(at, weights.position, tangent);
+    } else {
+      AddStiffness<10, -1>(at, weights.position, tangent);
+    }
+    return true;
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -204,7 +215,8 @@ class FollowerForceEffect final : public Effect {
         });
   }
 
-  template <int kNodes>
+  // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
+  template <int kNodes, int kMirror>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
     const auto spread = GetSpread(at.body);
     const Eigen::Vector3d at_rest = parameters_.head<3>();
@@ -219,14 +231,15 @@ class FollowerForceEffect final : public Effect {
               rotation * ShapeGradient<kNodes>(at.body, q).transpose();
           std::array<Eigen::Matrix3d, kNodes> by_node;  // half of ∂(s t)/∂x_b
           for (int b = 0; b < kNodes; ++b) by_node[b] = turn * CrossProduct(h.col(b));
-          ElementStiffness<kNodes> symmetric;
+          ElementStiffness<kNodes> stiffness;
           int pair = 0;
           for (int a = 0; a < kNodes; ++a) {
             for (int b = a; b < kNodes; ++b) {
-              symmetric.block[pair++] = shape[a] * by_node[b] + shape[b] * by_node[a].transpose();
+              stiffness.block[pair++] =
+                  shape[a] * by_node[b] + kMirror * shape[b] * by_node[a].transpose();
             }
           }
-          ScatterStiffness<kNodes>(at.body, e, symmetric, tangent);
+          ScatterStiffness<kNodes, kMirror>(at.body, e, stiffness, tangent);
         });
   }
 

@@ -97,6 +97,18 @@ class PlaneContactEffect final : public Effect {
     });
   }
 
+  bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
+                       BlockMatrix* tangent) const override {
+    if (Friction() == 0 || weights.position == 0) return false;
+    ForEachContact(at, [&](const Contact& contact) {
+      const Eigen::Vector3d direction = Direction(contact);
+      tangent->Block(tangent->pattern().diagonal[contact.node]) -=
+          0.5 * weights.position * contact.area * Stiffness() * contact.penalty.slope *
+          (direction * normal_.transpose() - normal_ * direction.transpose());
+    });
+    return true;
+  }
+
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK(parameter >= 0 && parameter < kSlip);

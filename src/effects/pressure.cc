@@ -114,10 +114,23 @@ class PressureEffect final : public Effect {
     if (convexify) return;
     const double scale = weights.position * parameters_[kPressureValue];
     if (at.body.mesh.Order() == 1) {
-      AddStiffness<3>(at, scale, tangent);
+      AddStiffness<3, 1>(at, scale, tangent);
     } else {
-      AddStiffness<6>(at, scale, tangent);
+      AddStiffness<6, 1>(at, scale, tangent);
     }
+  }
+
+  // On a closed surface the pressure has a potential.
+  bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
+                       BlockMatrix* tangent) const override {
+    const double scale = weights.position * parameters_[kPressureValue];
+    if (scale == 0 || Faces(at.body)->closed) return false;
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<3, -1>(at, scale, tangent);
+    } else {
+      AddStiffness<6, -1>(at, scale, tangent);
+    }
+    return true;
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -252,7 +265,8 @@ class PressureEffect final : public Effect {
                          });
   }
 
-  template <int kNodes>
+  // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
+  template <int kNodes, int kMirror>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
     const auto faces = Faces(at.body);
     ForEachPoint<kNodes>(*faces, at.position,
@@ -263,9 +277,9 @@ class PressureEffect final : public Effect {
                            const int* block = &faces->block[f * kNodes * kNodes];
                            for (int a = 0; a < kNodes; ++a) {
                              for (int b = 0; b < kNodes; ++b) {
-                               const Eigen::Vector3d c =
-                                   -0.5 * scale * point.weight *
-                                   (point.shape[a] * s.col(b) - point.shape[b] * s.col(a));
+                               const Eigen::Vector3d c = -0.5 * scale * point.weight *
+                                                         (point.shape[a] * s.col(b) -
+                                                          kMirror * point.shape[b] * s.col(a));
                                Eigen::Matrix3d cross;
                                cross << 0, -c[2], c[1], c[2], 0, -c[0], -c[1], c[0], 0;
                                tangent->Block(block[a * kNodes + b]) += cross;

@@ -64,6 +64,17 @@ class StiffnessDampingEffect final : public Effect {
     }
   }
 
+  bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
+                       BlockMatrix* tangent) const override {
+    if (weights.position == 0 || beta_ == 0) return false;
+    if (at.body.mesh.Order() == 1) {
+      AddSkewMatrix<4>(at, weights.position, tangent);
+    } else {
+      AddSkewMatrix<10>(at, weights.position, tangent);
+    }
+    return true;
+  }
+
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK(parameter >= 0 && parameter < 3);
@@ -149,13 +160,42 @@ class StiffnessDampingEffect final : public Effect {
     });
   }
 
-  // ∂P/∂Ḟ is symmetric. ∂P/∂F at fixed Ḟ is δF S + F βC : sym(δFᵀ Ḟ), of which the matrix takes the
-  // symmetric part; the definite stand-in drops it, as it is small beside ∂P/∂Ḟ by the strain
-  // increment of a step.
+  // ∂P/∂Ḟ is symmetric. Of ∂P/∂F, which is not, the matrix takes the symmetric part; the definite
+  // stand-in drops it, as it is small beside ∂P/∂Ḟ by the strain increment of a step.
   template <int kNodes>
   void AddDampingMatrix(const Kinematics& at, const TangentWeights& weights, bool convexify,
                         BlockMatrix* tangent) const {
     const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
+    AddMatrix<kNodes, 1>(
+        at,
+        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
+          StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
+          if (!convexify && weights.position != 0) {
+            const StressTangent by_position = PositionTangent(viscosity, F, rate);
+            C += 0.5 * weights.position * (by_position + by_position.transpose());
+          }
+          return C;
+        },
+        tangent);
+  }
+
+  // A body that turns while it is strained owes its freedom from stress to both: without this part
+  // the derivative of a strained state is braked by the turn.
+  template <int kNodes>
+  void AddSkewMatrix(const Kinematics& at, double weight, BlockMatrix* tangent) const {
+    const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
+    AddMatrix<kNodes, -1>(
+        at,
+        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
+          const StressTangent by_position = PositionTangent(viscosity, F, rate);
+          return StressTangent(0.5 * weight * (by_position - by_position.transpose()));
+        },
+        tangent);
+  }
+
+  // Of C(F, Ḟ), symmetric or with kMirror = −1 skew-symmetric.
+  template <int kNodes, int kMirror, typename Moduli>
+  static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
       const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
@@ -165,23 +205,22 @@ class StiffnessDampingEffect final : public Effect {
       for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
         const int q = element * QuadraturePoints<kNodes>() + p;
         const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
-        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-        StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
-        if (!convexify && weights.position != 0) {
-          const Eigen::Matrix3d rate = FieldGradient<kNodes>(v, g);
-          StressTangent by_position = RateTangent(viscosity, F, rate);
-          const Eigen::Matrix3d stress = ViscousStress(viscosity, F, rate);
-          for (int j = 0; j < 3; ++j) {
-            for (int l = 0; l < 3; ++l) {
-              by_position.block<3, 3>(3 * j, 3 * l).diagonal().array() += stress(l, j);
-            }
-          }
-          C += 0.5 * weights.position * (by_position + by_position.transpose());
-        }
-        AddStiffness<kNodes>(C, g, -body.weight[q], &stiffness);
+        const StressTangent moduli = C(FieldGradient<kNodes>(x, g), FieldGradient<kNodes>(v, g));
+        AddStiffness<kNodes>(moduli, g, -body.weight[q], &stiffness);
       }
-      ScatterStiffness<kNodes>(body, element, stiffness, tangent);
+      ScatterStiffness<kNodes, kMirror>(body, element, stiffness, tangent);
     });
+  }
+
+  // ∂P/∂F at fixed Ḟ: δF S + F βC : sym(δFᵀ Ḟ).
+  static StressTangent PositionTangent(const LameConstants& viscosity, const Eigen::Matrix3d& F,
+                                       const Eigen::Matrix3d& rate) {
+    StressTangent tangent = RateTangent(viscosity, F, rate);
+    const Eigen::Matrix3d stress = ViscousStress(viscosity, F, rate);
+    for (int j = 0; j < 3; ++j)
+      for (int l = 0; l < 3; ++l)
+        tangent.block<3, 3>(3 * j, 3 * l).diagonal().array() += stress(l, j);
+    return tangent;
   }
 
   // The map δ ↦ F (2μ sym(Aᵀ δ) + λ tr(Aᵀ δ) I).

@@ -53,6 +53,12 @@ class Effect {
   virtual void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                            BlockMatrix* tangent) const = 0;
 
+  // Adds the skew-symmetric part that AddTangents leaves out. Returns whether there may be any.
+  virtual bool AddSkewTangents(const Kinematics& /*at*/, const TangentWeights& /*weights*/,
+                               BlockMatrix* /*tangent*/) const {
+    return false;
+  }
+
   // Adds ∂f/∂(parameter), N per unit of the parameter; never asked for a setting.
   virtual void AddParameterDerivative(const Kinematics& at, int parameter,
                                       Eigen::VectorXd* derivative) const = 0;

@@ -50,8 +50,9 @@ EIGEN_STRONG_INLINE Eigen::Matrix3d FieldGradient(const Eigen::Matrix<double, 3,
   return edges.lazyProduct(gradient.template bottomRows<kNodes - 1>());
 }
 
-// tangent += K for both triangles of the symmetric element matrix; only inside ForEachElement.
-template <int kNodes>
+// tangent += K for both triangles of the element matrix, K_ba = kMirror K_abᵀ: symmetric, or with
+// −1 skew-symmetric; only inside ForEachElement.
+template <int kNodes, int kMirror = 1>
 void ScatterStiffness(const Body& body, int element, const ElementStiffness<kNodes>& stiffness,
                       BlockMatrix* tangent) {
   const int* position = &body.schedule->block[static_cast<size_t>(element) * kNodes * kNodes];
@@ -60,7 +61,7 @@ void ScatterStiffness(const Body& body, int element, const ElementStiffness<kNod
     tangent->Block(position[a * kNodes + a]) += stiffness.block[pair++];
     for (int b = a + 1; b < kNodes; ++b) {
       tangent->Block(position[a * kNodes + b]) += stiffness.block[pair];
-      tangent->Block(position[b * kNodes + a]) += stiffness.block[pair++].transpose();
+      tangent->Block(position[b * kNodes + a]) += kMirror * stiffness.block[pair++].transpose();
     }
   }
 }

@@ -89,10 +89,14 @@ void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* re
   if (force_scale != nullptr) *force_scale = scale;
 }
 
+TangentWeights StepEquation::Weights() const {
+  return {-1, -rate(), inertia_ ? -rate() * rate() : 0};
+}
+
 void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
                            BlockMatrix* tangent) const {
   const EndOfStep end = End(position);
-  const TangentWeights weights{-1, -rate(), inertia_ ? -rate() * rate() : 0};
+  const TangentWeights weights = Weights();
   tangent->SetZero();
   for (size_t j = 0; j < model_.effects.size(); ++j)
     model_.effects[j]->AddTangents(At(end, j), weights, convexify, tangent);
@@ -101,6 +105,16 @@ void StepEquation::Tangent(const Eigen::VectorXd& position, bool convexify,
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
     tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() += rate() * rate() * mass[i];
   }
+}
+
+bool StepEquation::SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tangent) const {
+  const EndOfStep end = End(position);
+  const TangentWeights weights = Weights();
+  tangent->SetZero();
+  bool any = false;
+  for (size_t j = 0; j < model_.effects.size(); ++j)
+    any |= model_.effects[j]->AddSkewTangents(At(end, j), weights, tangent);
+  return any;
 }
 
 void StepEquation::ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,

@@ -47,8 +47,10 @@ class StepEquation {
   // Euclidean norms of the terms of r, N: what "small" is to be measured by.
   void Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
                 double* force_scale = nullptr) const;
-  // ∂r/∂x, N/m, at all nodes (overwrites `tangent`).
+  // The symmetric part of ∂r/∂x, N/m, at all nodes (overwrites `tangent`).
   void Tangent(const Eigen::VectorXd& position, bool convexify, BlockMatrix* tangent) const;
+  // Its skew-symmetric part; false: there is none.
+  bool SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tangent) const;
   // ∂r/∂(parameter k of effect j), N per unit (overwrites `derivative`).
   void ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
                            Eigen::VectorXd* derivative) const;
@@ -70,6 +72,8 @@ class StepEquation {
   Kinematics At(const EndOfStep& end, size_t effect) const;
 
  private:
+  TangentWeights Weights() const;
+
   const Model& model_;
   const MotionHistory& history_;
   bool inertia_ = true;

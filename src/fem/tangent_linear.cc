@@ -41,7 +41,7 @@ struct TangentLinear::Implementation {
   std::vector<char> fixed;
   EliminationOrder order;
   CholmodFactor factor;
-  BlockMatrix tangent, by_rate;
+  BlockMatrix tangent, skew, by_rate;
   std::vector<Eigen::Index> of_grips;  // perturbations that move gripped nodes
   double element_size;                 // m
   // Now and one step earlier.
@@ -57,6 +57,7 @@ struct TangentLinear::Implementation {
         order(NestedDissection(*model.body->pattern, fixed)),
         factor(*model.body->pattern, order),
         tangent(model.body->pattern),
+        skew(model.body->pattern),
         by_rate(model.body->pattern),
         element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())) {
     const Eigen::Index size = 3 * model.body->NodeCount();
@@ -200,8 +201,10 @@ struct TangentLinear::Implementation {
                         const TangentWeights& weights, const Eigen::MatrixXd& change,
                         Eigen::MatrixXd* right) {
     by_rate.SetZero();
-    for (size_t j = 0; j < model.effects.size(); ++j)
+    for (size_t j = 0; j < model.effects.size(); ++j) {
       model.effects[j]->AddTangents(equation.At(end, j), weights, false, &by_rate);
+      model.effects[j]->AddSkewTangents(equation.At(end, j), weights, &by_rate);
+    }
     const double* values = by_rate.values();
     if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
                     [](double value) { return value == 0; }))
@@ -234,28 +237,56 @@ struct TangentLinear::Implementation {
     return all;
   }
 
-  // Where the exact tangent is not definite the system is solved with its stand-in, and what that
-  // leaves is solved again.
+  void ClearFixed(Eigen::MatrixXd* columns) const {
+    for (size_t i = 0; i < fixed.size(); ++i)
+      if (fixed[i]) columns->middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
+  }
+
+  // (tangent + skew) · s = right at the free nodes. What is factorised is the tangent, the
+  // symmetric part; where that is not definite, or too far from the sum, its stand-in.
   std::optional<Eigen::MatrixXd> Solve(const StepEquation& equation, const Eigen::VectorXd& at,
-                                       Eigen::MatrixXd right) {
-    if (factor.Factorise(tangent)) return SolveFree(right);
-    constexpr int kMaxIterations = 60;
-    constexpr double kTolerance = 1e-6;
-    const double wanted = kTolerance * right.norm();
+                                       bool has_skew, Eigen::MatrixXd right) {
+    ClearFixed(&right);
+    if (factor.Factorise(tangent)) {
+      if (!has_skew) return SolveFree(right);
+      // What the skew part does hardly changes from one step to the next.
+      Eigen::MatrixXd expected = position;
+      if (previous_position.size() > 0) expected += position - previous_position;
+      const auto solution = Iterate(right, right - skew * expected,
+                                    [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* left) {
+                                      *left = skew * (expected - step);
+                                      expected.setZero();
+                                    });
+      if (solution) return solution;
+    }
     BlockMatrix stand_in(model.body->pattern);
     equation.Tangent(at, /*convexify=*/true, &stand_in);
     if (!factor.Factorise(stand_in)) return std::nullopt;
+    return Iterate(right, right, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* left) {
+      *left -= tangent * step;
+      if (has_skew) *left -= skew * step;
+    });
+  }
+
+  // Adds up solutions for what is `left`, until that is little beside the right-hand side; `take`
+  // makes of it what a step leaves.
+  template <typename Take>
+  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd left,
+                                         const Take& take) {
+    constexpr int kMaxIterations = 60;
+    constexpr double kTolerance = 1e-7;  // of each column
+    const Eigen::RowVectorXd wanted = kTolerance * right.colwise().norm();
     Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
-    double last = right.norm();
+    ClearFixed(&left);
+    double last = left.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      const Eigen::MatrixXd step = SolveFree(right);
+      const Eigen::MatrixXd step = SolveFree(left);
       solution += step;
-      right -= tangent * step;
-      for (size_t i = 0; i < fixed.size(); ++i)
-        if (fixed[i]) right.middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
-      if (right.norm() <= wanted) return solution;
-      if (!(right.norm() < 2 * last)) return std::nullopt;
-      last = right.norm();
+      take(step, &left);
+      ClearFixed(&left);
+      if ((left.colwise().norm().array() <= wanted.array()).all()) return solution;
+      if (!(left.norm() < 2 * last)) break;
+      last = left.norm();
     }
     return std::nullopt;
   }
@@ -273,6 +304,7 @@ struct TangentLinear::Implementation {
         weights.Combine(velocity, previous_velocity, acceleration, previous_acceleration);
 
     equation.Tangent(at, /*convexify=*/false, &tangent);
+    const bool has_skew = equation.SkewTangent(at, &skew);
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(position.rows(), Count());
     for (Eigen::Index k = 0; k < Count(); ++k) right.col(k) = ParameterForce(equation, end, k);
     AddMemoryForces(equation, end, &right);
@@ -286,11 +318,14 @@ struct TangentLinear::Implementation {
       AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
     }
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
-    if (!of_grips.empty())
-      right(Eigen::all, of_grips) -= tangent * Eigen::MatrixXd(gripped(Eigen::all, of_grips));
+    if (!of_grips.empty()) {
+      const Eigen::MatrixXd moved = gripped(Eigen::all, of_grips);
+      right(Eigen::all, of_grips) -= tangent * moved;
+      if (has_skew) right(Eigen::all, of_grips) -= skew * moved;
+    }
 
     TangentLinearSummary summary;
-    const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, std::move(right));
+    const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, has_skew, std::move(right));
     if (!solution) {
       summary.status = TangentLinearSummary::Status::kNotPositiveDefinite;
       summary.message = fmt::format(

@@ -12,7 +12,9 @@
 // value the result is how the motion would answer to a little of it. So all effects of a library
 // are tried along one trajectory.
 //
-// Of tangents that are not symmetric the symmetric part is used (as everywhere, see effect.h).
+// Where a tangent is not symmetric (effect.h), its symmetric part is factorised, and what the
+// skew-symmetric one leaves is solved again until it is little: forces that follow the body, or
+// brake it, answer to a turn in full.
 #ifndef LACUNA_FEM_TANGENT_LINEAR_H_
 #define LACUNA_FEM_TANGENT_LINEAR_H_
 

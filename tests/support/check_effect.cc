@@ -100,6 +100,14 @@ class Checker {
     return force;
   }
 
+  Eigen::MatrixXd SkewTangent(const TangentWeights& weights) const {
+    BlockMatrix tangent(moving_.body.pattern);
+    const bool any = effect_.AddSkewTangents(At(moving_.motion), weights, &tangent);
+    const Eigen::MatrixXd dense = Dense(tangent);
+    EXPECT_TRUE(any || dense.isZero(0)) << "a skew part that was said not to be there";
+    return dense;
+  }
+
   Eigen::MatrixXd Tangent(const TangentWeights& weights, bool convexify) const {
     BlockMatrix tangent(moving_.body.pattern);
     effect_.AddTangents(At(moving_.motion), weights, convexify, &tangent);
@@ -157,7 +165,7 @@ class Checker {
         const Eigen::VectorXd shift = h * Eigen::VectorXd::Unit(size_, k);
         columns.col(k) = Force(Shifted(moving_.motion, weights, shift));
       }
-      return Eigen::MatrixXd(0.5 * (columns + columns.transpose()));
+      return columns;
     };
     if (!depends) {
       EXPECT_EQ(tangent.norm(), 0) << "∂f/∂" << name << " was said to be zero";
@@ -166,8 +174,11 @@ class Checker {
     }
     ASSERT_GT(tangent.norm(), 0) << "∂f/∂" << name << " is zero";
     EXPECT_LT((tangent - tangent.transpose()).norm(), 1e-13 * tangent.norm());
+    const Eigen::MatrixXd skew = SkewTangent(weights);
+    EXPECT_LE((skew + skew.transpose()).norm(), 1e-13 * tangent.norm());
     const double unit = weights.position == 0 ? 1 : 0.01;  // m/s, m/s² or m
-    EXPECT_LT(BestError(derivative, tangent, unit), options_.tolerance) << "∂f/∂" << name;
+    EXPECT_LT(BestError(derivative, Eigen::MatrixXd(tangent + skew), unit), options_.tolerance)
+        << "∂f/∂" << name;
   }
 
   void CheckTangentsAdd() const {
@@ -179,6 +190,12 @@ class Checker {
                                 0.5 * Tangent({.velocity = 1}, false) +
                                 2 * Tangent({.acceleration = 1}, false);
     EXPECT_LE((Dense(twice) - sum).norm(), 1e-13 * sum.norm()) << "tangents add, by their weights";
+    BlockMatrix skew(moving_.body.pattern);
+    effect_.AddSkewTangents(at, {.position = 1.5, .acceleration = 2}, &skew);
+    effect_.AddSkewTangents(at, {.velocity = -0.5}, &skew);
+    const Eigen::MatrixXd skew_sum =
+        1.5 * SkewTangent({.position = 1}) - 0.5 * SkewTangent({.velocity = 1});
+    EXPECT_LE((Dense(skew) - skew_sum).norm(), 1e-13 * sum.norm()) << "and so do skew parts";
 
     Eigen::VectorXd force = Eigen::VectorXd::Ones(size_);
     effect_.AddForce(at, &force);
@@ -291,6 +308,7 @@ class Checker {
       force[k] = Eigen::VectorXd::Zero(motion.position.size());
       effect_.AddForce(at, &force[k]);
       effect_.AddTangents(at, {1, 1, 1}, false, &tangent[k]);
+      effect_.AddSkewTangents(at, {1, 1, 1}, &tangent[k]);
     }
     SetThreadCount(threads);
     EXPECT_EQ(force[0], force[1]);

@@ -29,9 +29,9 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
 // At a random deformed and moving state, for linear and quadratic elements:
 //  - the card is complete and its parameters agree with Parameters() and SetParameters();
 //  - f = −∂E/∂x where the effect has an energy;
-//  - AddTangents (the symmetric part) and AddParameterDerivative agree with central differences,
-//    for all weights and every parameter that is not a setting, and are not simply zero; they add
-//    into what is there, in proportion to the weight;
+//  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
+//    differences, for all weights and every parameter that is not a setting, and are not simply
+//    zero; they add into what is there, in proportion to the weight;
 //  - the stand-in of `convexify` is symmetric and definite;
 //  - forces and torques sum to zero where the card says so; then the forces are the same, but
 //    turned, in a frame that is turned, shifted and spinning;
