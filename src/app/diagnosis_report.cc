@@ -33,12 +33,15 @@ std::string SizeText(const RecordedEffect& effect) {
 std::string RefitText(const RecordedEffect& effect) {
   if (!effect.refitted) return "";
   if (!effect.refit_message.empty()) return "not usable";
-  return fmt::format("{:.1f} σ {:.3f} mm", effect.errors.in_noise,
-                     1e3 * effect.errors.held_out_rms);
+  return fmt::format("{:.1f} σ", effect.errors.without_nuisances);
+}
+
+std::string MillimetreText(const ModelErrors& errors) {
+  return fmt::format("{:.3f} mm", 1e3 * errors.held_out_rms);
 }
 
 void PrintRow(const std::vector<std::string>& cells) {
-  constexpr size_t kWidths[] = {9, 9, 9, 18, 10};
+  constexpr size_t kWidths[] = {9, 9, 9, 11, 11, 10};
   std::string line = "  " + PaddedRight(cells[0], 22);
   for (size_t k = 0; k < std::size(kWidths); ++k) line += PaddedLeft(cells[k + 1], kWidths[k]);
   line += "  " + cells.back();
@@ -50,7 +53,8 @@ void PrintEffect(const RecordedEffect& effect) {
   PrintRow({effect.type, fmt::format("{:.1f}", effect.evidence),
             effect.HasUsableRefit() ? fmt::format("{:.1f}", effect.refit_evidence) : "",
             fmt::format("{:.1f} σ", effect.expected_in_noise), RefitText(effect),
-            Percent(effect.absorbed), effect.sizes.size() == 1 ? SizeText(effect) : ""});
+            effect.HasUsableRefit() ? MillimetreText(effect.errors) : "", Percent(effect.absorbed),
+            effect.sizes.size() == 1 ? SizeText(effect) : ""});
   std::vector<std::string> more;
   if (effect.sizes.size() > 1) more.push_back(SizeText(effect));
   if (!effect.variant.empty()) more.push_back(effect.variant);
@@ -63,13 +67,14 @@ void PrintEffect(const RecordedEffect& effect) {
 
 void PrintRanking(const DiagnosisRecord& diagnosis) {
   fmt::print("\n  {}{}{}{}\n", PaddedRight("", 22), PaddedLeft("evidence", 18),
-             PaddedLeft(diagnosis.errors.has_held_out ? "error, held out" : "error, fitted", 27),
+             PaddedLeft(diagnosis.errors.has_held_out ? "error, held out" : "error, fitted", 31),
              PaddedLeft("share", 10));
-  PrintRow({"effect", "expected", "refitted", "expected", "refitted", "absorbed", "expected size"});
+  // In σ less what the nuisances in the model do, which is what is judged; in mm with that.
+  PrintRow({"effect", "expected", "refitted", "expected", "refitted", "raw", "absorbed",
+            "expected size"});
   PrintRow({"(the model as it is)", "", "", "",
-            fmt::format("{:.1f} σ {:.3f} mm", diagnosis.errors.in_noise,
-                        1e3 * diagnosis.errors.held_out_rms),
-            "", ""});
+            fmt::format("{:.1f} σ", diagnosis.errors.without_nuisances),
+            MillimetreText(diagnosis.errors), "", ""});
   std::vector<std::string> quiet;
   for (const RecordedEffect& effect : diagnosis.ranking) {
     if (effect.refitted || effect.evidence > kWorthALine)

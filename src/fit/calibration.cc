@@ -23,6 +23,9 @@ constexpr double kDead = 1e-6;
 constexpr double kInside = 0.98;
 // Of fits that start near: more, and the start was not.
 constexpr int kSecantRounds = 3;
+// Steps are in typical changes: one that overshoots is shortened at once. A round goes on from the
+// radius of the last, which was shortened a little too far.
+constexpr double kFirstRadius = 100, kWidened = 9;
 
 double ToFree(const CalibratedParameter& parameter, double value) {
   return parameter.log_scale ? std::log(value) : value;
@@ -310,8 +313,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
                                                              1, first.residual.size()));
     solver.parameter_tolerance = 1e-6;
-    // Steps are in typical changes: one that overshoots is shortened at once.
-    solver.initial_trust_region_radius = 100;
+    solver.initial_trust_region_radius = kFirstRadius;
     solver.logging_type = ceres::SILENT;
     const auto values = [&] {
       Eigen::VectorXd at(count);
@@ -327,17 +329,25 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
       ceres::Solve(solver, &problem, &summary);
       calibration.iterations += static_cast<int>(summary.iterations.size()) - 1;
       calibration.usable = summary.termination_type == ceres::CONVERGENCE;
+      solver.initial_trust_region_radius =
+          std::min(kFirstRadius, kWidened * summary.iterations.back().trust_region_radius);
       calibration.message = calibration.usable ? "" : summary.message;
     };
     bool ended = false;
+    double cost = CostOf(first, parameters, calibration.parameters);
     const bool is_near = calibration.start_rms <= options.near_rms;
     for (int round = 0; is_near && !ended && round < kSecantRounds; ++round) {
       predictions.FollowSecants(true);
       solve();
       predictions.FollowSecants(false);
       const Prediction& end = predictions.ExactAt(values());
+      const double left = CostOf(end, parameters, values());
+      // A round begins with an exact Jacobian: where it gains nothing, a step that promises more
+      // leads along a valley that is not straight.
       ended = calibration.iterations >= options.max_iterations || !end.usable ||
+              cost - left <= solver.function_tolerance * cost ||
               ExpectedGain(problem, blocks) <= solver.function_tolerance;
+      cost = left;
     }
     if (!ended) solve();
     calibration.parameters = values();

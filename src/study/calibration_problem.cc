@@ -330,6 +330,7 @@ Calibration CalibrationProblem::FitStage(const std::string& name, double horizon
                                          int* evaluations) const {
   progress->Begin(name, 0);
   Calibration calibration = FitOver(horizon, start, options, progress, evaluations);
+  progress->Report(*evaluations, calibration.rms);  // not of the last values tried
   progress->End(calibration.message);
   calibration.predictions = *evaluations;
   return calibration;
