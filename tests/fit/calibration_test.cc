@@ -117,6 +117,39 @@ TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
               poor.inflation / good.inflation, 0.3 * poor.inflation);
 }
 
+TEST(Calibration, SecantsComeToTheSameEndWithFewJacobians) {
+  const Decay decay(2, 0.7, 1);
+  int jacobians = 0;
+  const auto counted = [&](const Eigen::VectorXd& at, bool with_jacobian) {
+    jacobians += with_jacobian;
+    return decay(at, with_jacobian);
+  };
+  auto parameters = AmplitudeAndTime();
+  parameters[0].start = 1.9;
+  parameters[1].start = 0.65;
+  const Calibration exact = Calibrate(parameters, counted);
+  const int of_exact = jacobians;
+  jacobians = 0;
+  const Calibration secant = Calibrate(parameters, counted, {.near_rms = 1e3});
+  EXPECT_LT(jacobians, of_exact);
+  EXPECT_LE(jacobians, 3);
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(secant.parameters[k], exact.parameters[k],
+                0.1 * exact.estimates[k].posterior_deviation);
+}
+
+TEST(Calibration, EndsWhereTheStepThatADerivativePromisesGainsNothing) {
+  // A kink: the derivative at its bottom promises to halve the residual.
+  const auto kink = [](const Eigen::VectorXd& at, bool) {
+    return Prediction{true, "", Eigen::VectorXd::Constant(100, 2 + std::abs(at[0])),
+                      Eigen::MatrixXd::Constant(100, 1, at[0] < 0 ? -1 : 1)};
+  };
+  const Calibration found = Calibrate({{.name = "x", .start = 0}}, kink, {.near_rms = 10});
+  EXPECT_TRUE(found.usable) << found.message;
+  EXPECT_NEAR(found.parameters[0], 0, 1e-2);
+  EXPECT_LE(found.predictions, 15);
+}
+
 TEST(Calibration, ReportsAPredictionThatFails) {
   const auto fails = [](const Eigen::VectorXd&, bool) {
     return Prediction{false, "element 3 is inverted", {}, {}};
