@@ -7,7 +7,11 @@
 namespace lacuna {
 namespace {
 
+// Standard deviations by which finer elements would move a parameter, and it is worth a word.
+constexpr double kMoved = 1;
+
 void PrintParameters(const CalibrationRecord& record) {
+  bool moved = false;
   fmt::print("\n  {:34} {:>12} {:>25}  {}\n", "parameter", "value", "95 % interval", "");
   for (const FittedParameter& parameter : record.parameters) {
     const ParameterEstimate& estimate = parameter.estimate;
@@ -16,9 +20,18 @@ void PrintParameters(const CalibrationRecord& record) {
     if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
       note +=
           fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
+    if (std::abs(ShiftByMesh(parameter)) > kMoved) {
+      note += fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ",
+                          *parameter.with_finest_mesh);
+      moved = true;
+    }
     fmt::print("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name, estimate.value,
                estimate.low, estimate.high, parameter.unit, note);
   }
+  if (moved)
+    fmt::print(
+        "  Intervals do not count what the elements' size changes: choose a smaller "
+        "mesh.max_volume.\n");
 }
 
 std::string Describe(const MisfitMeasure& measure) {

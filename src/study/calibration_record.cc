@@ -76,6 +76,8 @@ json ToJson(const CalibrationRecord& record) {
                           {"verdict", VerdictName(estimate.verdict)},
                           {"most_correlated_with", estimate.traded_with},
                           {"correlation", estimate.correlation}});
+    if (parameter.with_finest_mesh)
+      parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
   }
   json recordings = json::array();
   for (const FittedRecording& recording : record.recordings) {
@@ -131,6 +133,7 @@ CalibrationRecord FromJson(const json& value) {
       if (name == entry.at("verdict")) estimate.verdict = verdict;
     estimate.traded_with = entry.at("most_correlated_with");
     estimate.correlation = entry.at("correlation");
+    if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
     record.parameters.push_back(parameter);
   }
   record.scan_noise = value.value("scan_noise_m", 0.0);
@@ -145,6 +148,13 @@ CalibrationRecord FromJson(const json& value) {
 }
 
 }  // namespace
+
+double ShiftByMesh(const FittedParameter& parameter) {
+  if (!parameter.with_finest_mesh) return 0;
+  const double value = parameter.estimate.value, there = *parameter.with_finest_mesh;
+  const double shift = parameter.log_scale ? std::log(there / value) : there - value;
+  return shift / parameter.estimate.posterior_deviation;
+}
 
 std::string VerdictName(Verdict verdict) {
   for (const auto& [value, name] : VerdictNames())

@@ -18,7 +18,12 @@ struct FittedParameter {
   std::string name, unit;  // SI
   bool log_scale = false;
   ParameterEstimate estimate;
+  // What would be fitted with elements as fine as can be; absent where it was not to be had.
+  std::optional<double> with_finest_mesh;
 };
+
+// By how many of its standard deviations the size of the elements moves a parameter; 0: not known.
+double ShiftByMesh(const FittedParameter& parameter);
 
 // Of a recording of scans.
 struct FittedScan {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "record/csv_table.h"
+#include "study/mesh_limit.h"
 #include "study/misfit_report.h"
 #include "study/run_stage.h"
 #include "study/stepped_fit.h"
@@ -16,7 +17,9 @@ namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 4;
+constexpr int kCalibrationVersion = 5;
+// A model that leaves more than so many σ has other troubles than the size of its elements.
+constexpr double kFarOff = 3;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -51,7 +54,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
                                  of_model                         ? study.fitted[k].unit
                                  : prior.name.ends_with(".clock") ? "s"
                                                                   : "N",
-                                 prior.log_scale, calibration.estimates[k]});
+                                 prior.log_scale, calibration.estimates[k], std::nullopt});
   }
   if (calibration.estimates.size() != problem.parameters().size()) return stage;  // no prediction
   progress->Begin("predict", 0);
@@ -64,6 +67,14 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
     if (item.scans != nullptr)
       record.recordings.back().scan =
           DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
+  }
+  if (calibration.rms <= kFarOff) {
+    progress->Begin("finer elements", 0);
+    if (const auto limit = AtMeshLimit(problem, calibration.parameters, /*fitted_only=*/true))
+      for (size_t k = 0; k < record.parameters.size(); ++k)
+        record.parameters[k].with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
+    problem.SetModel(calibration.parameters);
+    progress->End();
   }
   record.strains = Strains(problem, calibration.parameters, misfits);
   stage.misfit = MisfitTable(problem, misfits);

@@ -211,7 +211,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
   // What is far off has other troubles than its discretisation.
   if (diagnosis.errors.in_noise <= kFarOff) {
     progress->Begin("discretise", 0);
-    values = AtMeshLimit(problem, fitted);
+    values = AtMeshLimit(problem, fitted, /*fitted_only=*/false).value_or(fitted);
     progress->End();
   }
   EffectRanking ranking = RankEffects(problem, values, progress, options.without);

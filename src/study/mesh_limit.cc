@@ -15,14 +15,15 @@ constexpr double kAtLimit = 1;  // of ‖r‖², that a step no longer gains
 
 }  // namespace
 
-Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
+                                           const Eigen::VectorXd& values, bool fitted_only) {
   const LinearisedMisfit misfit = problem.Linearise(values, true);
-  if (!misfit.usable) return values;
+  if (!misfit.usable) return std::nullopt;
   const Eigen::VectorXd change = ChangeByMesh(problem, values, kLongSteps);
-  if (change.size() != misfit.residual.size()) return values;
-  const Eigen::MatrixXd by = WhitenedRows(misfit.by, misfit, 0, false);
+  if (change.size() != misfit.residual.size()) return std::nullopt;
+  const Eigen::MatrixXd by = WhitenedRows(misfit.by, misfit, 0, fitted_only);
   const auto left = [&](const LinearisedMisfit& there) -> Eigen::VectorXd {
-    return WhitenedRows(there.residual + change, misfit, 0, false);
+    return WhitenedRows(there.residual + change, misfit, 0, fitted_only);
   };
   // The derivatives hardly change on the way: a few steps with the same ones.
   Eigen::VectorXd best = values;

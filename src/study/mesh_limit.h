@@ -3,15 +3,18 @@
 #define LACUNA_STUDY_MESH_LIMIT_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "study/calibration_problem.h"
 
 namespace lacuna {
 
-// What the study would be fitted to with elements as fine as can be, and with the held-out frames,
-// which evidence counts too: what finer elements and effects change is best known there
-// (nuisance_candidates.h). `values` where those cannot be simulated. Throws Interrupted.
-Eigen::VectorXd AtMeshLimit(const CalibrationProblem& problem, const Eigen::VectorXd& values);
+// What the study would be fitted to with elements as fine as can be, sought from `values`: to its
+// fitted frames, or to the held-out ones, too, as evidence counts them (what finer elements and
+// effects change is best known there, nuisance_candidates.h). Nothing where there are no finer
+// elements, as of a mesh that was given, or where they cannot be simulated. Throws Interrupted.
+std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
+                                           const Eigen::VectorXd& values, bool fitted_only);
 
 }  // namespace lacuna
 

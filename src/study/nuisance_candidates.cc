@@ -185,7 +185,7 @@ Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::Vec
       CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
   const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
   problem.SetModel(values);  // the refined model shares its effects
-  if (fine.size() != coarse.size()) return {};
+  if (fine.size() != coarse.size() || fine == coarse) return {};
   return MeshLimit(ratio) * (fine - coarse);
 }
 

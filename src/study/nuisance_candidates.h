@@ -58,7 +58,7 @@ std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& pr
                                                     const LinearisedMisfit& misfit);
 
 // By how much elements as fine as can be would change the residual, to the best of what one finer
-// mesh tells; with steps so many times as long. Empty where it cannot be simulated.
+// mesh tells; with steps so many times as long. Empty where it cannot be had or simulated.
 Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                              double steps);
 

@@ -1,0 +1,60 @@
+#include "study/mesh_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "study/held_bar.h"
+#include "study/reference.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+struct BarFit {
+  PredictionStudy study;
+  CalibrationProblem problem;
+  Calibration calibration;
+
+  BarFit(const std::filesystem::path& folder, const std::string& volume)
+      : study(ReadBarStudy(folder, {{"max_volume: 1000 mm^3",
+                                     "max_volume: " + volume + ", preserve_surface: false"}})),
+        problem(study, MakeReferenceBody(study).mesh) {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    Progress progress(silent);
+    calibration = problem.FitFromStart(&progress);
+  }
+};
+
+void ReplaceInFile(const std::filesystem::path& file, const std::string& from,
+                   const std::string& to) {
+  std::ifstream before(file);
+  std::string text{std::istreambuf_iterator<char>(before), {}};
+  ASSERT_NE(text.find(from), std::string::npos);
+  text.replace(text.find(from), from.size(), to);
+  std::ofstream(file) << text;
+}
+
+TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  // Held at its face: a clamp of some depth would reach more nodes of a finer mesh.
+  ReplaceInFile(folder / "recording.yaml", "point: [0.002 m", "point: [0.00001 m");
+  const BarFit coarse(folder.Path(), "4000 mm^3"), fine(folder.Path(), "400 mm^3");
+  const Eigen::VectorXd& values = coarse.calibration.parameters;
+  const Eigen::VectorXd before = coarse.problem.Linearise(values, false).residual;
+  const auto limit = AtMeshLimit(coarse.problem, values, /*fitted_only=*/true);
+  ASSERT_TRUE(limit.has_value());
+  // A coarse mesh is stiff: its modulus is fitted too low.
+  const double missing = fine.calibration.parameters[0] - values[0];
+  EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
+  EXPECT_NEAR((*limit)[0], fine.calibration.parameters[0], 0.5 * missing);
+  const Eigen::VectorXd after = coarse.problem.Linearise(values, false).residual;
+  EXPECT_LT((after - before).norm(), 1e-6 * before.norm()) << "the problem is left as it was";
+}
+
+}  // namespace
+}  // namespace lacuna
