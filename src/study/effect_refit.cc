@@ -235,7 +235,9 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   };
   refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
-  if (effect != nullptr && !(refit.calibration.usable && refit.calibration.rms <= kMayBeAstray)) {
+  const bool arrived =
+      !refit.calibration.estimates.empty() && refit.calibration.rms <= kMayBeAstray;
+  if (effect != nullptr && !arrived) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
     const Calibration afresh = with.Fit(with.Start(), progress);
     if (afresh.parameters.size() == own) {
