@@ -20,9 +20,10 @@ void PrintParameters(const CalibrationRecord& record) {
     if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
       note +=
           fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
-    if (std::abs(ShiftByMesh(parameter)) > kMoved) {
-      note += fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ",
-                          *parameter.with_finest_mesh);
+    const double with_finest_mesh = parameter.with_finest_mesh.value_or(estimate.value);
+    if (std::abs(DeviationsTo(with_finest_mesh, estimate, parameter.log_scale)) > kMoved) {
+      note +=
+          fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
       moved = true;
     }
     fmt::print("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name, estimate.value,

@@ -86,22 +86,13 @@ class FollowerForceEffect final : public Effect {
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
-    if (convexify || weights.position == 0) return;
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<4, 1>(at, weights.position, tangent);
-    } else {
-      AddStiffness<10, 1>(at, weights.position, tangent);
-    }
+    if (!convexify && weights.position != 0) AddStiffness<1>(at, weights.position, tangent);
   }
 
   bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
                        BlockMatrix* tangent) const override {
     if (weights.position == 0 || parameters_.head<3>().isZero(0)) return false;
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<4, -1>(at, weights.position, tangent);
-    } else {
-      AddStiffness<10, -1>(at, weights.position, tangent);
-    }
+    AddStiffness<-1>(at, weights.position, tangent);
     return true;
   }
 
@@ -216,7 +207,16 @@ class FollowerForceEffect final : public Effect {
   }
 
   // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
-  template <int kNodes, int kMirror>
+  template <int kMirror>
+  void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<kMirror, 4>(at, scale, tangent);
+    } else {
+      AddStiffness<kMirror, 10>(at, scale, tangent);
+    }
+  }
+
+  template <int kMirror, int kNodes>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
     const auto spread = GetSpread(at.body);
     const Eigen::Vector3d at_rest = parameters_.head<3>();

@@ -113,11 +113,7 @@ class PressureEffect final : public Effect {
                    BlockMatrix* tangent) const override {
     if (convexify) return;
     const double scale = weights.position * parameters_[kPressureValue];
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<3, 1>(at, scale, tangent);
-    } else {
-      AddStiffness<6, 1>(at, scale, tangent);
-    }
+    AddStiffness<1>(at, scale, tangent);
   }
 
   // On a closed surface the pressure has a potential.
@@ -125,11 +121,7 @@ class PressureEffect final : public Effect {
                        BlockMatrix* tangent) const override {
     const double scale = weights.position * parameters_[kPressureValue];
     if (scale == 0 || Faces(at.body)->closed) return false;
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<3, -1>(at, scale, tangent);
-    } else {
-      AddStiffness<6, -1>(at, scale, tangent);
-    }
+    AddStiffness<-1>(at, scale, tangent);
     return true;
   }
 
@@ -266,7 +258,16 @@ class PressureEffect final : public Effect {
   }
 
   // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
-  template <int kNodes, int kMirror>
+  template <int kMirror>
+  void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
+    if (at.body.mesh.Order() == 1) {
+      AddStiffness<kMirror, 3>(at, scale, tangent);
+    } else {
+      AddStiffness<kMirror, 6>(at, scale, tangent);
+    }
+  }
+
+  template <int kMirror, int kNodes>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
     const auto faces = Faces(at.body);
     ForEachPoint<kNodes>(*faces, at.position,

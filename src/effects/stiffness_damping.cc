@@ -51,27 +51,37 @@ class StiffnessDampingEffect final : public Effect {
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddViscousForce(at, Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_)), force);
+    AddViscousForce(at, Viscosity(), force);
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     if (weights.position == 0 && weights.velocity == 0) return;
-    if (at.body.mesh.Order() == 1) {
-      AddDampingMatrix<4>(at, weights, convexify, tangent);
-    } else {
-      AddDampingMatrix<10>(at, weights, convexify, tangent);
-    }
+    const LameConstants viscosity = Viscosity();
+    AddMatrix<1>(
+        at,
+        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
+          StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
+          if (!convexify && weights.position != 0) {
+            const StressTangent by_position = PositionTangent(viscosity, F, rate);
+            C += 0.5 * weights.position * (by_position + by_position.transpose());
+          }
+          return C;
+        },
+        tangent);
   }
 
   bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
                        BlockMatrix* tangent) const override {
     if (weights.position == 0 || beta_ == 0) return false;
-    if (at.body.mesh.Order() == 1) {
-      AddSkewMatrix<4>(at, weights.position, tangent);
-    } else {
-      AddSkewMatrix<10>(at, weights.position, tangent);
-    }
+    const LameConstants viscosity = Viscosity();
+    AddMatrix<-1>(
+        at,
+        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
+          const StressTangent by_position = PositionTangent(viscosity, F, rate);
+          return StressTangent(0.5 * weights.position * (by_position - by_position.transpose()));
+        },
+        tangent);
     return true;
   }
 
@@ -128,6 +138,10 @@ class StiffnessDampingEffect final : public Effect {
     return card;
   }
 
+  LameConstants Viscosity() const {
+    return Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
+  }
+
   static LameConstants Scaled(double factor, const LameConstants& constants) {
     return {factor * constants.lambda, factor * constants.mu};
   }
@@ -160,41 +174,20 @@ class StiffnessDampingEffect final : public Effect {
     });
   }
 
-  // ∂P/∂Ḟ is symmetric. Of ∂P/∂F, which is not, the matrix takes the symmetric part; the definite
-  // stand-in drops it, as it is small beside ∂P/∂Ḟ by the strain increment of a step.
-  template <int kNodes>
-  void AddDampingMatrix(const Kinematics& at, const TangentWeights& weights, bool convexify,
-                        BlockMatrix* tangent) const {
-    const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
-    AddMatrix<kNodes, 1>(
-        at,
-        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
-          StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
-          if (!convexify && weights.position != 0) {
-            const StressTangent by_position = PositionTangent(viscosity, F, rate);
-            C += 0.5 * weights.position * (by_position + by_position.transpose());
-          }
-          return C;
-        },
-        tangent);
+  // Of C(F, Ḟ), symmetric or with kMirror = −1 skew-symmetric. ∂P/∂Ḟ is symmetric, ∂P/∂F is not.
+  // The definite stand-in drops the latter, as it is small beside ∂P/∂Ḟ by the strain increment of
+  // a step; but a strained body that turns owes its freedom from stress to both: without the skew
+  // part of ∂P/∂F the derivative of its strain is braked by the turn.
+  template <int kMirror, typename Moduli>
+  static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
+    if (at.body.mesh.Order() == 1) {
+      AddMatrix<kMirror, 4>(at, C, tangent);
+    } else {
+      AddMatrix<kMirror, 10>(at, C, tangent);
+    }
   }
 
-  // A body that turns while it is strained owes its freedom from stress to both: without this part
-  // the derivative of a strained state is braked by the turn.
-  template <int kNodes>
-  void AddSkewMatrix(const Kinematics& at, double weight, BlockMatrix* tangent) const {
-    const LameConstants viscosity = Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));
-    AddMatrix<kNodes, -1>(
-        at,
-        [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
-          const StressTangent by_position = PositionTangent(viscosity, F, rate);
-          return StressTangent(0.5 * weight * (by_position - by_position.transpose()));
-        },
-        tangent);
-  }
-
-  // Of C(F, Ḟ), symmetric or with kMirror = −1 skew-symmetric.
-  template <int kNodes, int kMirror, typename Moduli>
+  template <int kMirror, int kNodes, typename Moduli>
   static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {

@@ -202,8 +202,9 @@ struct TangentLinear::Implementation {
                         Eigen::MatrixXd* right) {
     by_rate.SetZero();
     for (size_t j = 0; j < model.effects.size(); ++j) {
-      model.effects[j]->AddTangents(equation.At(end, j), weights, false, &by_rate);
-      model.effects[j]->AddSkewTangents(equation.At(end, j), weights, &by_rate);
+      const Kinematics at = equation.At(end, j);
+      model.effects[j]->AddTangents(at, weights, false, &by_rate);
+      model.effects[j]->AddSkewTangents(at, weights, &by_rate);
     }
     const double* values = by_rate.values();
     if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
@@ -246,9 +247,10 @@ struct TangentLinear::Implementation {
   // symmetric part; where that is not definite, or too far from the sum, its stand-in.
   std::optional<Eigen::MatrixXd> Solve(const StepEquation& equation, const Eigen::VectorXd& at,
                                        bool has_skew, Eigen::MatrixXd right) {
+    const bool is_definite = factor.Factorise(tangent);
+    if (is_definite && !has_skew) return SolveFree(right);
     ClearFixed(&right);
-    if (factor.Factorise(tangent)) {
-      if (!has_skew) return SolveFree(right);
+    if (is_definite) {
       // What the skew part does hardly changes from one step to the next.
       Eigen::MatrixXd expected = position;
       if (previous_position.size() > 0) expected += position - previous_position;

@@ -262,6 +262,13 @@ void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
 
 }  // namespace
 
+double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale) {
+  const double change =
+      log_scale && other > 0 ? std::log(other / estimate.value) : other - estimate.value;
+  if (estimate.posterior_deviation > 0) return change / estimate.posterior_deviation;
+  return change == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), change);
+}
+
 double RootMeanSquare(const Eigen::VectorXd& residual) {
   return residual.size() > 0 ? residual.norm() / std::sqrt(static_cast<double>(residual.size()))
                              : 0;
@@ -329,9 +336,9 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
       ceres::Solve(solver, &problem, &summary);
       calibration.iterations += static_cast<int>(summary.iterations.size()) - 1;
       calibration.usable = summary.termination_type == ceres::CONVERGENCE;
+      calibration.message = calibration.usable ? "" : summary.message;
       solver.initial_trust_region_radius =
           std::min(kFirstRadius, kWidened * summary.iterations.back().trust_region_radius);
-      calibration.message = calibration.usable ? "" : summary.message;
     };
     bool ended = false;
     double cost = CostOf(first, parameters, calibration.parameters);
@@ -340,8 +347,9 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
       predictions.FollowSecants(true);
       solve();
       predictions.FollowSecants(false);
-      const Prediction& end = predictions.ExactAt(values());
-      const double left = CostOf(end, parameters, values());
+      const Eigen::VectorXd at = values();
+      const Prediction& end = predictions.ExactAt(at);
+      const double left = CostOf(end, parameters, at);
       // A round begins with an exact Jacobian: where it gains nothing, a step that promises more
       // leads along a valley that is not straight.
       ended = calibration.iterations >= options.max_iterations || !end.usable ||

@@ -69,6 +69,10 @@ struct ParameterEstimate {
   double correlation = 0;   // with it
 };
 
+// From the estimate to another value, in its posterior deviations (of φ); infinite where it has
+// none and the other value is not the same.
+double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale);
+
 struct Calibration {
   bool usable = false;
   std::string message;

@@ -60,12 +60,10 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
 double LargestChange(const std::vector<CalibratedParameter>& parameters,
                      const Calibration& calibration, const Eigen::VectorXd& from) {
   double largest = 0;
-  for (size_t k = 0; k < parameters.size(); ++k) {
-    const Eigen::Index at = static_cast<Eigen::Index>(k);
-    const double to = calibration.parameters[at];
-    const double change = parameters[k].log_scale ? std::log(to / from[at]) : to - from[at];
-    largest = std::max(largest, std::abs(change) / calibration.estimates[k].posterior_deviation);
-  }
+  for (size_t k = 0; k < parameters.size(); ++k)
+    largest = std::max(
+        largest, std::abs(DeviationsTo(from[static_cast<Eigen::Index>(k)], calibration.estimates[k],
+                                       parameters[k].log_scale)));
   return largest;
 }
 

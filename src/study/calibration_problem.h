@@ -38,6 +38,9 @@ struct LinearisedMisfit {
 
 // σ: a fit that leaves more may have ended at the wrong place.
 inline constexpr double kMayBeAstray = 2;
+// σ: a model that leaves more is far from the truth, and has other troubles than its elements'
+// size.
+inline constexpr double kFarOff = 3;
 
 class CalibrationProblem {
  public:

@@ -149,13 +149,6 @@ CalibrationRecord FromJson(const json& value) {
 
 }  // namespace
 
-double ShiftByMesh(const FittedParameter& parameter) {
-  if (!parameter.with_finest_mesh) return 0;
-  const double value = parameter.estimate.value, there = *parameter.with_finest_mesh;
-  const double shift = parameter.log_scale ? std::log(there / value) : there - value;
-  return shift / parameter.estimate.posterior_deviation;
-}
-
 std::string VerdictName(Verdict verdict) {
   for (const auto& [value, name] : VerdictNames())
     if (value == verdict) return name;

@@ -22,9 +22,6 @@ struct FittedParameter {
   std::optional<double> with_finest_mesh;
 };
 
-// By how many of its standard deviations the size of the elements moves a parameter; 0: not known.
-double ShiftByMesh(const FittedParameter& parameter);
-
 // Of a recording of scans.
 struct FittedScan {
   Eigen::Matrix3Xd places;  // of the patches on the undeformed object, m

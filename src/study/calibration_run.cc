@@ -18,8 +18,6 @@ namespace {
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
 constexpr int kCalibrationVersion = 5;
-// A model that leaves more than so many σ has other troubles than the size of its elements.
-constexpr double kFarOff = 3;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -68,17 +66,16 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       record.recordings.back().scan =
           DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
   }
+  record.strains = Strains(problem, calibration.parameters, misfits);
+  stage.misfit = MisfitTable(problem, misfits);
+  progress->End();
   if (calibration.rms <= kFarOff) {
     progress->Begin("finer elements", 0);
     if (const auto limit = AtMeshLimit(problem, calibration.parameters, /*fitted_only=*/true))
       for (size_t k = 0; k < record.parameters.size(); ++k)
         record.parameters[k].with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
-    problem.SetModel(calibration.parameters);
     progress->End();
   }
-  record.strains = Strains(problem, calibration.parameters, misfits);
-  stage.misfit = MisfitTable(problem, misfits);
-  progress->End();
   return stage;
 }
 

@@ -25,9 +25,8 @@ constexpr double kCloseBehind = 5;
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
 
-// A model that leaves more than so many σ is far from the truth: it is looked at early, too, before
-// it has gone astray, over this part of the fitted time.
-constexpr double kFarOff = 3;
+// A model that is far off is looked at early, too, before it has gone astray, over this part of the
+// fitted time.
 constexpr double kEarly = 0.25;
 
 double InNoise(const FittedHypothesis& hypothesis) {

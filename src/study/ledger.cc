@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -140,13 +139,7 @@ std::vector<ParameterMove> MovesBetween(const CalibrationRecord& before,
     move.added = same == before.parameters.end();
     if (!move.added) {
       move.before = same->estimate.value;
-      const double change = same->log_scale && move.after > 0 ? std::log(move.after / move.before)
-                                                              : move.after - move.before;
-      const double deviation = same->estimate.posterior_deviation;
-      move.in_deviations = deviation > 0 ? change / deviation
-                           : change == 0
-                               ? 0
-                               : std::copysign(std::numeric_limits<double>::infinity(), change);
+      move.in_deviations = DeviationsTo(move.after, same->estimate, same->log_scale);
     }
     moves.push_back(move);
   }

@@ -8,7 +8,7 @@ namespace lacuna {
 namespace {
 
 // What the mesh changes is taken from time steps so many times as long, to find where its limit
-// would be fitted: it is simulated again from there with the right ones.
+// would be fitted; a diagnosis simulates it again from there with the right ones.
 constexpr double kLongSteps = 3;
 constexpr int kMostStepsToLimit = 4;
 constexpr double kAtLimit = 1;  // of ‖r‖², that a step no longer gains
@@ -40,6 +40,7 @@ std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
     here = next;
     if (gain < kAtLimit) break;
   }
+  problem.SetModel(values);
   return best;
 }
 
