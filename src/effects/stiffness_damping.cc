@@ -51,20 +51,21 @@ class StiffnessDampingEffect final : public Effect {
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddViscousForce(at, Viscosity(), force);
+    if (!IsAtRest(at)) AddViscousForce(at, Viscosity(), force);
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
-    if (weights.position == 0 && weights.velocity == 0) return;
+    const bool by_position = !convexify && weights.position != 0 && !IsAtRest(at);
+    if (!by_position && weights.velocity == 0) return;
     const LameConstants viscosity = Viscosity();
     AddMatrix<1>(
         at,
         [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
           StressTangent C = weights.velocity * RateTangent(viscosity, F, F);
-          if (!convexify && weights.position != 0) {
-            const StressTangent by_position = PositionTangent(viscosity, F, rate);
-            C += 0.5 * weights.position * (by_position + by_position.transpose());
+          if (by_position) {
+            const StressTangent D = PositionTangent(viscosity, F, rate);
+            C += 0.5 * weights.position * (D + D.transpose());
           }
           return C;
         },
@@ -73,13 +74,13 @@ class StiffnessDampingEffect final : public Effect {
 
   bool AddSkewTangents(const Kinematics& at, const TangentWeights& weights,
                        BlockMatrix* tangent) const override {
-    if (weights.position == 0 || beta_ == 0) return false;
+    if (weights.position == 0 || beta_ == 0 || IsAtRest(at)) return false;
     const LameConstants viscosity = Viscosity();
     AddMatrix<-1>(
         at,
         [&](const Eigen::Matrix3d& F, const Eigen::Matrix3d& rate) {
-          const StressTangent by_position = PositionTangent(viscosity, F, rate);
-          return StressTangent(0.5 * weights.position * (by_position - by_position.transpose()));
+          const StressTangent D = PositionTangent(viscosity, F, rate);
+          return StressTangent(0.5 * weights.position * (D - D.transpose()));
         },
         tangent);
     return true;
@@ -137,6 +138,9 @@ class StiffnessDampingEffect final : public Effect {
     }
     return card;
   }
+
+  // As in statics: nothing is damped, whatever the strain.
+  static bool IsAtRest(const Kinematics& at) { return at.velocity.isZero(0); }
 
   LameConstants Viscosity() const {
     return Scaled(beta_, LameFromYoung(young_modulus_, poisson_ratio_));

@@ -15,6 +15,25 @@ PredictionSummary Stopped(PredictionSummary summary, const std::string& why) {
   return summary;
 }
 
+// To better than the steps: it does not matter from where it was sought.
+constexpr double kHoldTolerance = 0.01;
+
+StepSummary Hold(const Model& model, const PredictionOptions& options, MotionHistory* history) {
+  StepOptions step = options.step;
+  step.relative_tolerance *= kHoldTolerance;
+  Stepper stepper(model, step);
+  if (options.held_guess.size() > 0) {
+    MotionHistory near = *history;
+    near.position = options.held_guess;
+    const StepSummary held = stepper.Equilibrium(options.held_force, &near);
+    if (held.IsUsable()) {
+      *history = near;
+      return held;
+    }
+  }
+  return stepper.Equilibrium(options.held_force, history);
+}
+
 }  // namespace
 
 PredictionSummary Predict(
@@ -30,9 +49,10 @@ PredictionSummary Predict(
   history.time = options.start_time;
 
   MotionHistory before = history;
-  const StepSummary equilibrium = stepper.Equilibrium(options.held_force, &history);
+  const StepSummary equilibrium = Hold(model, options, &history);
   if (!equilibrium.IsUsable())
     return Stopped(summary, "no equilibrium to start from: " + equilibrium.message);
+  summary.held = history.position;
   TangentLinearSummary linearised =
       linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position);
   if (!linearised.IsUsable()) return Stopped(summary, linearised.message);

@@ -21,7 +21,10 @@ struct PredictionOptions {
   // `held_force`; from then on it moves without `held_force`.
   double start_time = 0;            // s
   Eigen::VectorXd held_force = {};  // 3n, N; empty: none
-  double time_step = 0.005;         // s; smaller: slower, more accurate by its square
+  // 3n, m: where the equilibrium is sought, near it a tenth of the work; empty, or where it is not
+  // found from there: from the rest shape.
+  Eigen::VectorXd held_guess = {};
+  double time_step = 0.005;  // s; smaller: slower, more accurate by its square
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
 };
 
@@ -40,7 +43,8 @@ struct PredictionSummary {
   Status status = Status::kNotRun;
   std::string message;  // why it stopped, and when
   int steps = 0;
-  int states = 0;  // visited, of those asked for
+  int states = 0;        // visited, of those asked for
+  Eigen::VectorXd held;  // 3n, m: the equilibrium
   bool IsUsable() const { return status == Status::kReached; }
 };
 

@@ -179,7 +179,8 @@ double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
                                const std::vector<Observed>* observed) const {
-  const PredictionOptions options = Options(nuisance);
+  PredictionOptions options = Options(nuisance);
+  options.held_guess = held_;
   const double late = Delay(nuisance);
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
@@ -231,6 +232,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         misfit.frames.push_back(frame);
         misfit.observed.push_back(std::move(seen));
       });
+  if (misfit.summary.held.size() > 0) held_ = misfit.summary.held;
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
   misfit.by.conservativeResize(reached, Eigen::NoChange);

@@ -89,6 +89,7 @@ class RecordingModel {
   std::unique_ptr<const Observer> observer_;
   double shown_ = 0;  // share of the first scan's points that the undeformed surface has
   std::vector<Nuisance> nuisances_;
+  mutable Eigen::VectorXd held_;  // 3n, m: the last equilibrium; the next one is sought from there
 };
 
 // A recording's noise, m, in these frames (ascending). Of markers: of a coordinate, from how they

@@ -181,6 +181,25 @@ void ExpectDerivative(HeldBar* bar, const Perturbation& perturbation, double ste
   }
 }
 
+TEST(Prediction, DoesNotTellWhereItsEquilibriumWasSought) {
+  HeldBar bar;
+  bar.options.step = {.scheme = TimeScheme::kTwoStep, .relative_tolerance = 1e-6};
+  const std::vector<double> times = {kStart, kStart + 0.05, kStart + 0.1};
+  const Visited from_rest = bar.Run(times);
+  ASSERT_TRUE(from_rest.summary.IsUsable()) << from_rest.summary.message;
+  EXPECT_EQ(from_rest.summary.held, from_rest.position[0]);
+
+  HeldBar softer;
+  softer.effects[0] = MakeEffect("neo_hookean", {{"young_modulus", 4e4}, {"poisson_ratio", 0.4}});
+  bar.options.held_guess = softer.Run(times).summary.held;
+  ASSERT_GT((bar.options.held_guess - from_rest.position[0]).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT(HeldBar::LargestDistance(bar.Run(times), from_rest), 1e-8);
+
+  // Inside out: nothing is found from there.
+  bar.options.held_guess = -from_rest.position[0];
+  EXPECT_LT(HeldBar::LargestDistance(bar.Run(times), from_rest), 1e-8);
+}
+
 TEST(Prediction, SensitivityToTheHoldAgreesWithDifferences) {
   HeldBar bar;
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(bar.pull.size());
