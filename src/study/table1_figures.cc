@@ -18,8 +18,8 @@
 namespace lacuna {
 namespace {
 
-const Eigen::Vector3d kScanColour(0.15, 0.2, 0.3), kSkinColour(0.62, 0.72, 0.84),
-    kInnerColour(0.95, 0.72, 0.42), kRemovedColour(0.85, 0.15, 0.1);
+const Eigen::Vector3d kScanColour(0.15, 0.2, 0.3), kFaintColour(0.74, 0.78, 0.84),
+    kSkinColour(0.62, 0.72, 0.84), kInnerColour(0.95, 0.72, 0.42), kRemovedColour(0.85, 0.15, 0.1);
 constexpr double kDeg = 180 / M_PI;
 
 std::string TextOf(const std::filesystem::path& file) {
@@ -217,14 +217,14 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings) {
   constexpr Eigen::Index kArrows = 90;
-  constexpr double kArrowRadius = 0.004;  // of the body's size
+  constexpr double kArrowRadius = 0.007;  // of the body's size
   FigureContent figure;
   figure.options = SideView(1800, 820);
   figure.picture.title =
       "Figure 5: registered displacement (above) and simulation under fitted forces (below)";
   figure.picture.columns = static_cast<int>(settings.bend_frames.size());
   figure.picture.value_name = "shift mm";
-  figure.picture.legend = {{kScanColour, "surface of the scan"}};
+  figure.picture.legend = {{kFaintColour, "surface of the scan"}};
   figure.text =
       "Figure 5: displacements from the first frame, mm; distance of the simulated surface from\n"
       "the scan's points, mm\n"
@@ -246,6 +246,7 @@ FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
     Panel above, below;
     above.title = fmt::format("frame {}, {:.2f} s", frame, state.time);
     above.surfaces.push_back(EdgesOf(state.surface));
+    above.surfaces.back().colour = kFaintColour;
     PanelSurface arrows;
     arrows.mesh =
         ArrowMesh(at_rest(Eigen::all, shown), shift(Eigen::all, shown), kArrowRadius * size);
