@@ -13,16 +13,6 @@
 namespace lacuna {
 namespace {
 
-// Share of the fitted time that is fitted first.
-constexpr double kShortHorizon = 0.25;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-// A fit that may be astray is tried from these parts of the moduli's start values.
-constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
-// Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
-// wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
-// its posterior deviation.
-constexpr int kIterationsOfRound = 12;
-constexpr double kSettled = 0.1;
 // Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
 constexpr double kFewestMatched = 0.5;
 
@@ -54,17 +44,6 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
       "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
       "surface: start nearer to the solution, or enlarge the reach",
       lost, misfit.frames.size());
-}
-
-// Of any parameter, in parts of its posterior deviation.
-double LargestChange(const std::vector<CalibratedParameter>& parameters,
-                     const Calibration& calibration, const Eigen::VectorXd& from) {
-  double largest = 0;
-  for (size_t k = 0; k < parameters.size(); ++k)
-    largest = std::max(
-        largest, std::abs(DeviationsTo(from[static_cast<Eigen::Index>(k)], calibration.estimates[k],
-                                       parameters[k].log_scale)));
-  return largest;
 }
 
 }  // namespace
@@ -146,7 +125,7 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
                                        double horizon) const {
   Correspondences found;
-  return PredictWith(values, with_jacobian, horizon, &found);
+  return Predict(values, with_jacobian, horizon, &found);
 }
 
 std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
@@ -172,8 +151,8 @@ Eigen::MatrixXd CalibrationProblem::ColumnsOf(size_t recording,
   return columns;
 }
 
-Prediction CalibrationProblem::PredictWith(const Eigen::VectorXd& values, bool with_jacobian,
-                                           double horizon, Correspondences* correspondences) const {
+Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                                       double horizon, Correspondences* correspondences) const {
   ThrowIfInterrupted();
   SetModel(values);
   Prediction all;
@@ -268,143 +247,6 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
   }
   all.usable = true;
   return all;
-}
-
-Calibration CalibrationProblem::FitOver(double horizon, const Eigen::VectorXd& start,
-                                        const CalibrationOptions& options, Progress* progress,
-                                        int* evaluations) const {
-  Calibration calibration;
-  std::vector<CalibratedParameter> parameters = parameters_;
-  Eigen::VectorXd values = start;
-  CalibrationOptions of_round = options;
-  for (int iterations = 0; iterations < options.max_iterations;) {
-    if (HasScans())
-      of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
-    for (size_t k = 0; k < parameters.size(); ++k)
-      parameters[k].start =
-          std::clamp(values[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
-    Correspondences correspondences;
-    calibration = Calibrate(
-        parameters,
-        [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction = PredictWith(at, with_jacobian, horizon, &correspondences);
-          progress->Report(++*evaluations,
-                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
-          return prediction;
-        },
-        of_round);
-    if (!HasScans() || calibration.estimates.empty()) return calibration;
-    const double moved = LargestChange(parameters_, calibration, values);
-    values = calibration.parameters;
-    if (moved < kSettled) {
-      // A round need not have converged to the last digit when all of it changed so little.
-      calibration.usable = true;
-      calibration.message.clear();
-      return calibration;
-    }
-    iterations += std::max(calibration.iterations, 1);
-  }
-  calibration.usable = false;
-  calibration.message =
-      "scanned points and places of the surface did not settle: start nearer to the solution, fit "
-      "less at once, or give scan.reach a smaller value";
-  return calibration;
-}
-
-double CalibrationProblem::LongestFitted() const {
-  double longest = 0;
-  for (const RecordingModel& model : models_) {
-    const std::vector<int> frames = model.FittedFrames();
-    const std::vector<double>& times = model.item().recording.times;
-    if (frames.empty()) continue;
-    longest = std::max(longest, times[frames.back()] - model.item().StartTime());
-  }
-  return longest;
-}
-
-Calibration CalibrationProblem::FitStage(const std::string& name, double horizon,
-                                         const Eigen::VectorXd& start,
-                                         const CalibrationOptions& options, Progress* progress,
-                                         int* evaluations) const {
-  progress->Begin(name, 0);
-  Calibration calibration = FitOver(horizon, start, options, progress, evaluations);
-  progress->Report(*evaluations, calibration.rms);  // not of the last values tried
-  progress->End(calibration.message);
-  calibration.predictions = *evaluations;
-  return calibration;
-}
-
-Calibration CalibrationProblem::FitBeginning(const Eigen::VectorXd& start,
-                                             Progress* progress) const {
-  int evaluations = 0;
-  const Calibration calibration = FitStage("fit, first part", kShortHorizon * LongestFitted(),
-                                           start, {}, progress, &evaluations);
-  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
-  return calibration;
-}
-
-Calibration CalibrationProblem::FitWhole(const Eigen::VectorXd& start, const Calibration& beginning,
-                                         Progress* progress) const {
-  int evaluations = beginning.predictions;
-  const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
-  Calibration calibration =
-      FitStage("fit", kUnlimited, near, {.near_rms = kMayBeAstray}, progress, &evaluations);
-  // "Before" is where the caller started, not where the first part ended.
-  const Prediction before = Predict(start, /*with_jacobian=*/false);
-  calibration.start_rms = before.usable ? RootMeanSquare(before.residual) : kUnlimited;
-  SetModel(calibration.parameters.size() > 0 ? calibration.parameters : near);
-  return calibration;
-}
-
-Calibration CalibrationProblem::Fit(const Eigen::VectorXd& start, Progress* progress) const {
-  return FitWhole(start, FitBeginning(start, progress), progress);
-}
-
-Calibration CalibrationProblem::FitOn(const Eigen::VectorXd& start, Progress* progress) const {
-  int evaluations = 0;
-  const Calibration calibration =
-      FitStage("fit", kUnlimited, start, {.near_rms = kUnlimited}, progress, &evaluations);
-  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
-  return calibration;
-}
-
-Calibration CalibrationProblem::FitFromStart(Progress* progress,
-                                             const Calibration* beginning) const {
-  Calibration calibration =
-      beginning != nullptr ? FitWhole(Start(), *beginning, progress) : Fit(Start(), progress);
-  if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;
-  const auto is_modulus = [&](size_t k) {
-    return parameters_[k].log_scale && study_.fitted[k].unit == "Pa";
-  };
-  int evaluations = calibration.predictions;
-  double least = calibration.usable ? calibration.rms : kUnlimited;
-  Eigen::VectorXd nearest;
-  for (const double factor : kOtherStarts) {
-    Eigen::VectorXd start = Start();
-    for (size_t k = 0; k < study_.fitted.size(); ++k)
-      if (is_modulus(k)) start[static_cast<Eigen::Index>(k)] *= factor;
-    if (start == Start()) return calibration;
-    const Calibration first =
-        FitStage(fmt::format("fit, moduli from {:g} of their start", factor),
-                 kShortHorizon * LongestFitted(), start, {}, progress, &evaluations);
-    const Prediction whole =
-        first.estimates.empty() ? Prediction{} : Predict(first.parameters, false);
-    const double left = whole.usable ? RootMeanSquare(whole.residual) : kUnlimited;
-    if (left >= least) continue;
-    least = left;
-    nearest = first.parameters;
-  }
-  if (nearest.size() > 0) {
-    Calibration other = Fit(nearest, progress);
-    if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
-      evaluations += other.predictions;
-      other.start_rms = calibration.start_rms;
-      calibration = std::move(other);
-    }
-  }
-  calibration.predictions = evaluations;
-  if (calibration.parameters.size() > 0) SetModel(calibration.parameters);
-  return calibration;
 }
 
 }  // namespace lacuna

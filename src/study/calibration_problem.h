@@ -1,5 +1,5 @@
-// The fit of a prediction study: its model's parameters, and what each recording leaves open, to
-// the frames that are fitted.
+// What is fitted of a prediction study, its model's parameters and what each recording leaves open,
+// and what they leave of the frames that are fitted (calibration_fits.h: how they are found).
 #ifndef LACUNA_STUDY_CALIBRATION_PROBLEM_H_
 #define LACUNA_STUDY_CALIBRATION_PROBLEM_H_
 
@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "analysis/series_noise.h"
-#include "core/progress.h"
 #include "fit/calibration.h"
 #include "study/measurement_errors.h"
 #include "study/predicted_motion.h"
@@ -75,31 +74,18 @@ class CalibrationProblem {
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
                      double horizon = std::numeric_limits<double>::infinity()) const;
 
+  // Of each fitted recording, what its frames are compared with; empty: found while predicting.
+  using Correspondences = std::vector<std::vector<Observed>>;
+  Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
+                     Correspondences* correspondences) const;
+
   // `directions` are those of each recording alike; without a Jacobian only the residual is there.
   // Compared with what `same`, where given, was compared with.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                              const std::vector<MisfitDirection>& directions = {},
                              const LinearisedMisfit* same = nullptr) const;
 
-  // First over a short horizon, where a wrong model is least wrong, then over all fitted frames. Of
-  // scans, the points' places on the surface are kept during a fit and sought again after it, until
-  // the parameters settle; where they do not, the result is not usable.
-  Calibration Fit(const Eigen::VectorXd& start, Progress* progress) const;
-  Calibration FitBeginning(const Eigen::VectorXd& start, Progress* progress) const;
-
-  // Over all fitted frames at once, from near the solution.
-  Calibration FitOn(const Eigen::VectorXd& start, Progress* progress) const;
-
-  // From Start(). A fit from far away may end where it is off by a period of a vibration: where it
-  // leaves far more than noise, the moduli are started from elsewhere too, and the best is kept.
-  // `beginning`: its first part, where that has been fitted before.
-  Calibration FitFromStart(Progress* progress, const Calibration* beginning = nullptr) const;
-
  private:
-  // Of each fitted recording, what its frames are compared with; empty: found while predicting.
-  using Correspondences = std::vector<std::vector<Observed>>;
-  Prediction PredictWith(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
-                         Correspondences* correspondences) const;
   // What a recording's Misfit is differentiated by: the places of the study's parameters,
   // `further`, the recording's own nuisances; and those columns as ∂/∂(parameters), then by
   // `further` of them.
@@ -107,15 +93,6 @@ class CalibrationProblem {
                                              const std::vector<MisfitDirection>& further) const;
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
-  double LongestFitted() const;  // s, of any recording after its start
-  Calibration FitWhole(const Eigen::VectorXd& start, const Calibration& beginning,
-                       Progress* progress) const;
-  Calibration FitStage(const std::string& name, double horizon, const Eigen::VectorXd& start,
-                       const CalibrationOptions& options, Progress* progress,
-                       int* evaluations) const;
-  Calibration FitOver(double horizon, const Eigen::VectorXd& start,
-                      const CalibrationOptions& options, Progress* progress,
-                      int* evaluations) const;
 
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/atomic_file.h"
+#include "study/calibration_fits.h"
 #include "study/mesh_limit.h"
 #include "study/verdict.h"
 
@@ -60,7 +61,7 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
                                     const std::vector<std::string>& without, Progress* progress) {
   const PredictionStudy early = EarlyPart(problem);
   const CalibrationProblem of_early(early, problem.body()->mesh);
-  const Calibration first = of_early.FitFromStart(progress);
+  const Calibration first = FitFromStart(of_early, progress);
   std::vector<ScoredEffect> found;
   if (first.parameters.size() == values.size())
     found = RankEffects(of_early, first.parameters, progress, without).effects;

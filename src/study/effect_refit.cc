@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/calibration_fits.h"
 #include "study/model_change.h"
 #include "study/recording_misfit.h"
 
@@ -239,7 +240,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
       !refit.calibration.estimates.empty() && refit.calibration.rms <= kMayBeAstray;
   if (effect != nullptr && !arrived) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
-    const Calibration afresh = with.Fit(with.Start(), progress);
+    const Calibration afresh = FitFrom(with, with.Start(), progress);
     if (afresh.parameters.size() == own) {
       start.head(own) = afresh.parameters;
       progress->Begin("refit " + effect->candidate.type + " from there", 0);

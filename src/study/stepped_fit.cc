@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "study/calibration_fits.h"
+
 namespace lacuna {
 namespace {
 
@@ -58,7 +60,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
-      beginning = problem.FitBeginning(problem.Start(), progress);
+      beginning = FitBeginning(problem, problem.Start(), progress);
       further = problem.WithGivenNoise();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
@@ -74,8 +76,8 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = fit.calibration.usable;
       const bool has_begun = tried == 1 && beginning.usable;
-      fit.calibration = goes_on ? problem.FitOn(fit.calibration.parameters, progress)
-                                : problem.FitFromStart(progress, has_begun ? &beginning : nullptr);
+      fit.calibration = goes_on ? FitOn(problem, fit.calibration.parameters, progress)
+                                : FitFromStart(problem, progress, has_begun ? &beginning : nullptr);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;

@@ -11,6 +11,7 @@
 #include "core/blas_kernels.h"
 #include "core/error.h"
 #include "core/logging.h"
+#include "study/calibration_fits.h"
 #include "study/effect_ranking.h"
 #include "study/nuisance_candidates.h"
 #include "study/reference.h"
@@ -36,7 +37,7 @@ int Run(const std::string& file, int repeats) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const Eigen::VectorXd values = problem.FitFromStart(&progress).parameters;
+  const Eigen::VectorXd values = FitFromStart(problem, &progress).parameters;
   std::vector<double> forward, nuisances, ranking;
   for (int k = 0; k < repeats; ++k) {
     LinearisedMisfit misfit;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "study/calibration_fits.h"
 #include "study/effect_ranking.h"
 #include "study/held_bar.h"
 #include "study/recording_misfit.h"
@@ -22,7 +23,7 @@ Calibration FitOf(const CalibrationProblem& problem) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  return problem.FitFromStart(&progress);
+  return FitFromStart(problem, &progress);
 }
 
 TEST(CalibrationProblem, JacobianAgreesWithDifferences) {

@@ -10,6 +10,7 @@
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/embedding.h"
+#include "study/calibration_fits.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -149,7 +150,7 @@ Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const Calibration calibration = problem.FitFromStart(&progress);
+  const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   return Diagnose(problem, calibration.parameters, options, &progress);
 }

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "study/calibration_fits.h"
 #include "study/held_bar.h"
 #include "study/reference.h"
 #include "support/temporary_folder.h"
@@ -25,7 +26,7 @@ struct BarFit {
     ProgressOptions silent;
     silent.style = ProgressStyle::kSilent;
     Progress progress(silent);
-    calibration = problem.FitFromStart(&progress);
+    calibration = FitFromStart(problem, &progress);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/parallel.h"
+#include "study/calibration_fits.h"
 #include "study/calibration_run.h"
 #include "study/comparison.h"
 #include "study/scanned_bar.h"
@@ -30,7 +31,7 @@ Calibration FitOf(const CalibrationProblem& problem) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  return problem.FitFromStart(&progress);
+  return FitFromStart(problem, &progress);
 }
 
 std::string MessageOf(const std::function<void()>& action) {

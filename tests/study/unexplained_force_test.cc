@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "study/calibration_fits.h"
 #include "study/calibration_problem.h"
 #include "study/held_bar.h"
 #include "support/temporary_folder.h"
@@ -26,7 +27,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const Calibration calibration = problem.FitFromStart(&progress);
+  const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
   problem.SetModel(calibration.parameters);
   const RecordingModel& model = problem.models()[0];

@@ -1,0 +1,36 @@
+// How a prediction study's parameters are found: from far away, or on from near the solution.
+//
+// All fits are over the fitted frames of the fitted recordings, and leave the problem's model at
+// what they found. Of scans, the points' places on the surface are kept during a fit and sought
+// again after it, until the parameters settle; where they do not, the result is not usable.
+#ifndef LACUNA_STUDY_CALIBRATION_FITS_H_
+#define LACUNA_STUDY_CALIBRATION_FITS_H_
+
+#include <Eigen/Core>
+
+#include "core/progress.h"
+#include "study/calibration_problem.h"
+
+namespace lacuna {
+
+// Over a short horizon, where a wrong model is least wrong.
+Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                         Progress* progress);
+
+// The beginning first, then all of the fitted frames.
+Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                    Progress* progress);
+
+// All of the fitted frames at once, from near the solution.
+Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
+                  Progress* progress);
+
+// From the problem's start. A fit from far away may end where it is off by a period of a vibration:
+// where it leaves far more than noise, the moduli are started from elsewhere too, and the best is
+// kept. `beginning`: its first part, where that has been fitted before.
+Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
+                         const Calibration* beginning = nullptr);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STUDY_CALIBRATION_FITS_H_
