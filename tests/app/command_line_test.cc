@@ -187,6 +187,23 @@ TEST(CommandLine, DiagnosesTheBundledRecordingAndKeepsALedger) {
   EXPECT_THAT(Lacuna(command).said, HasSubstr("read back"));
 }
 
+// So far off that a whole step towards it overshoots.
+TEST(CommandLine, FitTellsWhatFinerElementsWouldBeFittedWith) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "near.yaml")
+      << "use: " << Experiment("hidden_effect.yaml") << "\noutput: run\n"
+      << "material: {law: neo_hookean, young_modulus: 64 kPa, poisson_ratio: 0.411}\n"
+      << "effects:\n"
+      << "  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n"
+      << "  - {type: viscoelastic_branch, modulus: 11 kPa, relaxation_time: 50 ms, "
+         "poisson_ratio: 0.411}\n"
+      << "fit: {parameters: [{name: young_modulus}, {name: poisson_ratio}, "
+         "{name: viscoelastic_branch.modulus}, {name: viscoelastic_branch.relaxation_time}]}\n";
+  const Ending fit = Lacuna("fit " + (folder / "near.yaml").string());
+  ASSERT_EQ(fit.status, 0) << fit.said;
+  EXPECT_THAT(fit.said, HasSubstr("with finer elements"));
+}
+
 // The same bar, held for as long as it is filmed.
 TEST(CommandLine, WhatNeedsMotionIsNotAddedToABarAtRest) {
   const TemporaryFolder folder;
