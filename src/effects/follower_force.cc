@@ -188,11 +188,9 @@ class FollowerForceEffect final : public Effect {
   // Σ_q share_q N_a R_q F
   void AddTurned(const Kinematics& at, const Spread& spread, const Eigen::VectorXd& share,
                  const Eigen::Vector3d& at_rest, Eigen::VectorXd* force) const {
-    if (at.body.mesh.Order() == 1) {
-      AddTurned<4>(at, spread, share, at_rest, force);
-    } else {
-      AddTurned<10>(at, spread, share, at_rest, force);
-    }
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AddTurned<decltype(nodes)::value>(at, spread, share, at_rest, force);
+    });
   }
 
   template <int kNodes>
@@ -209,11 +207,9 @@ class FollowerForceEffect final : public Effect {
   // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
   template <int kMirror>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<kMirror, 4>(at, scale, tangent);
-    } else {
-      AddStiffness<kMirror, 10>(at, scale, tangent);
-    }
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AddStiffness<kMirror, decltype(nodes)::value>(at, scale, tangent);
+    });
   }
 
   template <int kMirror, int kNodes>

@@ -82,6 +82,13 @@ struct PressedFaces {
   bool closed = false;     // all of the boundary
 };
 
+// Calls visit(std::integral_constant<int, nodes per face>).
+template <typename Visit>
+auto WithNodesPerFace(const Body& body, const Visit& visit) {
+  if (body.mesh.Order() == 1) return visit(std::integral_constant<int, 3>());
+  return visit(std::integral_constant<int, 6>());
+}
+
 class PressureEffect final : public Effect {
  public:
   enum Parameter { kPressureValue, kPoint, kNormal = kPoint + 3 };
@@ -135,9 +142,10 @@ class PressureEffect final : public Effect {
   std::optional<double> Energy(const Kinematics& at) const override {
     if (!Faces(at.body)->closed) return std::nullopt;
     const Eigen::VectorXd rest = at.body.mesh.nodes.reshaped();
-    const bool linear = at.body.mesh.Order() == 1;
-    const double growth = linear ? Volume<3>(at.body, at.position) - Volume<3>(at.body, rest)
-                                 : Volume<6>(at.body, at.position) - Volume<6>(at.body, rest);
+    const double growth = WithNodesPerFace(at.body, [&](auto nodes) {
+      constexpr int kNodes = decltype(nodes)::value;
+      return Volume<kNodes>(at.body, at.position) - Volume<kNodes>(at.body, rest);
+    });
     return parameters_[kPressureValue] * growth;
   }
 
@@ -237,11 +245,8 @@ class PressureEffect final : public Effect {
   }
 
   void AddScaledForce(const Kinematics& at, double pressure, Eigen::VectorXd* force) const {
-    if (at.body.mesh.Order() == 1) {
-      AddLoad<3>(at, pressure, force);
-    } else {
-      AddLoad<6>(at, pressure, force);
-    }
+    WithNodesPerFace(at.body,
+                     [&](auto nodes) { AddLoad<decltype(nodes)::value>(at, pressure, force); });
   }
 
   template <int kNodes>
@@ -260,11 +265,9 @@ class PressureEffect final : public Effect {
   // The symmetric part of the tangent, or with kMirror = −1 the skew-symmetric one.
   template <int kMirror>
   void AddStiffness(const Kinematics& at, double scale, BlockMatrix* tangent) const {
-    if (at.body.mesh.Order() == 1) {
-      AddStiffness<kMirror, 3>(at, scale, tangent);
-    } else {
-      AddStiffness<kMirror, 6>(at, scale, tangent);
-    }
+    WithNodesPerFace(at.body, [&](auto nodes) {
+      AddStiffness<kMirror, decltype(nodes)::value>(at, scale, tangent);
+    });
   }
 
   template <int kMirror, int kNodes>

@@ -152,11 +152,9 @@ class StiffnessDampingEffect final : public Effect {
 
   static void AddViscousForce(const Kinematics& at, const LameConstants& viscosity,
                               Eigen::VectorXd* force) {
-    if (at.body.mesh.Order() == 1) {
-      AddViscousForce<4>(at, viscosity, force);
-    } else {
-      AddViscousForce<10>(at, viscosity, force);
-    }
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AddViscousForce<decltype(nodes)::value>(at, viscosity, force);
+    });
   }
 
   template <int kNodes>
@@ -184,11 +182,8 @@ class StiffnessDampingEffect final : public Effect {
   // part of ∂P/∂F the derivative of its strain is braked by the turn.
   template <int kMirror, typename Moduli>
   static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
-    if (at.body.mesh.Order() == 1) {
-      AddMatrix<kMirror, 4>(at, C, tangent);
-    } else {
-      AddMatrix<kMirror, 10>(at, C, tangent);
-    }
+    WithNodesPerElement(
+        at.body, [&](auto nodes) { AddMatrix<kMirror, decltype(nodes)::value>(at, C, tangent); });
   }
 
   template <int kMirror, int kNodes, typename Moduli>

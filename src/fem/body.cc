@@ -135,8 +135,8 @@ Eigen::VectorXd NodeBoundaryAreas(const Body& body) {
 }
 
 int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
-  return body.mesh.Order() == 1 ? FirstInverted<4>(body, position)
-                                : FirstInverted<10>(body, position);
+  return WithNodesPerElement(
+      body, [&](auto nodes) { return FirstInverted<decltype(nodes)::value>(body, position); });
 }
 
 }  // namespace lacuna

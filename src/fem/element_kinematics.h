@@ -3,12 +3,20 @@
 #define LACUNA_FEM_ELEMENT_KINEMATICS_H_
 
 #include <Eigen/Core>
+#include <type_traits>
 
 #include "fem/block_matrix.h"
 #include "fem/body.h"
 #include "fem/stress_tangent.h"
 
 namespace lacuna {
+
+// Calls visit(std::integral_constant<int, nodes per element>).
+template <typename Visit>
+auto WithNodesPerElement(const Body& body, const Visit& visit) {
+  if (body.mesh.Order() == 1) return visit(std::integral_constant<int, 4>());
+  return visit(std::integral_constant<int, 10>());
+}
 
 template <int kNodes>
 constexpr int QuadraturePoints() {

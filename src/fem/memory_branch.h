@@ -73,11 +73,9 @@ class MemoryBranch final : public Effect {
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     if (weights.position == 0) return;
-    if (at.body.mesh.Order() == 1) {
-      AddStiffnessMatrix<4>(at, weights.position, convexify, tangent);
-    } else {
-      AddStiffnessMatrix<10>(at, weights.position, convexify, tangent);
-    }
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      AddStiffnessMatrix<decltype(nodes)::value>(at, weights.position, convexify, tangent);
+    });
   }
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
@@ -97,7 +95,8 @@ class MemoryBranch final : public Effect {
   }
 
   std::optional<double> Energy(const Kinematics& at) const override {
-    return at.body.mesh.Order() == 1 ? TotalPotential<4>(at) : TotalPotential<10>(at);
+    return WithNodesPerElement(
+        at.body, [&](auto nodes) { return TotalPotential<decltype(nodes)::value>(at); });
   }
 
   Eigen::Index StateSize(const Body& body) const override {
@@ -108,11 +107,8 @@ class MemoryBranch final : public Effect {
   }
   void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
-    if (at.body.mesh.Order() == 1) {
-      AdvanceState<4>(at, state_at_end);
-    } else {
-      AdvanceState<10>(at, state_at_end);
-    }
+    WithNodesPerElement(
+        at.body, [&](auto nodes) { AdvanceState<decltype(nodes)::value>(at, state_at_end); });
   }
 
  private:
@@ -138,11 +134,8 @@ class MemoryBranch final : public Effect {
   template <typename Stress>
   void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
     CHECK_EQ(at.state.size(), StateSize(at.body));
-    if (at.body.mesh.Order() == 1) {
-      AddNodalStress<4>(at, stress, force);
-    } else {
-      AddNodalStress<10>(at, stress, force);
-    }
+    WithNodesPerElement(
+        at.body, [&](auto nodes) { AddNodalStress<decltype(nodes)::value>(at, stress, force); });
   }
 
   template <int kNodes, typename Stress>

@@ -31,11 +31,9 @@ void AddDeformationGradients(const Body& body, const Eigen::VectorXd& position,
 
 std::vector<Eigen::Matrix3d> NodeRotations(const Body& body, const Eigen::VectorXd& position) {
   std::vector<Eigen::Matrix3d> rotations(body.NodeCount(), Eigen::Matrix3d::Zero());
-  if (body.mesh.Order() == 1) {
-    AddDeformationGradients<4>(body, position, &rotations);
-  } else {
-    AddDeformationGradients<10>(body, position, &rotations);
-  }
+  WithNodesPerElement(body, [&](auto nodes) {
+    AddDeformationGradients<decltype(nodes)::value>(body, position, &rotations);
+  });
   ParallelBlocks(body.NodeCount(), kNodesPerTask, [&](int64_t begin, int64_t end) {
     for (int64_t i = begin; i < end; ++i) {
       const double size = rotations[i].norm();

@@ -12,20 +12,12 @@
 #define LACUNA_FEM_POINT_INTEGRALS_H_
 
 #include <Eigen/Core>
-#include <type_traits>
 
 #include "fem/effect.h"
 #include "fem/element_kinematics.h"
 #include "fem/stress_tangent.h"
 
 namespace lacuna {
-
-// visit(std::integral_constant<int, nodes per element>).
-template <typename Visit>
-auto WithNodesPerElement(const Body& body, const Visit& visit) {
-  if (body.mesh.Order() == 1) return visit(std::integral_constant<int, 4>());
-  return visit(std::integral_constant<int, 10>());
-}
 
 // The deformation gradients F of a batch.
 template <int kNodes>

@@ -18,20 +18,17 @@ PredictionSummary Stopped(PredictionSummary summary, const std::string& why) {
 // To better than the steps: it does not matter from where it was sought.
 constexpr double kHoldTolerance = 0.01;
 
-StepSummary Hold(const Model& model, const PredictionOptions& options, MotionHistory* history) {
-  StepOptions step = options.step;
-  step.relative_tolerance *= kHoldTolerance;
-  Stepper stepper(model, step);
+StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHistory* history) {
   if (options.held_guess.size() > 0) {
     MotionHistory near = *history;
     near.position = options.held_guess;
-    const StepSummary held = stepper.Equilibrium(options.held_force, &near);
+    const StepSummary held = stepper->Equilibrium(options.held_force, &near, kHoldTolerance);
     if (held.IsUsable()) {
       *history = near;
       return held;
     }
   }
-  return stepper.Equilibrium(options.held_force, history);
+  return stepper->Equilibrium(options.held_force, history, kHoldTolerance);
 }
 
 }  // namespace
@@ -49,7 +46,7 @@ PredictionSummary Predict(
   history.time = options.start_time;
 
   MotionHistory before = history;
-  const StepSummary equilibrium = Hold(model, options, &history);
+  const StepSummary equilibrium = Hold(options, &stepper, &history);
   if (!equilibrium.IsUsable())
     return Stopped(summary, "no equilibrium to start from: " + equilibrium.message);
   summary.held = history.position;

@@ -71,16 +71,15 @@ struct Stepper::Implementation {
         tangent(model.body->pattern) {}
 
   NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
-                      const Eigen::VectorXd& target, Eigen::VectorXd* position) {
-    const NewtonProblem problem{equation, force, fixed, options.relative_tolerance,
-                                options.max_iterations};
+                      const Eigen::VectorXd& target, double tolerance, Eigen::VectorXd* position) {
+    const NewtonProblem problem{equation, force, fixed, tolerance, options.max_iterations};
     return SolveByNewton(problem, target, &solver, &tangent, position);
   }
 
   // From the start, where an applied force r(start) would keep the balance, to the wanted state:
   // that force is withdrawn, and the grips are moved, a fraction at a time.
   NewtonSummary SolveByIncrements(const StepEquation& equation, const Eigen::VectorXd& force,
-                                  const Eigen::VectorXd& target, int* increments,
+                                  const Eigen::VectorXd& target, double tolerance, int* increments,
                                   Eigen::VectorXd* position) {
     constexpr double kSmallestIncrement = 1.0 / 512;
     const Eigen::VectorXd start = *position;
@@ -94,8 +93,8 @@ struct Stepper::Implementation {
       const double aim = std::min(1.0, reached + increment);
       Eigen::VectorXd trial = *position;
       solver.DropFactor();
-      summary =
-          Solve(equation, force + (1 - aim) * imbalance, start + aim * (target - start), &trial);
+      summary = Solve(equation, force + (1 - aim) * imbalance, start + aim * (target - start),
+                      tolerance, &trial);
       iterations += summary.iterations;
       ++*increments;
       if (summary.IsUsable()) {
@@ -115,7 +114,7 @@ struct Stepper::Implementation {
   }
 
   StepSummary Take(TimeScheme scheme, double time_step, const Eigen::VectorXd& external_force,
-                   MotionHistory* history) {
+                   double tolerance, MotionHistory* history) {
     const Eigen::Index size = history->position.size();
     CHECK(external_force.size() == 0 || external_force.size() == size);
     const Eigen::VectorXd force =
@@ -138,7 +137,7 @@ struct Stepper::Implementation {
       if (history->acceleration.size() > 0)
         position += 0.5 * time_step * time_step * history->acceleration;
     }
-    NewtonSummary solved = Solve(equation, force, target, &position);
+    NewtonSummary solved = Solve(equation, force, target, tolerance, &position);
     const auto find_inverted = [&] {
       return options.refuse_inverted && solved.IsUsable()
                  ? FindInvertedElement(*model.body, position)
@@ -148,7 +147,8 @@ struct Stepper::Implementation {
     if (!solved.IsUsable() || inverted >= 0) {
       const int iterations = solved.iterations;
       position = history->position;
-      solved = SolveByIncrements(equation, force, target, &result.load_increments, &position);
+      solved =
+          SolveByIncrements(equation, force, target, tolerance, &result.load_increments, &position);
       solved.iterations += iterations;
       inverted = find_inverted();
     }
@@ -183,11 +183,16 @@ Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 StepSummary Stepper::Step(double time_step, const Eigen::VectorXd& external_force,
                           MotionHistory* history) {
   CHECK_GT(time_step, 0);
-  return implementation_->Take(implementation_->options.scheme, time_step, external_force, history);
+  const StepOptions& options = implementation_->options;
+  return implementation_->Take(options.scheme, time_step, external_force,
+                               options.relative_tolerance, history);
 }
 
-StepSummary Stepper::Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history) {
-  return implementation_->Take(TimeScheme::kQuasiStatic, 0, external_force, history);
+StepSummary Stepper::Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history,
+                                 double tighter) {
+  CHECK_GT(tighter, 0);
+  return implementation_->Take(TimeScheme::kQuasiStatic, 0, external_force,
+                               tighter * implementation_->options.relative_tolerance, history);
 }
 
 }  // namespace lacuna

@@ -57,8 +57,10 @@ class Stepper {
   StepSummary Step(double time_step, const Eigen::VectorXd& external_force, MotionHistory* history);
 
   // The static equilibrium under the effects and the grips at `history->time`, from the positions
-  // in `history`. On success velocities are 0 and there is no previous step.
-  StepSummary Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history);
+  // in `history`. On success velocities are 0 and there is no previous step. `tighter`: the
+  // tolerance, in parts of that of a step.
+  StepSummary Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history,
+                          double tighter = 1);
 
  private:
   struct Implementation;

@@ -11,8 +11,8 @@ namespace {
 // would be fitted; a diagnosis simulates it again from there with the right ones.
 constexpr double kLongSteps = 3;
 constexpr int kMostStepsToLimit = 8;
-constexpr double kAtLimit = 1;  // of ‖r‖², that a step no longer gains
-constexpr double kShortestStep = 1.0 / 16;
+constexpr double kAtLimit = 1;              // of ‖r‖², that a step no longer gains
+constexpr double kShortestStep = 1.0 / 16;  // of a whole one
 
 }  // namespace
 

@@ -86,10 +86,10 @@ FollowedMotion Followed(const OuterProblem& problem, const OuterParameters& para
   return motion;
 }
 
-PanelSurface EdgesOf(const TriMesh& mesh) {
+PanelSurface EdgesOf(const TriMesh& mesh, const Eigen::Vector3d& colour) {
   PanelSurface surface;
   surface.mesh = mesh;
-  surface.colour = kScanColour;
+  surface.colour = colour;
   surface.only_edges = true;
   return surface;
 }
@@ -245,8 +245,7 @@ FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
     const Eigen::VectorXd length = shift.colwise().norm().transpose();
     Panel above, below;
     above.title = fmt::format("frame {}, {:.2f} s", frame, state.time);
-    above.surfaces.push_back(EdgesOf(state.surface));
-    above.surfaces.back().colour = kFaintColour;
+    above.surfaces.push_back(EdgesOf(state.surface, kFaintColour));
     PanelSurface arrows;
     arrows.mesh =
         ArrowMesh(at_rest(Eigen::all, shown), shift(Eigen::all, shown), kArrowRadius * size);
@@ -324,7 +323,7 @@ FigureContent DrawAlignment(const Table1Study& table1, const Table1Scans& scans,
       Panel panel;
       panel.title = fmt::format("{}, frame {}: mean {:.1f} mm", optimum.name, frame, mean);
       panel.surfaces.push_back(std::move(body));
-      panel.surfaces.push_back(EdgesOf(state.surface));
+      panel.surfaces.push_back(EdgesOf(state.surface, kScanColour));
       rows[row].push_back(std::move(panel));
       figure.text += fmt::format("         {:6.2f} / {:5.2f}", mean, largest);
       entry["distances"].push_back(
