@@ -93,7 +93,7 @@ MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) cons
                                        : MeasurementErrors{noise_, study_.place_deviation};
 }
 
-PredictionStudy CalibrationProblem::WithGivenNoise() const {
+PredictionStudy CalibrationProblem::AsChosen() const {
   PredictionStudy given = study_;
   given.noise = noise_;
   given.scan.noise = scan_noise_;

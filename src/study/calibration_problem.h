@@ -59,8 +59,9 @@ class CalibrationProblem {
   const std::vector<RecordingModel>& models() const { return models_; }
   const std::shared_ptr<const Body>& body() const { return body_; }
   bool HasScans() const { return scan_noise_ > 0; }
-  // The study, with what was estimated or chosen on this mesh given: for the same on another mesh.
-  PredictionStudy WithGivenNoise() const;
+  // The study, with what this problem has estimated or chosen given (noise, patches): for another
+  // problem whose misfit is to be compared with this one's.
+  PredictionStudy AsChosen() const;
   // Recording r's nuisances: among the parameters where it is fitted; else found from its first
   // tenth, the model staying as `values` have set it (SetModel).
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;

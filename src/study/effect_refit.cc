@@ -166,8 +166,8 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, Progress* progress) {
-  const PredictionStudy study =
-      effect != nullptr ? WithEffect(problem.study(), *effect) : problem.study();
+  const PredictionStudy chosen = problem.AsChosen();
+  const PredictionStudy study = effect != nullptr ? WithEffect(chosen, *effect) : chosen;
   const CalibrationProblem with(study, problem.body()->mesh);
   const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
   const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;

@@ -178,7 +178,7 @@ Eigen::VectorXd WithFinerMesh(const PredictionStudy& study, double ratio,
 
 Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                              double steps) {
-  PredictionStudy study = problem.WithGivenNoise();
+  PredictionStudy study = problem.AsChosen();
   study.time_step *= steps;
   const double ratio = MeshRatio(problem);
   const Eigen::VectorXd coarse =
@@ -194,7 +194,7 @@ namespace {
 std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& values,
                                               const LinearisedMisfit& misfit) {
-  const PredictionStudy study = problem.WithGivenNoise();
+  const PredictionStudy study = problem.AsChosen();
   const double ratio = MeshRatio(problem);
   const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
   const Eigen::VectorXd between = WithFinerMesh(study, ratio / 2, values);
@@ -214,7 +214,7 @@ std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
 std::optional<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& values,
                                               const LinearisedMisfit& misfit) {
-  PredictionStudy slow = problem.WithGivenNoise();
+  PredictionStudy slow = problem.AsChosen();
   slow.time_step /= kStepRatio;
   const LinearisedMisfit refined =
       CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false);
@@ -237,7 +237,7 @@ std::optional<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem
   Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
   if (!model.grips.empty() && model.grips.front().nodes.size() > 0)
     centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
-  const PredictionStudy study = problem.WithGivenNoise();
+  const PredictionStudy study = problem.AsChosen();
   NuisanceCandidate candidate{"shape", "the object's dimensions", "measure the object again"};
   candidate.by = Eigen::MatrixXd::Zero(misfit.residual.size(), 3);
   candidate.is_always_taken = true;

@@ -78,7 +78,7 @@ std::vector<CandidateEffect> OtherLaws(const Effect& material) {
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           const LinearisedMisfit& misfit, const std::vector<std::string>& without) {
   problem.SetModel(values);
-  const PredictionStudy study = problem.WithGivenNoise();
+  const PredictionStudy study = problem.AsChosen();
   const Effect& material = *study.effects.front();
   const auto is_wanted = [&](const std::string& type) {
     return std::count(without.begin(), without.end(), type) == 0;

@@ -34,7 +34,7 @@ struct StepCheck {
 StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                     Progress* progress) {
   progress->Begin("time step", 0);
-  PredictionStudy half = problem.WithGivenNoise();
+  PredictionStudy half = problem.AsChosen();
   half.time_step /= 2;
   const CalibrationProblem refined(half, problem.body()->mesh);
   // Scans are compared where they lie, so patches may be other ones; of the rest the difference is
@@ -61,7 +61,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
     {
       const CalibrationProblem problem(*study, mesh);
       beginning = FitBeginning(problem, problem.Start(), progress);
-      further = problem.WithGivenNoise();
+      further = problem.AsChosen();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
     }
@@ -89,7 +89,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
         if (check.Share() == 1) return fit;
       }
       if (tried == kMostSteps) return fit;
-      further = problem.WithGivenNoise();
+      further = problem.AsChosen();
     }
     further.time_step *= check.Share();
     *study = std::move(further);

@@ -69,7 +69,7 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   candidate.type = hidden.type;
   candidate.effect = MakeHidden(hidden);
   candidate.replaces_material = IsLaw(hidden);
-  const PredictionStudy study = WithCandidate(problem.WithGivenNoise(), candidate);
+  const PredictionStudy study = WithCandidate(problem.AsChosen(), candidate);
   const LinearisedMisfit with =
       CalibrationProblem(study, problem.body()->mesh).Linearise(values, false, {}, &misfit);
   if (!with.usable) throw InputError(hidden.type + ": " + with.message);

@@ -8,6 +8,7 @@
 #include "study/calibration_fits.h"
 #include "study/calibration_run.h"
 #include "study/comparison.h"
+#include "study/effect_refit.h"
 #include "study/scanned_bar.h"
 #include "support/temporary_folder.h"
 
@@ -41,6 +42,26 @@ std::string MessageOf(const std::function<void()>& action) {
     return problem.what();
   }
   return "nothing was refused";
+}
+
+// A nuisance is given as a change of the misfit, patch by patch: a refit must look at the same
+// patches, though its model is another problem.
+TEST(ScanPrediction, ARefitTakesAwayWhatANuisanceExplains) {
+  const TemporaryFolder folder;
+  WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape);
+  const PredictionStudy study = ReadBarStudy(folder.Path(), kUntil);
+  const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 1));
+  const Eigen::VectorXd start = problem.Start();
+  const LinearisedMisfit misfit = problem.Linearise(start, true);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  const AdoptedNuisances all_of_it{misfit.residual, {{0, 1, false}}, 0};
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRefit refit = Refit(problem, start, nullptr, all_of_it, misfit, &progress);
+  ASSERT_TRUE(refit.message.empty()) << refit.message;
+  EXPECT_GT(refit.calibration.start_rms, 5);
+  EXPECT_LT(refit.calibration.rms, 1);
 }
 
 TEST(ScanPrediction, RecoversWhatWasScanned) {
