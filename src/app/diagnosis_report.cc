@@ -107,6 +107,13 @@ void PrintNuisances(const DiagnosisRecord& diagnosis) {
   if (!quiet.empty()) PrintText(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
 }
 
+void PrintInstead(const DiagnosisRecord& diagnosis) {
+  if (diagnosis.instead.empty()) return;
+  fmt::print("\n  in place of the nuisances in the model, whose evidence is {:.1f}\n",
+             diagnosis.nuisances_evidence);
+  for (const RecordedEffect& effect : diagnosis.instead) PrintEffect(effect);
+}
+
 void PrintNoise(const DiagnosisRecord& diagnosis) {
   std::string text =
       fmt::format("Noise: σ = {:.3f} mm, {}", 1e3 * diagnosis.noise,
@@ -164,6 +171,7 @@ void PrintDiagnosis(const DiagnosisRecord& diagnosis, const std::filesystem::pat
   PrintNoise(diagnosis);
   PrintRanking(diagnosis);
   PrintNuisances(diagnosis);
+  PrintInstead(diagnosis);
   if (diagnosis.verdict == "adequate" || diagnosis.verdict == "no power")
     PrintDetectable(diagnosis);
   const std::string next = WhatNext(diagnosis, run);

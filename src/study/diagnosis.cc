@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "core/atomic_file.h"
 #include "study/calibration_fits.h"
 #include "study/mesh_limit.h"
 #include "study/verdict.h"
@@ -25,6 +23,9 @@ constexpr double kCloseBehind = 5;
 // the third's.
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
+// What has less than this part of the nuisances' evidence to first order is not tried in their
+// place.
+constexpr double kCouldDoAsMuch = 0.5;
 
 // A model that is far off is looked at early, too, before it has gone astray, over this part of the
 // fitted time.
@@ -36,13 +37,9 @@ double InNoise(const FittedHypothesis& hypothesis) {
   return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
 }
 
-nlohmann::json Number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
-}
-
 // The study until soon after the start of each fitted recording.
 PredictionStudy EarlyPart(const CalibrationProblem& problem) {
-  PredictionStudy early = problem.WithGivenNoise();
+  PredictionStudy early = problem.AsChosen();
   for (PredictedRecording& item : early.recordings) {
     const std::vector<double>& times = item.recording.times;
     const double start = item.StartTime();
@@ -129,28 +126,53 @@ class Refits {
         Run(k);
   }
 
+  // What could do the work of the nuisances that were adopted: what first order gave a good part of
+  // their evidence before they were. To be called after Weigh().
+  Diagnosis::Instead RunInstead(int count) const {
+    Diagnosis::Instead instead;
+    if (!ranking_.adopted.HasMore()) return instead;
+    const AdoptedNuisances always = ranking_.adopted.Always();
+    const EffectRefit bare = Refit(problem_, values_, nullptr, always, ranking_.misfit, &progress_);
+    CHECK(bare.message.empty()) << bare.message;
+    const HypothesisEvidence before = EvidenceOf(bare.hypothesis, diagnosis_.noise_level);
+    instead.bare = bare.errors;
+    instead.nuisances =
+        EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence - before.log_evidence;
+    for (const ScoredEffect& scored : ranking_.instead) {
+      if (static_cast<int>(instead.effects.size()) == count ||
+          scored.score.evidence < kCouldDoAsMuch * instead.nuisances)
+        break;
+      RankedEffect& effect = instead.effects.emplace_back();
+      effect.scored = scored;
+      const EffectRefit with = Tried(always, &effect);
+      if (with.message.empty()) SetEvidence(with.hypothesis, before, &effect);
+    }
+    return instead;
+  }
+
   // The noise is what the best of them leaves; evidence is weighed with that.
   void Weigh() {
     const FittedHypothesis& best = Best();
     diagnosis_.noise_level = LevelOf(best.left, best.misfit, best.misfit.by.cols());
     diagnosis_.left_in_noise = InNoise(best);
     const HypothesisEvidence before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level);
-    for (size_t k = 0; k < refits_.size(); ++k) {
-      if (!IsUsable(k)) continue;
-      RankedEffect& ranked = diagnosis_.ranking[k];
-      const HypothesisEvidence after = EvidenceOf(refits_[k].hypothesis, diagnosis_.noise_level);
-      ranked.evidence = after.log_evidence - before.log_evidence - Price(diagnosis_.ranking.size());
-      if (!std::isfinite(ranked.evidence)) {
-        ranked.evidence = 0;
-        ranked.refit_message = "it ended where its evidence has no value";
-        continue;
-      }
-      ranked.explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
-      ranked.left_in_noise = InNoise(refits_[k].hypothesis);
-    }
+    for (size_t k = 0; k < refits_.size(); ++k)
+      if (IsUsable(k)) SetEvidence(refits_[k].hypothesis, before, &diagnosis_.ranking[k]);
   }
 
  private:
+  void SetEvidence(const FittedHypothesis& with, const HypothesisEvidence& before,
+                   RankedEffect* effect) const {
+    const HypothesisEvidence after = EvidenceOf(with, diagnosis_.noise_level);
+    effect->evidence = after.log_evidence - before.log_evidence - Price(diagnosis_.ranking.size());
+    if (!std::isfinite(effect->evidence)) {
+      effect->evidence = 0;
+      effect->refit_message = "it ended where its evidence has no value";
+      return;
+    }
+    effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
+    effect->left_in_noise = InNoise(with);
+  }
   bool IsUsable(size_t k) const {
     return diagnosis_.ranking[k].refitted && diagnosis_.ranking[k].refit_message.empty();
   }
@@ -158,12 +180,16 @@ class Refits {
     RankedEffect& ranked = diagnosis_.ranking[k];
     if (ranked.refitted || done_ == most_) return;
     ++done_;
-    ranked.refitted = true;
-    refits_[k] =
-        Refit(problem_, values_, &ranked.scored, ranking_.adopted, ranking_.misfit, &progress_);
-    ranked.refit_message = refits_[k].message;
-    ranked.errors = refits_[k].errors;
-    ranked.calibration = refits_[k].calibration;
+    refits_[k] = Tried(ranking_.adopted, &ranked);
+  }
+  EffectRefit Tried(const AdoptedNuisances& adopted, RankedEffect* effect) const {
+    EffectRefit refit =
+        Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, &progress_);
+    effect->refitted = true;
+    effect->refit_message = refit.message;
+    effect->errors = refit.errors;
+    effect->calibration = refit.calibration;
+    return refit;
   }
   const FittedHypothesis& Best() const {
     const FittedHypothesis* best = &present_.hypothesis;
@@ -239,75 +265,12 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
   refits.Weigh();
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
+  if (diagnosis.verdict == Verdict::kNuisance) {
+    diagnosis.instead = refits.RunInstead(options.refits);
+    DecideAgainstNuisances(&diagnosis);
+  }
   problem.SetModel(fitted);
   return diagnosis;
-}
-
-void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file) {
-  nlohmann::json ranking = nlohmann::json::array();
-  for (const RankedEffect& effect : diagnosis.ranking) {
-    nlohmann::json sizes = nlohmann::json::array();
-    for (size_t k = 0; k < effect.scored.parameters.size(); ++k) {
-      const Eigen::Index at = static_cast<Eigen::Index>(k);
-      sizes.push_back({{"parameter", effect.scored.parameters[k]},
-                       {"unit", effect.scored.units[k]},
-                       {"expected", effect.scored.score.size[at]},
-                       {"deviation", Number(effect.scored.score.deviation[at])},
-                       {"detectable", Number(effect.scored.score.detectable[at])}});
-    }
-    nlohmann::json entry = {{"effect", effect.scored.candidate.type},
-                            {"variant", effect.scored.candidate.variant},
-                            {"evidence", effect.scored.score.evidence},
-                            {"explained_share", effect.scored.score.explained},
-                            {"absorbed_share", effect.scored.score.absorbed},
-                            {"expected_held_out_in_noise", effect.scored.score.held_out_in_noise},
-                            {"sizes", sizes},
-                            {"look_alikes", effect.scored.look_alikes},
-                            {"refitted", effect.refitted}};
-    if (effect.refitted) {
-      entry["refit"] = {{"message", effect.refit_message},
-                        {"evidence", effect.evidence},
-                        {"explained_share", effect.explained},
-                        {"left_in_noise", effect.left_in_noise},
-                        {"in_fit_rms_m", effect.errors.in_fit_rms},
-                        {"held_out_rms_m", effect.errors.held_out_rms},
-                        {"held_out_in_noise", effect.errors.in_noise},
-                        {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances}};
-    }
-    ranking.push_back(entry);
-  }
-  nlohmann::json nuisances = nlohmann::json::array();
-  for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-    nuisances.push_back({{"nuisance", nuisance.candidate.name},
-                         {"what", nuisance.candidate.what},
-                         {"evidence", nuisance.evidence},
-                         {"explained_share", nuisance.explained},
-                         {"adopted", nuisance.adopted},
-                         {"doubt", nuisance.doubt}});
-  nlohmann::json untried = nlohmann::json::array();
-  for (const UntriedEffect& effect : diagnosis.untried)
-    untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  const nlohmann::json all = {
-      {"schema_version", 3},
-      {"verdict", VerdictName(diagnosis.verdict)},
-      {"effects", diagnosis.effects},
-      {"explanation", diagnosis.explanation},
-      {"experiment", diagnosis.experiment},
-      {"noise_m", diagnosis.noise},
-      {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
-      {"noise_variance_factor", diagnosis.noise_level.variance},
-      {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
-      {"held_out_rms_m", diagnosis.errors.held_out_rms},
-      {"held_out_in_noise", diagnosis.errors.in_noise},
-      {"held_out_in_noise_without_nuisances", diagnosis.errors.without_nuisances},
-      {"has_held_out", diagnosis.errors.has_held_out},
-      {"control_evidence", diagnosis.control},
-      {"left_in_noise", diagnosis.left_in_noise},
-      {"present_in_noise", diagnosis.present_in_noise},
-      {"nuisances", nuisances},
-      {"ranking", ranking},
-      {"untried", untried}};
-  WriteFileAtomically(file, all.dump(2) + "\n");
 }
 
 }  // namespace lacuna

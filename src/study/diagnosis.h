@@ -15,7 +15,6 @@
 #define LACUNA_STUDY_DIAGNOSIS_H_
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,7 +56,14 @@ struct Diagnosis {
   std::vector<RankedEffect> ranking;      // by first order's evidence
   std::vector<UntriedEffect> untried;     // as in EffectRanking
   std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
-  int scored = 0;                         // effects and variants
+  // What effects would do in place of the nuisances that were adopted beyond those that every model
+  // has; where no effect has evidence beside them.
+  struct Instead {
+    std::vector<RankedEffect> effects;  // refitted without those nuisances; evidence: against bare
+    double nuisances = 0;               // evidence of the nuisances against bare
+    ModelErrors bare;                   // of the model with neither
+  } instead;
+  int scored = 0;      // effects and variants
   double control = 0;  // the evidence that one in twenty controls finds without an effect
   // Over all frames, adopted nuisances at their best, in σ: of the present model, and of the best
   // hypothesis.
@@ -69,9 +75,6 @@ std::string VerdictName(Diagnosis::Verdict verdict);
 // Of the study fitted to `fitted` (CalibrationProblem::parameters). Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress);
-
-// diagnosis.json
-void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file);
 
 }  // namespace lacuna
 

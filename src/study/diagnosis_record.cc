@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 
 namespace lacuna {
@@ -55,6 +57,9 @@ DiagnosisRecord FromJson(const json& value) {
   record.variance_factor = value.at("noise_variance_factor");
   record.control = value.at("control_evidence");
   record.left_in_noise = value.at("left_in_noise");
+  const json& instead = value.at("instead");
+  record.nuisances_evidence = instead.at("nuisances_evidence");
+  for (const json& entry : instead.at("effects")) record.instead.push_back(EffectFrom(entry));
   record.errors = {value.at("in_fit_rms_m"), value.at("held_out_rms_m"),
                    value.at("held_out_in_noise"), value.at("held_out_in_noise_without_nuisances"),
                    value.at("has_held_out")};
@@ -71,6 +76,87 @@ DiagnosisRecord FromJson(const json& value) {
 }
 
 }  // namespace
+
+namespace {
+
+json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json EffectJson(const RankedEffect& effect) {
+  json sizes = json::array();
+  for (size_t k = 0; k < effect.scored.parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    sizes.push_back({{"parameter", effect.scored.parameters[k]},
+                     {"unit", effect.scored.units[k]},
+                     {"expected", effect.scored.score.size[at]},
+                     {"deviation", Number(effect.scored.score.deviation[at])},
+                     {"detectable", Number(effect.scored.score.detectable[at])}});
+  }
+  json entry = {{"effect", effect.scored.candidate.type},
+                {"variant", effect.scored.candidate.variant},
+                {"evidence", effect.scored.score.evidence},
+                {"explained_share", effect.scored.score.explained},
+                {"absorbed_share", effect.scored.score.absorbed},
+                {"expected_held_out_in_noise", effect.scored.score.held_out_in_noise},
+                {"sizes", sizes},
+                {"look_alikes", effect.scored.look_alikes},
+                {"refitted", effect.refitted}};
+  if (effect.refitted) {
+    entry["refit"] = {{"message", effect.refit_message},
+                      {"evidence", effect.evidence},
+                      {"explained_share", effect.explained},
+                      {"left_in_noise", effect.left_in_noise},
+                      {"in_fit_rms_m", effect.errors.in_fit_rms},
+                      {"held_out_rms_m", effect.errors.held_out_rms},
+                      {"held_out_in_noise", effect.errors.in_noise},
+                      {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances}};
+  }
+  return entry;
+}
+
+}  // namespace
+
+void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file) {
+  json ranking = json::array(), instead = json::array();
+  for (const RankedEffect& effect : diagnosis.ranking) ranking.push_back(EffectJson(effect));
+  for (const RankedEffect& effect : diagnosis.instead.effects)
+    instead.push_back(EffectJson(effect));
+  json nuisances = json::array();
+  for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+    nuisances.push_back({{"nuisance", nuisance.candidate.name},
+                         {"what", nuisance.candidate.what},
+                         {"evidence", nuisance.evidence},
+                         {"explained_share", nuisance.explained},
+                         {"adopted", nuisance.adopted},
+                         {"doubt", nuisance.doubt}});
+  json untried = json::array();
+  for (const UntriedEffect& effect : diagnosis.untried)
+    untried.push_back({{"effect", effect.type}, {"why", effect.why}});
+  const json all = {
+      {"schema_version", 4},
+      {"verdict", VerdictName(diagnosis.verdict)},
+      {"effects", diagnosis.effects},
+      {"explanation", diagnosis.explanation},
+      {"experiment", diagnosis.experiment},
+      {"noise_m", diagnosis.noise},
+      {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
+      {"noise_variance_factor", diagnosis.noise_level.variance},
+      {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
+      {"held_out_rms_m", diagnosis.errors.held_out_rms},
+      {"held_out_in_noise", diagnosis.errors.in_noise},
+      {"held_out_in_noise_without_nuisances", diagnosis.errors.without_nuisances},
+      {"has_held_out", diagnosis.errors.has_held_out},
+      {"control_evidence", diagnosis.control},
+      {"left_in_noise", diagnosis.left_in_noise},
+      {"present_in_noise", diagnosis.present_in_noise},
+      {"nuisances", nuisances},
+      {"ranking", ranking},
+      {"instead",
+       {{"nuisances_evidence", diagnosis.instead.nuisances},
+        {"held_out_in_noise_without_nuisances", diagnosis.instead.bare.without_nuisances},
+        {"effects", instead}}},
+      {"untried", untried}};
+  WriteFileAtomically(file, all.dump(2) + "\n");
+}
 
 std::string VerdictWithNames(const DiagnosisRecord& diagnosis) {
   if (diagnosis.effects.empty()) return diagnosis.verdict;

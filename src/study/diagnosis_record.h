@@ -1,4 +1,4 @@
-// What a diagnosis said, as plain data: diagnosis.json, read by what prints it or goes on from it.
+// What a diagnosis said: diagnosis.json, and as plain data what is read back from it.
 #ifndef LACUNA_STUDY_DIAGNOSIS_RECORD_H_
 #define LACUNA_STUDY_DIAGNOSIS_RECORD_H_
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "study/effect_refit.h"
+#include "study/diagnosis.h"
 
 namespace lacuna {
 
@@ -54,10 +54,16 @@ struct DiagnosisRecord {
   std::vector<RecordedNuisance> nuisances;
   std::vector<RecordedEffect> ranking;
   std::vector<UntriedEffect> untried;  // with the reason
+  // Refitted in place of the nuisances that were adopted beyond those that every model has, whose
+  // evidence this is (Diagnosis::Instead).
+  std::vector<RecordedEffect> instead;
+  double nuisances_evidence = 0;
 };
 
 // "missing {drag}"
 std::string VerdictWithNames(const DiagnosisRecord& diagnosis);
+
+void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file);
 
 // Throws InputError when it is not one.
 DiagnosisRecord ReadDiagnosisFile(const std::filesystem::path& file);

@@ -187,7 +187,8 @@ class HypothesisRanking {
   void ScoreEffects(const LinearFit& before);
   // The best nuisance that is not in the model; −1: there is none.
   int ScoreNuisances(const LinearFit& before);
-  void FindLookAlikes(Entry* entry) const;
+  // The entries, with all that is known of them.
+  std::vector<ScoredEffect> ScoredEntries() const;
 
   const Eigen::VectorXd values_;
   const Eigen::Index known_;  // the problem's parameters
@@ -195,6 +196,7 @@ class HypothesisRanking {
   LinearisedMisfit misfit_;
   Hypotheses hypotheses_;
   std::vector<int> parameters_, base_;  // columns: of the problem's parameters; of the model
+  Eigen::Index always_ = 0;             // columns of nuisances that every model has
   std::vector<std::vector<int>> of_candidate_, of_nuisance_;
   EffectRanking ranking_;
   std::optional<Weighed> weighed_;
@@ -224,6 +226,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   // of which bending stiffness goes with the cube.
   for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit_))
     AddNuisance(std::move(nuisance), true);
+  always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
 
   // What no effect explains is taken for noise.
   const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
@@ -276,6 +279,7 @@ void HypothesisRanking::Weigh() {
     if (best < 0 || adopted == kMostAdopted) break;
     ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
     if (nuisance.evidence < rival + kAdopted) break;
+    if (adopted == 0) ranking_.instead = ScoredEntries();
     nuisance.adopted = true;
     base_ = Joined(base_, of_nuisance_[static_cast<size_t>(best)]);
   }
@@ -337,11 +341,24 @@ int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
   return best;
 }
 
-void HypothesisRanking::FindLookAlikes(Entry* entry) const {
-  for (const Entry& other : entries_)
-    if (&other != entry && weighed_->all.Collinearity(base_, entry->own, other.own,
-                                                      ranking_.noise.variance) > kLookAlike)
-      entry->scored.look_alikes.push_back(other.scored.candidate.type);
+std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
+  const double variance = ranking_.noise.variance;
+  std::vector<ScoredEffect> effects;
+  for (const Entry& entry : entries_) {
+    effects.push_back(entry.scored);
+    ScoredEffect& scored = effects.back();
+    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
+      scored.parameters.push_back(amount.name);
+      scored.units.push_back(amount.unit);
+    }
+    const LinearFit fit = weighed_->fitted.Fit(Joined(base_, entry.own), variance);
+    scored.fitted = values_ + fit.change.head(known_);
+    for (const Entry& other : entries_)
+      if (&other != &entry &&
+          weighed_->all.Collinearity(base_, entry.own, other.own, variance) > kLookAlike)
+        scored.look_alikes.push_back(other.scored.candidate.type);
+  }
+  return effects;
 }
 
 EffectRanking HypothesisRanking::Result() {
@@ -349,23 +366,14 @@ EffectRanking HypothesisRanking::Result() {
   ranking_.variants = static_cast<int>(candidates_.size());
   const std::vector<int> adopted(base_.begin() + known_, base_.end());
   ranking_.adopted.by = hypotheses_.by(Eigen::all, adopted);
+  ranking_.adopted.always = always_;
   for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
   std::vector<int> best_fit = base_;
   if (!entries_.empty() && entries_[0].scored.score.evidence > 0)
     best_fit = Joined(base_, entries_[0].own);
   ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
                      Price(candidates_.size());
-  for (Entry& entry : entries_) {
-    ScoredEffect& scored = entry.scored;
-    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
-      scored.parameters.push_back(amount.name);
-      scored.units.push_back(amount.unit);
-    }
-    const LinearFit fit = weighed_->fitted.Fit(Joined(base_, entry.own), variance);
-    scored.fitted = values_ + fit.change.head(known_);
-    FindLookAlikes(&entry);
-  }
-  for (Entry& entry : entries_) ranking_.effects.push_back(std::move(entry.scored));
+  ranking_.effects = ScoredEntries();
   misfit_.by.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);
@@ -374,6 +382,10 @@ EffectRanking HypothesisRanking::Result() {
 }  // namespace
 
 double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
+
+AdoptedNuisances AdoptedNuisances::Always() const {
+  return {by.leftCols(always), {priors.begin(), priors.begin() + always}, always};
+}
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without) {

@@ -60,10 +60,17 @@ struct ScoredNuisance {
 struct AdoptedNuisances {
   Eigen::MatrixXd by;
   std::vector<LinearPrior> priors;
+  Eigen::Index always = 0;  // the first columns, which every model has
+
+  AdoptedNuisances Always() const;
+  bool HasMore() const { return by.cols() > always; }
 };
 
 struct EffectRanking {
   std::vector<ScoredEffect> effects;  // by evidence, the best first
+  // Where nuisances were adopted beyond those that every model has: the effects as they stand
+  // without, by evidence.
+  std::vector<ScoredEffect> instead;
   std::vector<UntriedEffect> untried;
   std::vector<ScoredNuisance> nuisances;  // discretisation, grips, measurement
   AdoptedNuisances adopted;

@@ -39,6 +39,10 @@ constexpr double kMostOfIt = 0.85;
 // Where more than noise is left, a nuisance that explains this share of the misfit is still what is
 // to be seen to first.
 constexpr double kMostByNuisance = 0.5;
+// In place of adopted nuisances, an effect is their rival with this part of their evidence, where
+// it lowers the held-out error to this part: a time error of every frame follows each frame as well
+// as physics does, but predicts none.
+constexpr double kInstead = 0.75, kPredicts = 0.9;
 // A finer discretisation would change this share of the error.
 constexpr double kMeshMatters = 0.25;
 
@@ -189,6 +193,35 @@ void Decide(Diagnosis* diagnosis) {
                                 ? best.scored.candidate.effect->Card().separating_experiment
                                 : fmt::format("{}, and fit again", fmt::join(refine, "; "));
   }
+}
+
+void DecideAgainstNuisances(Diagnosis* diagnosis) {
+  const Diagnosis::Instead& instead = diagnosis->instead;
+  std::vector<const RankedEffect*> rivals;
+  for (const RankedEffect& effect : instead.effects)
+    if (effect.refit_message.empty() &&
+        effect.evidence > std::max(diagnosis->control, kInstead * instead.nuisances) &&
+        effect.errors.without_nuisances < kPredicts * instead.bare.without_nuisances)
+      rivals.push_back(&effect);
+  if (rivals.empty()) return;
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  const RankedEffect& best = *rivals.front();
+  std::vector<std::string> effects;
+  for (const RankedEffect* rival : rivals) effects.push_back(rival->scored.candidate.type);
+  diagnosis->verdict = Verdict::kAmbiguous;
+  diagnosis->explanation = fmt::format(
+      "{} explains nearly what {} would, with odds of e^{:.0f} and e^{:.0f}, and lowers the {} "
+      "error from {:.1f} σ to {:.1f} σ: these recordings cannot tell them apart",
+      Titles(effects), fmt::join(diagnosis->effects, ", "), best.evidence, instead.nuisances,
+      diagnosis->errors.has_held_out ? "held-out" : "fitted", instead.bare.without_nuisances,
+      best.errors.without_nuisances);
+  diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
+    if (nuisance.adopted && !nuisance.candidate.is_always_taken)
+      diagnosis->experiment += "; or " + nuisance.candidate.advice;
+  effects.insert(effects.end(), diagnosis->effects.begin(), diagnosis->effects.end());
+  diagnosis->effects = std::move(effects);
 }
 
 }  // namespace lacuna

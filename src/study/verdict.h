@@ -9,6 +9,10 @@ namespace lacuna {
 // Fills verdict, effects, explanation and experiment from everything else.
 void Decide(Diagnosis* diagnosis);
 
+// Of a verdict nuisance, with Diagnosis::instead: effects that do nearly as well in place of the
+// nuisances, and predict better than the model with neither, make it ambiguous.
+void DecideAgainstNuisances(Diagnosis* diagnosis);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_STUDY_VERDICT_H_

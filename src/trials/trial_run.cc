@@ -13,7 +13,7 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
-#include "study/diagnosis.h"
+#include "study/diagnosis_record.h"
 #include "study/reference.h"
 #include "study/stepped_fit.h"
 

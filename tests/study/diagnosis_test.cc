@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "study/diagnosis_record.h"
 #include "study/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -43,6 +44,16 @@ TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
   EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+}
+
+TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
+  HeldBarTruth truth;
+  truth.jitter = 1e-3;
+  const Diagnosis diagnosis = DiagnoseBar(truth, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, Contains("time_jitter"));
+  EXPECT_GT(diagnosis.instead.nuisances, 50);
+  EXPECT_GT(diagnosis.instead.bare.without_nuisances, diagnosis.errors.without_nuisances);
 }
 
 TEST(Diagnosis, SaysThatItHasNoPowerWhereNothingCouldShow) {

@@ -44,7 +44,8 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * truth.hold_force;
   std::vector<double> times;
-  for (int frame = 0; frame < kFrames; ++frame) times.push_back(0.01 * frame - truth.clock);
+  for (int frame = 0; frame < kFrames; ++frame)
+    times.push_back(0.01 * frame - truth.clock + truth.jitter * std::cos(2.4 * frame));
   const Embedding places = Embed(mesh, BarMarkerPlaces());
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0, truth.noise);

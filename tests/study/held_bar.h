@@ -23,6 +23,7 @@ struct HeldBarTruth {
   double alpha = 2;                           // 1/s, of mass_damping
   Eigen::Vector3d hold_force{0, 0.05, 0.02};  // N
   double clock = 0.003;                       // s, by which the recording runs late
+  double jitter = 0;                          // s, by which frames are early or late at most
   double noise = 5e-5;                        // m
   // N, over time: a net force spread over the bar by mass, that a model may lack.
   std::function<Eigen::Vector3d(double time)> body_force = {};

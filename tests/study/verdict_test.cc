@@ -1,0 +1,68 @@
+#include "study/verdict.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using Verdict = Diagnosis::Verdict;
+
+constexpr double kEvidence = 1000;  // of the nuisance
+
+// A time error of every frame explains it all; mass damping, without that, has `evidence` and
+// changes the held-out error from 10 σ to `error`.
+Diagnosis DelayedFrames(double evidence, double error) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kNuisance;
+  diagnosis.effects = {"time_jitter"};
+  diagnosis.errors.has_held_out = true;
+  ScoredNuisance& jitter = diagnosis.nuisances.emplace_back();
+  jitter.candidate.name = "time_jitter";
+  jitter.candidate.advice = "check the camera's clock";
+  jitter.evidence = kEvidence;
+  jitter.adopted = true;
+  diagnosis.instead.nuisances = kEvidence;
+  diagnosis.instead.bare.without_nuisances = 10;
+  RankedEffect& damping = diagnosis.instead.effects.emplace_back();
+  damping.scored.candidate.type = "mass_damping";
+  damping.scored.candidate.effect = MakeEffect("mass_damping", {{"alpha", 10}});
+  damping.refitted = true;
+  damping.evidence = evidence;
+  damping.errors.without_nuisances = error;
+  return diagnosis;
+}
+
+TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
+  Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
+  DecideAgainstNuisances(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("mass_damping", "time_jitter"));
+  EXPECT_NE(diagnosis.experiment.find("check the camera's clock"), std::string::npos);
+}
+
+TEST(Verdict, LeavesTheNuisanceWhereTheEffectExplainsMuchLess) {
+  Diagnosis diagnosis = DelayedFrames(0.5 * kEvidence, 3);
+  DecideAgainstNuisances(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("time_jitter"));
+}
+
+TEST(Verdict, LeavesTheNuisanceWhereTheEffectPredictsNothing) {
+  Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 9.8);
+  DecideAgainstNuisances(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
+}
+
+TEST(Verdict, LeavesTheNuisanceWhereTheEffectCannotBeFitted) {
+  Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
+  diagnosis.instead.effects.front().refit_message = "no step could be taken";
+  DecideAgainstNuisances(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
+}
+
+}  // namespace
+}  // namespace lacuna
