@@ -42,6 +42,7 @@ RecordedEffect EffectFrom(const json& entry) {
     effect.errors.held_out_rms = refit.at("held_out_rms_m");
     effect.errors.in_noise = refit.at("held_out_in_noise");
     effect.errors.without_nuisances = refit.at("held_out_in_noise_without_nuisances");
+    effect.errors.unfitted_in_noise = refit.at("unfitted_in_noise");
   }
   return effect;
 }
@@ -60,9 +61,9 @@ DiagnosisRecord FromJson(const json& value) {
   const json& instead = value.at("instead");
   record.nuisances_evidence = instead.at("nuisances_evidence");
   for (const json& entry : instead.at("effects")) record.instead.push_back(EffectFrom(entry));
-  record.errors = {value.at("in_fit_rms_m"), value.at("held_out_rms_m"),
+  record.errors = {value.at("in_fit_rms_m"),      value.at("held_out_rms_m"),
                    value.at("held_out_in_noise"), value.at("held_out_in_noise_without_nuisances"),
-                   value.at("has_held_out")};
+                   value.at("unfitted_in_noise"), value.at("has_held_out")};
   for (const json& entry : value.at("nuisances"))
     record.nuisances.push_back({entry.at("nuisance"), entry.at("what"), entry.at("evidence"),
                                 entry.at("explained_share"), entry.at("adopted")});
@@ -108,7 +109,8 @@ json EffectJson(const RankedEffect& effect) {
                       {"in_fit_rms_m", effect.errors.in_fit_rms},
                       {"held_out_rms_m", effect.errors.held_out_rms},
                       {"held_out_in_noise", effect.errors.in_noise},
-                      {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances}};
+                      {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances},
+                      {"unfitted_in_noise", effect.errors.unfitted_in_noise}};
   }
   return entry;
 }
@@ -144,6 +146,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
       {"held_out_rms_m", diagnosis.errors.held_out_rms},
       {"held_out_in_noise", diagnosis.errors.in_noise},
       {"held_out_in_noise_without_nuisances", diagnosis.errors.without_nuisances},
+      {"unfitted_in_noise", diagnosis.errors.unfitted_in_noise},
       {"has_held_out", diagnosis.errors.has_held_out},
       {"control_evidence", diagnosis.control},
       {"left_in_noise", diagnosis.left_in_noise},

@@ -50,9 +50,15 @@ std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
 
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
   double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
-  int fitted_points = 0, held_out_points = 0;
-  for (const RecordingMisfit& recording : MisfitsOf(problem, values)) {
-    const MisfitMeasure &in_fit = recording.in_fit, &out = recording.held_out;
+  double unfitted_noise = 0;
+  int fitted_points = 0, held_out_points = 0, unfitted_points = 0;
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values);
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const MisfitMeasure &in_fit = misfits[r].in_fit, &out = misfits[r].held_out;
+    if (!problem.models()[r].item().fitted) {
+      unfitted_noise += out.in_noise * out.in_noise * out.points;
+      unfitted_points += out.points;
+    }
     fitted += in_fit.rms * in_fit.rms * in_fit.points;
     fitted_noise += in_fit.in_noise * in_fit.in_noise * in_fit.points;
     fitted_points += in_fit.points;
@@ -61,6 +67,7 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
     held_out_points += out.points;
   }
   ModelErrors errors;
+  if (unfitted_points > 0) errors.unfitted_in_noise = std::sqrt(unfitted_noise / unfitted_points);
   errors.has_held_out = held_out_points > 0;
   if (fitted_points > 0) {
     errors.in_fit_rms = std::sqrt(fitted / fitted_points);

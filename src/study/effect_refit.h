@@ -17,6 +17,7 @@ struct ModelErrors {
   double in_noise = 0;                      // held out, in σ
   // Of the fitted recordings, with what was adopted taken away; held out, in σ.
   double without_nuisances = 0;
+  double unfitted_in_noise = 0;  // of recordings that were not fitted, in σ; 0: there are none
   bool has_held_out = false;  // false: the fitted frames stand for them
 };
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);

@@ -26,6 +26,9 @@ constexpr double kDoubtful = 2;
 constexpr double kAtNoise = 1.2;
 // An effect may make the held-out error larger by this factor at most, which is chance.
 constexpr double kNoWorse = 1.03;
+// Recordings that were not fitted are no part of the evidence: which effect predicts them better by
+// this factor cannot be ruled out by those that were.
+constexpr double kPredictsBetter = 0.97;
 // Nuisances are known to first order: an effect may live on what that leaves out, so its evidence
 // must be more than this part of theirs that are in the model. A grip that yields or reaches
 // further changes the frequencies, which first order follows for a short time only: it is a rival
@@ -159,9 +162,22 @@ void Decide(Diagnosis* diagnosis) {
   const double lead =
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   diagnosis->effects = {best.scored.candidate.type};
-  for (size_t k = 1; k < refitted.size(); ++k)
-    if (refitted[k]->evidence > evidence - lead)
-      diagnosis->effects.push_back(refitted[k]->scored.candidate.type);
+  std::string predicts_better;
+  for (size_t k = 1; k < refitted.size(); ++k) {
+    const RankedEffect& rival = *refitted[k];
+    const double error = rival.errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
+    const bool is_close = rival.evidence > evidence - lead;
+    const bool predicts =
+        rival.evidence > std::max(kNamed, diagnosis->control) && error < kPredictsBetter * of_best;
+    if (!is_close && !predicts) continue;
+    diagnosis->effects.push_back(rival.scored.candidate.type);
+    if (!is_close)
+      predicts_better += fmt::format(
+          "; {} explains less, e^{:.0f}, but predicts the recordings that were not fitted better, "
+          "to "
+          "{:.1f} σ against {:.1f} σ",
+          rival.scored.candidate.type, rival.evidence, error, of_best);
+  }
   std::vector<std::string> refine;
   // Look-alikes that were not refitted cannot be ruled out either.
   for (const std::string& other : best.scored.look_alikes) {
@@ -187,8 +203,8 @@ void Decide(Diagnosis* diagnosis) {
   } else {
     diagnosis->verdict = Verdict::kAmbiguous;
     diagnosis->explanation =
-        fmt::format("{}: these recordings cannot tell them apart; with the best {}",
-                    Titles(diagnosis->effects), drop);
+        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}",
+                    Titles(diagnosis->effects), drop, predicts_better);
     diagnosis->experiment = refine.empty()
                                 ? best.scored.candidate.effect->Card().separating_experiment
                                 : fmt::format("{}, and fit again", fmt::join(refine, "; "));

@@ -36,6 +36,47 @@ Diagnosis DelayedFrames(double evidence, double error) {
   return diagnosis;
 }
 
+// A point force has twice the evidence of gravity; on a recording that was not fitted they leave
+// these errors, σ.
+Diagnosis SaggingBeam(double with_point_force, double with_gravity) {
+  Diagnosis diagnosis;
+  diagnosis.errors.has_held_out = true;
+  diagnosis.errors.without_nuisances = diagnosis.present_in_noise = 5;
+  diagnosis.left_in_noise = 1;
+  const auto add = [&](const std::string& type, double evidence, double error) {
+    RankedEffect& effect = diagnosis.ranking.emplace_back();
+    CandidateEffect& candidate = effect.scored.candidate;
+    candidate.type = type;
+    candidate.effect = FindEntry(type)->make(
+        Eigen::VectorXd::Ones(static_cast<Eigen::Index>(FindEntry(type)->card->parameters.size())));
+    candidate.amplitude = {0, 1, 2};
+    effect.scored.score.detectable = Eigen::Vector3d::Constant(1e-3);
+    effect.refitted = true;
+    effect.evidence = evidence;
+    effect.left_in_noise = effect.errors.without_nuisances = 1;
+    effect.errors.unfitted_in_noise = error;
+  };
+  add("point_force", 300, with_point_force);
+  add("gravity", 150, with_gravity);
+  return diagnosis;
+}
+
+TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
+  Diagnosis diagnosis = SaggingBeam(12, 12);
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
+}
+
+TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
+  Diagnosis diagnosis = SaggingBeam(12, 11);
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
+  EXPECT_NE(diagnosis.explanation.find("11.0 σ against 12.0 σ"), std::string::npos)
+      << diagnosis.explanation;
+}
+
 TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
   DecideAgainstNuisances(&diagnosis);
