@@ -62,12 +62,13 @@ bool TrialCase::Hides(const std::string& type) const {
 }
 
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
-                   const std::string& nuisance) {
+                   bool is_scanned, const std::string& nuisance) {
   TrialCase trial;
   trial.name = name;
   trial.group = group;
   trial.seed = seed;
   trial.recordings = recordings;
+  trial.is_scanned = is_scanned;
   trial.nuisance = nuisance;
   Draws draws(seed, 1);
   trial.young_modulus = draws.LogBetween(6e4, 2e5);
@@ -95,6 +96,10 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   }
   trial.hold_forces.resize(static_cast<size_t>(recordings));
   trial.noise_correlation_time = 0.01 * draws.Between(0.5, 1.5);
+  if (is_scanned) {
+    trial.noise = 4e-4;
+    trial.noise_correlation_time = 0;
+  }
   trial.damping = draws.LogBetween(3e-4, 1e-3);
   return trial;
 }
@@ -165,6 +170,7 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
                               {"group", trial.group},
                               {"seed", trial.seed},
                               {"recordings", trial.recordings},
+                              {"is_scanned", trial.is_scanned},
                               {"nuisance", trial.nuisance},
                               {"hidden", hidden},
                               {"young_modulus", trial.young_modulus},
@@ -189,6 +195,7 @@ TrialCase LoadCase(const std::filesystem::path& file) {
     trial.group = json.at("group");
     trial.seed = json.at("seed");
     trial.recordings = json.at("recordings");
+    trial.is_scanned = json.value("is_scanned", false);
     trial.nuisance = json.at("nuisance");
     for (const auto& effect : json.at("hidden"))
       trial.hidden.push_back({effect.at("type"), effect.at("parameters"), effect.at("amplitude"),

@@ -36,6 +36,7 @@ struct TrialCase {
   std::string group;
   uint64_t seed = 0;
   int recordings = 1;
+  bool is_scanned = false;  // by depth cameras; else markers are tracked
   // Of a hard control: "grip" (the clamp ends 1 to 2 mm from where the model has it), "bad_frame",
   // "coarse_mesh" or "time_jitter"; empty: none.
   std::string nuisance;
@@ -48,15 +49,15 @@ struct TrialCase {
   Eigen::Vector3d true_size = size;                  // m
   double clamp_error = 0;                            // m
   std::vector<Eigen::Vector3d> hold_forces;          // N, per recording
-  double noise = 1e-4;                               // m, of a coordinate
-  double noise_correlation_time = 0;                 // s
+  double noise = 1e-4;                // m, of a marker's coordinate or along a depth camera's ray
+  double noise_correlation_time = 0;  // s
 
   bool Hides(const std::string& type) const;
 };
 
 // Without a hidden effect yet.
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
-                   const std::string& nuisance);
+                   bool is_scanned, const std::string& nuisance);
 
 // An effect with places, directions and times drawn from the seed, of size 1 in its plausible
 // direction; the factor is still to be applied. A plane lies beside the bar, on the side to which

@@ -32,6 +32,12 @@ const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
   return nullptr;
 }
 
+// The estimated standard deviation in true ones; of scans, whose noise along the normal depends on
+// the view, 1.
+double InTrueNoise(const TrialCase& trial, const CalibrationProblem& problem) {
+  return trial.is_scanned ? 1 : problem.noise() / trial.noise;
+}
+
 // How the hidden effect fared.
 void Compare(const TrialCase& trial, const CalibrationProblem& problem,
              const Eigen::VectorXd& values, const Diagnosis& diagnosis, TrialOutcome* outcome) {
@@ -51,7 +57,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
     return;
   }
   outcome->has_truth = true;
-  outcome->error_after = in_noise * problem.noise() / trial.noise;
+  outcome->error_after = in_noise * InTrueNoise(trial, problem);
   const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
   double difference = 0, size = 0;
   for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
@@ -105,10 +111,11 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
   const TrialCase trial = LoadCase(folder / "truth.json");
-  outcome.error_before = diagnosis.errors.without_nuisances * problem.noise() / trial.noise;
+  const double unit = InTrueNoise(trial, problem);
+  outcome.error_before = diagnosis.errors.without_nuisances * unit;
   if (!outcome.named.empty())
     if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
-      outcome.error_best = best->errors.without_nuisances * problem.noise() / trial.noise;
+      outcome.error_best = best->errors.without_nuisances * unit;
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   return outcome;
 }

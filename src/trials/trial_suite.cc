@@ -36,8 +36,8 @@ const std::vector<std::string>& Nuisances() {
 
 TrialCase DrawEffectCase(const std::string& name, const std::string& group,
                          const std::vector<std::string>& types, double factor, int recordings,
-                         uint64_t seed) {
-  TrialCase trial = DrawCase(name, group, seed, recordings, "");
+                         bool is_scanned, uint64_t seed) {
+  TrialCase trial = DrawCase(name, group, seed, recordings, is_scanned, "");
   for (const std::string& type : types) {
     trial.hidden.push_back(DrawHidden(type, trial, RandomBits({seed, trial.hidden.size()})));
     trial.hidden.back().factor = factor;
@@ -51,7 +51,7 @@ TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
   std::string name = fmt::format("{:04}-{}", number, group);
   for (const std::string& type : types) name += "-" + type;
   return DrawEffectCase(fmt::format("{}-{:g}x-{}rec", name, factor, recordings), group, types,
-                        factor, recordings, RandomBits({suite.seed, number}));
+                        factor, recordings, suite.is_scanned, RandomBits({suite.seed, number}));
 }
 
 // The same case of another seed.
@@ -59,7 +59,7 @@ TrialCase DrawnAgain(const TrialCase& trial) {
   std::vector<std::string> types;
   for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
   return DrawEffectCase(trial.name, trial.group, types, trial.hidden.front().factor,
-                        trial.recordings, RandomBits({trial.seed, 1}));
+                        trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
 }
 
 // What the hidden effect, as drawn, changes of the misfit.
@@ -116,7 +116,9 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
   LinearisedMisfit misfit = problem.Linearise(values, true, directions);
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
-  for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
+  // A depth camera's is that along its rays.
+  if (!trial.is_scanned)
+    for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   const Eigen::Index known = values.size();
   std::vector<NuisanceCandidate> nuisances =
       grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
@@ -194,6 +196,8 @@ TrialSuite ReadTrialSuite(const Config& config) {
     }
     return chosen;
   };
+  suite.is_scanned =
+      config.Choice<bool>("seen_by", {{"markers", false}, {"scanner", true}}, "markers");
   suite.effects = types("effects");
   suite.removed = types("removed");
   suite.factors = config.Integers("factors", 1);
@@ -211,7 +215,8 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
     const int recordings = suite.recordings[k % suite.recordings.size()];
     cases.push_back(DrawCase(fmt::format("{:04}-{}{}-{}rec", number, group,
                                          nuisance.empty() ? "" : "-" + nuisance, recordings),
-                             group, RandomBits({suite.seed, number}), recordings, nuisance));
+                             group, RandomBits({suite.seed, number}), recordings, suite.is_scanned,
+                             nuisance));
   };
   for (int k = 0; k < suite.controls; ++k) control("control", "", k);
   for (int k = 0; k < suite.hard_controls; ++k)

@@ -21,6 +21,7 @@ struct TrialSuite {
   std::vector<std::string> effects;  // hidden one at a time,
   std::vector<int> factors;          // at these multiples of their detectable sizes,
   std::vector<int> recordings;       // seen in so many recordings
+  bool is_scanned = false;           // by depth cameras; else markers are tracked
   std::vector<std::string> removed;  // hidden at the largest factor, and taken from the library
   int pairs = 0;                     // of two effects, at the largest factor each
 };

@@ -7,7 +7,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "scan/recording.h"
+#include "study/calibration_problem.h"
+#include "study/reference.h"
 #include "support/temporary_folder.h"
+#include "trials/trial_film.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
 #include "trials/trial_suite.h"
@@ -47,6 +50,23 @@ TEST(TrialSuite, HasEveryGroupAndIsTheSameAgain) {
   EXPECT_EQ(cases[6].group, "removed");
   EXPECT_EQ(cases[7].hidden[0].factor, 1);
   EXPECT_EQ(cases[8].hidden[0].factor, 4);
+}
+
+TEST(TrialFilm, DepthCamerasSeeWhatTheTruthPredicts) {
+  const TemporaryFolder folder;
+  const TrialCase trial = DrawCase("scanned", "control", 5, 1, /*is_scanned=*/true, "");
+  FilmCase(trial, folder.Path(), /*rough=*/true);
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  ASSERT_NE(study.recordings.at(0).scans, nullptr);
+  const CalibrationProblem problem(study, MakeReferenceBody(study).mesh);
+  Eigen::VectorXd values = problem.Start();
+  values.head(3) << trial.young_modulus, trial.poisson_ratio, trial.damping;
+  ASSERT_EQ(values.size(), 6);  // the hand's force last
+  values.tail(3) = trial.hold_forces[0];
+  const Prediction at_truth = problem.Predict(values, false);
+  ASSERT_TRUE(at_truth.usable) << at_truth.message;
+  EXPECT_LT(RootMeanSquare(at_truth.residual), 1.5);
+  EXPECT_GT(RootMeanSquare(problem.Predict(problem.Start(), false).residual), 5);
 }
 
 TEST(TrialSuite, RefusesAnEffectThatIsNone) {

@@ -1,0 +1,171 @@
+#include "trials/trial_recording.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "core/atomic_file.h"
+#include "geometry/embedding.h"
+#include "scan/random_bits.h"
+#include "scan/scan_writer.h"
+#include "trials/clamp_motion.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kMarkers = 8;
+
+Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {
+  Eigen::Matrix3Xd places(3, kMarkers);
+  for (int m = 0; m < kMarkers; ++m) {
+    const double angle = 0.5 * std::numbers::pi * (m % 4);
+    places.col(m) << size[0] * (0.15 + 0.85 * m / (kMarkers - 1)), 0.5 * size[1] * std::cos(angle),
+        0.5 * size[2] * std::sin(angle);
+  }
+  return places;
+}
+
+void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
+  const double memory = trial.noise_correlation_time > 0
+                            ? std::exp(-kTrialSpacing / trial.noise_correlation_time)
+                            : 0;
+  Eigen::Matrix3Xd noise = Eigen::Matrix3Xd::Zero(3, kMarkers);
+  for (size_t f = 0; f < frames->size(); ++f) {
+    for (Eigen::Index k = 0; k < noise.size(); ++k) {
+      const double fresh = trial.noise * Gauss(trial, 20 + recording, f, k);
+      double& value = noise.reshaped()[k];
+      value = f == 0 ? fresh : memory * value + std::sqrt(1 - memory * memory) * fresh;
+    }
+    (*frames)[f] += noise;
+  }
+}
+
+// One frame shifted and turned.
+void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
+  const size_t bad = 20 + RandomBits({trial.seed, 60}) % (frames->size() - 25);
+  Eigen::Vector3d shift, turn;
+  for (int axis = 0; axis < 3; ++axis) {
+    shift[axis] = 8e-4 * Gauss(trial, 61, axis, recording);
+    turn[axis] = 0.01 * Gauss(trial, 62, axis, recording);
+  }
+  for (auto place : (*frames)[bad].colwise()) place += shift + turn.cross(Eigen::Vector3d(place));
+}
+
+// The shape as the model has it.
+void WriteBox(const TrialCase& trial, const std::filesystem::path& file) {
+  std::string box = "OFF\n8 12 0\n";
+  for (int corner = 0; corner < 8; ++corner)
+    box += fmt::format("{} {} {}\n", corner & 1 ? trial.size[0] : 0.0,
+                       (corner & 2 ? 0.5 : -0.5) * trial.size[1],
+                       (corner & 4 ? 0.5 : -0.5) * trial.size[2]);
+  for (const char* face : {"0 2 1", "1 2 3", "4 5 6", "5 7 6", "0 1 4", "1 5 4", "2 6 3", "3 6 7",
+                           "0 4 2", "2 4 6", "1 3 5", "3 7 5"})
+    box += fmt::format("3 {}\n", face);
+  WriteFileAtomically(file, box);
+}
+
+void WriteClampPath(int recording, const std::filesystem::path& file) {
+  std::string path = "t,x,y,z,rx,ry,rz\n";
+  for (int k = 0; k <= 10 * kTrialFrames; ++k) {
+    const double time = 0.1 * kTrialSpacing * k;
+    const ClampMotion motion = ClampMotionAt(recording, time);
+    path += fmt::format("{}", time);
+    for (const double coordinate : motion.shift) path += fmt::format(",{:.9f}", coordinate);
+    for (const double angle : motion.turn) path += fmt::format(",{:.9f}", angle);
+    path += "\n";
+  }
+  WriteFileAtomically(file, path);
+}
+
+// Of recording.yaml, what tells the shape and the clamp.
+std::string ShapeAndClamp() {
+  return fmt::format(
+      "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
+      "path: {{file: clamp.csv, time: t, x: x, y: y, z: z, turn: {{x: rx, y: ry, z: rz, about: [0, "
+      "0, 0]}}}}}}\n"
+      "reference: {{from: mesh, file: box.off}}\n",
+      kTrialFace);
+}
+
+void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& motion,
+                  const std::filesystem::path& folder) {
+  const TetMesh& mesh = motion.body->mesh;
+  const Embedding at = Embed(mesh, MarkerPlaces(trial.true_size));
+  std::vector<Eigen::Matrix3Xd> frames;
+  for (const Eigen::Matrix3Xd& position : motion.positions)
+    frames.push_back(PointsAt(at, mesh, position));
+  AddNoise(trial, recording, &frames);
+  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  std::string csv = "t";
+  for (int m = 0; m < kMarkers; ++m) csv += fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
+  for (size_t f = 0; f < frames.size(); ++f) {
+    csv += fmt::format("\n{}", kTrialSpacing * static_cast<double>(f));
+    for (const double coordinate : frames[f].reshaped()) csv += fmt::format(",{:.9f}", coordinate);
+  }
+  WriteFileAtomically(folder / "markers.csv", csv + "\n");
+  std::string yaml = fmt::format(
+      "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n"
+      "  kind: markers\n  file: markers.csv\n  columns: {{time: t}}\n  marker_places:\n",
+      recording + 1, kTrialDensity);
+  const Eigen::Matrix3Xd places = MarkerPlaces(trial.size);
+  for (int m = 0; m < kMarkers; ++m) {
+    Eigen::Vector3d place = places.col(m);
+    for (int axis = 0; axis < 3; ++axis)
+      place[axis] += kTrialPlaceError * Gauss(trial, 30, m, axis);
+    yaml += fmt::format("    - {{name: m{}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n", m,
+                        place.x(), place.y(), place.z());
+  }
+  WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
+}
+
+void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motion,
+                const std::filesystem::path& folder) {
+  std::vector<Eigen::Matrix3Xd> frames = motion.positions;
+  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  std::vector<TriMesh> surfaces;
+  std::vector<double> times;
+  for (size_t f = 0; f < frames.size(); ++f) {
+    surfaces.push_back(BoundaryAt(motion.body->boundary, frames[f]));
+    times.push_back(kTrialSpacing * static_cast<double>(f));
+  }
+  CameraRing ring;
+  ring.center = {0.5 * trial.size[0], 0, 0};
+  ring.up = Eigen::Vector3d::UnitX();  // so that both ends are seen
+  ring.radius = 0.3;
+  ring.elevation = 0.6;
+  ring.width = 120;
+  ring.height = 90;
+  ring.field_of_view = 0.6;
+  ScannerOptions scanner;
+  scanner.noise = trial.noise;
+  scanner.seed = RandomBits({trial.seed, 70, static_cast<uint64_t>(recording)});
+  ScannedObject object;
+  object.name = fmt::format("recording {}", recording + 1);
+  object.density = kTrialDensity;
+  WriteScan(folder, object, surfaces, times, PlaceCameras(ring), scanner, ScanOutput::kPoints);
+  std::filesystem::remove_all(folder / "truth");
+  std::ifstream written(folder / "recording.yaml");
+  const std::string yaml{std::istreambuf_iterator<char>(written), {}};
+  WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
+}
+
+}  // namespace
+
+double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
+  return Normal(RandomBits({trial.seed, stream, i, j}));
+}
+
+void WriteRecording(const TrialCase& trial, int recording, const FilmedMotion& motion,
+                    const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  WriteBox(trial, folder / "box.off");
+  WriteClampPath(recording, folder / "clamp.csv");
+  if (trial.is_scanned)
+    WriteScans(trial, recording, motion, folder);
+  else
+    WriteMarkers(trial, recording, motion, folder);
+}
+
+}  // namespace lacuna
