@@ -77,7 +77,7 @@ class Refits {
         ranking_(ranking),
         progress_(*progress),
         diagnosis_(*diagnosis),
-        present_(Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, progress)),
+        present_(Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, false, progress)),
         refits_(diagnosis->ranking.size()) {
     CHECK(present_.message.empty()) << present_.message;
     diagnosis_.errors.without_nuisances = present_.errors.without_nuisances;
@@ -132,7 +132,8 @@ class Refits {
     Diagnosis::Instead instead;
     if (!ranking_.adopted.HasMore()) return instead;
     const AdoptedNuisances always = ranking_.adopted.Always();
-    const EffectRefit bare = Refit(problem_, values_, nullptr, always, ranking_.misfit, &progress_);
+    const EffectRefit bare =
+        Refit(problem_, values_, nullptr, always, ranking_.misfit, false, &progress_);
     CHECK(bare.message.empty()) << bare.message;
     const HypothesisEvidence before = EvidenceOf(bare.hypothesis, diagnosis_.noise_level);
     instead.bare = bare.errors;
@@ -144,7 +145,7 @@ class Refits {
         break;
       RankedEffect& effect = instead.effects.emplace_back();
       effect.scored = scored;
-      const EffectRefit with = Tried(always, &effect);
+      const EffectRefit with = Tried(always, bare, &effect);
       if (with.message.empty()) SetEvidence(with.hypothesis, before, &effect);
     }
     return instead;
@@ -180,11 +181,13 @@ class Refits {
     RankedEffect& ranked = diagnosis_.ranking[k];
     if (ranked.refitted || done_ == most_) return;
     ++done_;
-    refits_[k] = Tried(ranking_.adopted, &ranked);
+    refits_[k] = Tried(ranking_.adopted, present_, &ranked);
   }
-  EffectRefit Tried(const AdoptedNuisances& adopted, RankedEffect* effect) const {
+  EffectRefit Tried(const AdoptedNuisances& adopted, const EffectRefit& without,
+                    RankedEffect* effect) const {
+    const bool is_far_off = InNoise(without.hypothesis) > kFarOff;
     EffectRefit refit =
-        Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, &progress_);
+        Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, is_far_off, &progress_);
     effect->refitted = true;
     effect->refit_message = refit.message;
     effect->errors = refit.errors;

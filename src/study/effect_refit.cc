@@ -172,7 +172,7 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,
-                  const LinearisedMisfit& misfit, Progress* progress) {
+                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress) {
   const PredictionStudy chosen = problem.AsChosen();
   const PredictionStudy study = effect != nullptr ? WithEffect(chosen, *effect) : chosen;
   const CalibrationProblem with(study, problem.body()->mesh);
@@ -245,7 +245,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
   const bool arrived =
       !refit.calibration.estimates.empty() && refit.calibration.rms <= kMayBeAstray;
-  if (effect != nullptr && !arrived) {
+  if (effect != nullptr && is_far_off && !arrived) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
     const Calibration afresh = FitFrom(with, with.Start(), progress);
     if (afresh.parameters.size() == own) {

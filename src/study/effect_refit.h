@@ -18,7 +18,7 @@ struct ModelErrors {
   // Of the fitted recordings, with what was adopted taken away; held out, in σ.
   double without_nuisances = 0;
   double unfitted_in_noise = 0;  // of recordings that were not fitted, in σ; 0: there are none
-  bool has_held_out = false;  // false: the fitted frames stand for them
+  bool has_held_out = false;     // false: the fitted frames stand for them
 };
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
 
@@ -48,10 +48,12 @@ struct EffectRefit {
 
 // From where first order expects the best parameters, or from `values` where that is nearer. Null
 // `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
-// Leaves the study's effects at `values`. `misfit`: of the model as it is. Throws Interrupted.
+// Leaves the study's effects at `values`. `misfit`: of the model as it is. `is_far_off`: so is the
+// model as it is, and a refit from there that leaves more than kMayBeAstray is made again from
+// where the model with the effect ends when it is fitted afresh. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,
-                  const LinearisedMisfit& misfit, Progress* progress);
+                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress);
 
 }  // namespace lacuna
 

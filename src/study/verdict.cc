@@ -143,7 +143,13 @@ void Decide(Diagnosis* diagnosis) {
     // What mesh, step and dimensions change is simulated and bounded: no free directions.
     if (!nuisance.candidate.is_always_taken) in_the_model += std::max(0.0, nuisance.evidence);
   }
-  if (evidence < std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model})) {
+  // What mesh or step may lend is no evidence where the model is at the noise without.
+  double lent = 0;
+  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
+    lent = std::max(lent, kDoubtful * nuisance.doubt + kLeastLead);
+  const double needed = std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model,
+                                  diagnosis->present_in_noise <= kAtNoise ? lent : 0.0});
+  if (evidence < needed) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);
     return;
   }
@@ -186,7 +192,7 @@ void Decide(Diagnosis* diagnosis) {
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : kOtherRival;
-    if (kDoubtful * nuisance.doubt > evidence - kLeastLead) {
+    if (kDoubtful * nuisance.doubt + kLeastLead > evidence) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
     } else if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))

@@ -49,7 +49,8 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   if (!effect->refitted) {
     Progress progress(Silent());
     const EffectRefit refit =
-        Refit(problem, values, &effect->scored, {}, problem.Linearise(values, false), &progress);
+        Refit(problem, values, &effect->scored, {}, problem.Linearise(values, false),
+              diagnosis.present_in_noise > kFarOff, &progress);
     if (!refit.message.empty()) return;
     calibration = refit.calibration;
     in_noise = refit.errors.without_nuisances;

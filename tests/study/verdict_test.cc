@@ -8,6 +8,7 @@
 namespace lacuna {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using Verdict = Diagnosis::Verdict;
 
@@ -75,6 +76,21 @@ TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
   EXPECT_NE(diagnosis.explanation.find("11.0 σ against 12.0 σ"), std::string::npos)
       << diagnosis.explanation;
+}
+
+// What a finer mesh might change could be what the effect explains.
+TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
+  Diagnosis diagnosis = SaggingBeam(0, 0);
+  diagnosis.nuisances.emplace_back().candidate.name = "mesh";
+  diagnosis.nuisances.back().candidate.is_always_taken = true;
+  diagnosis.nuisances.back().doubt = 200;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ are no noise";
+  EXPECT_THAT(diagnosis.effects, Contains("mesh"));
+  diagnosis.present_in_noise = 1;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
 }
 
 TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
