@@ -46,6 +46,10 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
       lost, misfit.frames.size());
 }
 
+bool HasTheSameMarkers(const Recording& a, const Recording& b) {
+  return a.markers.names == b.markers.names && a.marker_places == b.marker_places;
+}
+
 }  // namespace
 
 CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
@@ -119,7 +123,23 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
   if (first_nuisance_[recording] >= 0)
     return values.segment(first_nuisance_[recording],
                           static_cast<Eigen::Index>(model.nuisances().size()));
-  return OwnNuisance(model, ErrorsOf(model));
+  return OwnNuisance(model, ErrorsOf(model), PlacesFromFitted(recording, values));
+}
+
+std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
+    size_t recording, const Eigen::VectorXd& values) const {
+  if (models_[recording].Markers() == nullptr || first_nuisance_[recording] >= 0)
+    return std::nullopt;
+  for (size_t r = 0; r < models_.size(); ++r) {
+    const RecordingModel& fitted = models_[r];
+    if (first_nuisance_[r] < 0 || fitted.Markers() == nullptr) continue;
+    if (!HasTheSameMarkers(models_[recording].item().recording, fitted.item().recording)) continue;
+    const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(r, values), {});
+    if (!misfit.summary.IsUsable()) return std::nullopt;
+    return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
+                       std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
+  }
+  return std::nullopt;
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,11 @@ class CalibrationProblem {
   // Recording r's nuisances: among the parameters where it is fitted; else found from its first
   // tenth, the model staying as `values` have set it (SetModel).
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
+  // The errors of the marker places of a recording that is not fitted (3 × markers, m), from the
+  // first fitted recording that has markers of the same names at the same places: they are on the
+  // object, and so the same in both. None where no recording has, and of scans.
+  std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
+                                                  const Eigen::VectorXd& values) const;
 
   // Gives the study's effects, which other problems may share and have changed, these values.
   void SetModel(const Eigen::VectorXd& values) const;

@@ -134,7 +134,7 @@ class Refits {
     const AdoptedNuisances always = ranking_.adopted.Always();
     const EffectRefit bare =
         Refit(problem_, values_, nullptr, always, ranking_.misfit, false, &progress_);
-    CHECK(bare.message.empty()) << bare.message;
+    if (!bare.message.empty()) return instead;
     const HypothesisEvidence before = EvidenceOf(bare.hypothesis, diagnosis_.noise_level);
     instead.bare = bare.errors;
     instead.nuisances =

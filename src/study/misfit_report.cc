@@ -15,6 +15,7 @@ constexpr double kFewestCompared = 0.85;
 
 void AddMarkerStrains(const PredictionStudy& study, const RecordingMisfit& misfit,
                       const Recording& recording, std::vector<std::string>* strains) {
+  if (!misfit.has_own_places) return;
   const std::vector<std::string>& names = recording.markers.names;
   for (Eigen::Index m = 0; m < misfit.place_offset.cols(); ++m) {
     const Eigen::VectorXd offset = misfit.place_offset.col(m);

@@ -15,7 +15,9 @@ constexpr int kRounds = 3;
 
 }  // namespace
 
-Eigen::VectorXd OwnNuisance(const RecordingModel& model, const MeasurementErrors& errors) {
+Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
+                            const std::optional<Eigen::MatrixXd>& place_offset) {
+  if (place_offset) errors.common = 0;
   std::vector<CalibratedParameter> own;
   std::vector<MisfitDirection> directions;
   for (const auto& entry : model.nuisances()) {
@@ -38,11 +40,12 @@ Eigen::VectorXd OwnNuisance(const RecordingModel& model, const MeasurementErrors
                         kept.empty() ? nullptr : &kept);
       Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
       if (!prediction.usable) return prediction;
-      if (kept.empty()) kept = std::move(misfit.observed);
       const auto whitened = [&](const Eigen::MatrixXd& rows) {
         return Whitened(rows, misfit.count, misfit.points, errors, misfit.deformation);
       };
-      prediction.residual = whitened(misfit.residual);
+      prediction.residual =
+          whitened(place_offset ? misfit.ResidualWithout(*place_offset) : misfit.residual);
+      if (kept.empty()) kept = std::move(misfit.observed);
       if (with_jacobian) prediction.jacobian = whitened(misfit.by);
       return prediction;
     });

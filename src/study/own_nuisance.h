@@ -3,15 +3,18 @@
 #define LACUNA_STUDY_OWN_NUISANCE_H_
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "study/measurement_errors.h"
 #include "study/predicted_motion.h"
 
 namespace lacuna {
 
-// Fitted to the first tenth of the recording, the model staying as it is. Empty where that cannot
-// be predicted.
-Eigen::VectorXd OwnNuisance(const RecordingModel& model, const MeasurementErrors& errors);
+// Fitted to the first tenth of the recording, the model staying as it is; with the errors of its
+// markers' places (3 × markers, m) where other recordings tell them. Empty where that cannot be
+// predicted.
+Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
+                            const std::optional<Eigen::MatrixXd>& place_offset);
 
 }  // namespace lacuna
 

@@ -74,6 +74,18 @@ void RequireStaticStart(const PredictedRecording& item) {
 
 }  // namespace
 
+Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) const {
+  Eigen::VectorXd rest = residual;
+  const Eigen::Index components = Components();
+  for (size_t at = 0; at < count.size(); ++at) {
+    const int point = static_cast<int>(at) % points;
+    if (count[at] > 0)
+      rest.segment(components * static_cast<Eigen::Index>(at), components) -=
+          observed[at / static_cast<size_t>(points)].Shown(point, place_offset.col(point));
+  }
+  return rest;
+}
+
 RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
                                const TetMesh& mesh, std::shared_ptr<const Body> body,
                                const SurfacePatches& patches)

@@ -29,6 +29,8 @@ struct Misfit {
   Eigen::Index Components() const {
     return count.empty() ? 0 : residual.size() / static_cast<Eigen::Index>(count.size());
   }
+  // The residual less what errors of the points' places (components × points, m) show as.
+  Eigen::VectorXd ResidualWithout(const Eigen::MatrixXd& place_offset) const;
 };
 
 // Of one column of a Misfit's derivative.

@@ -10,6 +10,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   MisfitMeasure measure;
   const Misfit& misfit = recording.misfit;
   const Eigen::Index components = misfit.Components();
+  const Eigen::VectorXd residual = misfit.ResidualWithout(recording.place_offset);
   double squares = 0, weighted = 0;
   for (size_t f = 0; f < recording.fitted.size(); ++f) {
     if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
@@ -17,9 +18,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
     for (int point = 0; point < misfit.points; ++point) {
       const Eigen::Index at = static_cast<Eigen::Index>(f) * misfit.points + point;
       if (misfit.count[at] == 0) continue;
-      const double distance = (misfit.residual.segment(components * at, components) -
-                               misfit.observed[f].Shown(point, recording.place_offset.col(point)))
-                                  .norm();
+      const double distance = residual.segment(components * at, components).norm();
       squares += distance * distance;
       weighted += misfit.count[at] * distance * distance;
       measure.largest = std::max(measure.largest, distance);
@@ -46,16 +45,20 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
     RecordingMisfit recording;
     recording.name = item.name;
     recording.misfit = model.Predict(item.frames, problem.NuisanceOf(r, values), {});
-    // Of a recording that is not fitted, only what it shows before it moves tells the places.
+    // Of a recording that is not fitted, only what it shows before it moves tells the places, where
+    // no fitted one does.
     std::vector<char> tells_places;
     for (const int frame : recording.misfit.frames) {
       const double time = item.recording.times[frame];
       recording.fitted.push_back(item.fitted && time <= item.fit_until);
       tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
     }
-    recording.place_offset =
-        CommonError(recording.misfit.residual, recording.misfit.count, recording.misfit.points,
-                    errors, tells_places, recording.misfit.deformation);
+    const std::optional<Eigen::MatrixXd> known = problem.PlacesFromFitted(r, values);
+    recording.has_own_places = !known;
+    recording.place_offset = known ? *known
+                                   : CommonError(recording.misfit.residual, recording.misfit.count,
+                                                 recording.misfit.points, errors, tells_places,
+                                                 recording.misfit.deformation);
     recording.in_fit = Measure(recording, true, errors.noise);
     recording.held_out = Measure(recording, false, errors.noise);
     all.push_back(std::move(recording));

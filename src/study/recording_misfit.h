@@ -27,11 +27,12 @@ struct RecordingMisfit {
   Misfit misfit;
   std::vector<char> fitted;        // per frame of the misfit
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
+  bool has_own_places = true;      // false: they are those that fitted recordings tell
   MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
 };
 
-// Of every recording at these values of the problem's parameters. The nuisances of one that is not
-// fitted are found from its first tenth, the model staying as it is.
+// Of every recording at these values of the problem's parameters; of one that is not fitted, as
+// CalibrationProblem::NuisanceOf and PlacesFromFitted have it.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values);
 

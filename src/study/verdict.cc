@@ -179,9 +179,8 @@ void Decide(Diagnosis* diagnosis) {
     diagnosis->effects.push_back(rival.scored.candidate.type);
     if (!is_close)
       predicts_better += fmt::format(
-          "; {} explains less, e^{:.0f}, but predicts the recordings that were not fitted better, "
-          "to "
-          "{:.1f} σ against {:.1f} σ",
+          "; {} explains less, e^{:.0f}, but predicts the recordings that were not fitted "
+          "better, to {:.1f} σ against {:.1f} σ",
           rival.scored.candidate.type, rival.evidence, error, of_best);
   }
   std::vector<std::string> refine;

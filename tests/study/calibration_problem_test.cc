@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
 
 #include "study/calibration_fits.h"
@@ -138,6 +141,48 @@ TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
   EXPECT_EQ(altered.covariance, plain.covariance);
   const Calibration other = fit("other", shifted_from(15), filmed);
   EXPECT_NE(other.parameters, plain.parameters);
+}
+
+// As if marker m7 were 1.5 mm nearer to the clamp than it is.
+void Misplace(const std::filesystem::path& file) {
+  std::ifstream before(file);
+  std::string text{std::istreambuf_iterator<char>(before), {}};
+  const std::string place = "m7, position: [0.08 m";
+  ASSERT_NE(text.find(place), std::string::npos) << text;
+  text.replace(text.find(place), place.size(), "m7, position: [0.0785 m");
+  std::ofstream(file) << text;
+}
+
+// Where a marker is on the object, a fitted recording tells for one that is not fitted.
+TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
+  const TemporaryFolder folder;
+  HeldBarTruth other_hold;
+  other_hold.hold_force = {0, -0.03, 0.04};
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  WriteBarRecording(folder / "other", FilmHeldBar(other_hold));
+  const auto misfits = [&] {
+    const PredictionStudy study = ReadBarStudy(
+        folder.Path(), {{"recordings:\n",
+                         "recordings:\n  - recording: other/recording.yaml\n    name: other\n"
+                         "    fitted: false\n    clock_deviation: 10 ms\n"
+                         "    hold:\n      region: {half_space: {point: "
+                         "[0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n      release: 0.0437 s\n"},
+                        {"place_deviation: 0.2 mm", "place_deviation: 1 mm"}});
+    const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
+    const Calibration calibration = FitOf(problem);
+    EXPECT_TRUE(calibration.usable) << calibration.message;
+    return MisfitsOf(problem, calibration.parameters);
+  };
+  Misplace(folder / "other" / "recording.yaml");
+  const std::vector<RecordingMisfit> apart = misfits();
+  EXPECT_TRUE(apart[0].has_own_places);
+  Misplace(folder / "recording.yaml");
+  const std::vector<RecordingMisfit> together = misfits();
+  EXPECT_FALSE(together[0].has_own_places);
+  EXPECT_EQ(together[0].place_offset, together[1].place_offset);
+  EXPECT_NEAR(std::abs(together[0].place_offset(0, 7)), 1.5e-3, 2e-4);
+  // The meshes differ.
+  EXPECT_LT(together[0].held_out.rms, 3e-4);
 }
 
 std::string MessageOf(const PredictionStudy& study) {
