@@ -230,11 +230,14 @@ void DecideAgainstNuisances(Diagnosis* diagnosis) {
   const RankedEffect& best = *rivals.front();
   std::vector<std::string> effects;
   for (const RankedEffect* rival : rivals) effects.push_back(rival->scored.candidate.type);
+  // Look-alikes that were not tried cannot be ruled out.
+  for (const std::string& other : best.scored.look_alikes)
+    if (Find(instead.effects, other) == nullptr) effects.push_back(other);
   diagnosis->verdict = Verdict::kAmbiguous;
   diagnosis->explanation = fmt::format(
-      "{} explains nearly what {} would, with odds of e^{:.0f} and e^{:.0f}, and lowers the {} "
+      "{}: without {}, whose odds are e^{:.0f}, the best of them has e^{:.0f} and lowers the {} "
       "error from {:.1f} σ to {:.1f} σ: these recordings cannot tell them apart",
-      Titles(effects), fmt::join(diagnosis->effects, ", "), best.evidence, instead.nuisances,
+      Titles(effects), fmt::join(diagnosis->effects, ", "), instead.nuisances, best.evidence,
       diagnosis->errors.has_held_out ? "held-out" : "fitted", instead.bare.without_nuisances,
       best.errors.without_nuisances);
   diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;

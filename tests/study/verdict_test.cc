@@ -95,9 +95,10 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
 
 TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
+  diagnosis.instead.effects.front().scored.look_alikes = {"drag"};  // which was not tried
   DecideAgainstNuisances(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
-  EXPECT_THAT(diagnosis.effects, ElementsAre("mass_damping", "time_jitter"));
+  EXPECT_THAT(diagnosis.effects, ElementsAre("mass_damping", "drag", "time_jitter"));
   EXPECT_NE(diagnosis.experiment.find("check the camera's clock"), std::string::npos);
 }
 
