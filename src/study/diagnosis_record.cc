@@ -21,7 +21,26 @@ double FromNumber(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
 }
 
-RecordedEffect EffectFrom(const json& entry) {
+// Of a model; has_held_out is the recordings', and stands once.
+json ErrorsJson(const ModelErrors& errors) {
+  return {{"in_fit_rms_m", errors.in_fit_rms},
+          {"held_out_rms_m", errors.held_out_rms},
+          {"held_out_in_noise", errors.in_noise},
+          {"held_out_in_noise_without_nuisances", errors.without_nuisances},
+          {"unfitted_in_noise", errors.unfitted_in_noise}};
+}
+ModelErrors ErrorsFrom(const json& value, bool has_held_out) {
+  ModelErrors errors;
+  errors.in_fit_rms = value.at("in_fit_rms_m");
+  errors.held_out_rms = value.at("held_out_rms_m");
+  errors.in_noise = value.at("held_out_in_noise");
+  errors.without_nuisances = value.at("held_out_in_noise_without_nuisances");
+  errors.unfitted_in_noise = value.at("unfitted_in_noise");
+  errors.has_held_out = has_held_out;
+  return errors;
+}
+
+RecordedEffect EffectFrom(const json& entry, bool has_held_out) {
   RecordedEffect effect;
   effect.type = entry.at("effect");
   effect.variant = entry.at("variant");
@@ -34,15 +53,12 @@ RecordedEffect EffectFrom(const json& entry) {
                             FromNumber(size.at("deviation")), FromNumber(size.at("detectable"))});
   effect.look_alikes = entry.at("look_alikes").get<std::vector<std::string>>();
   effect.refitted = entry.at("refitted");
+  effect.errors.has_held_out = has_held_out;
   if (effect.refitted) {
     const json& refit = entry.at("refit");
     effect.refit_message = refit.at("message");
     effect.refit_evidence = refit.at("evidence");
-    effect.errors.in_fit_rms = refit.at("in_fit_rms_m");
-    effect.errors.held_out_rms = refit.at("held_out_rms_m");
-    effect.errors.in_noise = refit.at("held_out_in_noise");
-    effect.errors.without_nuisances = refit.at("held_out_in_noise_without_nuisances");
-    effect.errors.unfitted_in_noise = refit.at("unfitted_in_noise");
+    effect.errors = ErrorsFrom(refit, has_held_out);
   }
   return effect;
 }
@@ -60,17 +76,14 @@ DiagnosisRecord FromJson(const json& value) {
   record.left_in_noise = value.at("left_in_noise");
   const json& instead = value.at("instead");
   record.nuisances_evidence = instead.at("nuisances_evidence");
-  for (const json& entry : instead.at("effects")) record.instead.push_back(EffectFrom(entry));
-  record.errors = {value.at("in_fit_rms_m"),      value.at("held_out_rms_m"),
-                   value.at("held_out_in_noise"), value.at("held_out_in_noise_without_nuisances"),
-                   value.at("unfitted_in_noise"), value.at("has_held_out")};
+  for (const json& entry : instead.at("effects"))
+    record.instead.push_back(EffectFrom(entry, value.at("has_held_out")));
+  record.errors = ErrorsFrom(value, value.at("has_held_out"));
   for (const json& entry : value.at("nuisances"))
     record.nuisances.push_back({entry.at("nuisance"), entry.at("what"), entry.at("evidence"),
                                 entry.at("explained_share"), entry.at("adopted")});
-  for (const json& entry : value.at("ranking")) {
-    record.ranking.push_back(EffectFrom(entry));
-    record.ranking.back().errors.has_held_out = record.errors.has_held_out;
-  }
+  for (const json& entry : value.at("ranking"))
+    record.ranking.push_back(EffectFrom(entry, record.errors.has_held_out));
   for (const json& entry : value.at("untried"))
     record.untried.push_back({entry.at("effect"), entry.at("why")});
   return record;
@@ -105,12 +118,8 @@ json EffectJson(const RankedEffect& effect) {
     entry["refit"] = {{"message", effect.refit_message},
                       {"evidence", effect.evidence},
                       {"explained_share", effect.explained},
-                      {"left_in_noise", effect.left_in_noise},
-                      {"in_fit_rms_m", effect.errors.in_fit_rms},
-                      {"held_out_rms_m", effect.errors.held_out_rms},
-                      {"held_out_in_noise", effect.errors.in_noise},
-                      {"held_out_in_noise_without_nuisances", effect.errors.without_nuisances},
-                      {"unfitted_in_noise", effect.errors.unfitted_in_noise}};
+                      {"left_in_noise", effect.left_in_noise}};
+    entry["refit"].update(ErrorsJson(effect.errors));
   }
   return entry;
 }
@@ -133,31 +142,26 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   json untried = json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  const json all = {
-      {"schema_version", 4},
-      {"verdict", VerdictName(diagnosis.verdict)},
-      {"effects", diagnosis.effects},
-      {"explanation", diagnosis.explanation},
-      {"experiment", diagnosis.experiment},
-      {"noise_m", diagnosis.noise},
-      {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
-      {"noise_variance_factor", diagnosis.noise_level.variance},
-      {"in_fit_rms_m", diagnosis.errors.in_fit_rms},
-      {"held_out_rms_m", diagnosis.errors.held_out_rms},
-      {"held_out_in_noise", diagnosis.errors.in_noise},
-      {"held_out_in_noise_without_nuisances", diagnosis.errors.without_nuisances},
-      {"unfitted_in_noise", diagnosis.errors.unfitted_in_noise},
-      {"has_held_out", diagnosis.errors.has_held_out},
-      {"control_evidence", diagnosis.control},
-      {"left_in_noise", diagnosis.left_in_noise},
-      {"present_in_noise", diagnosis.present_in_noise},
-      {"nuisances", nuisances},
-      {"ranking", ranking},
-      {"instead",
-       {{"nuisances_evidence", diagnosis.instead.nuisances},
-        {"held_out_in_noise_without_nuisances", diagnosis.instead.bare.without_nuisances},
-        {"effects", instead}}},
-      {"untried", untried}};
+  json all = {{"schema_version", 4},
+              {"verdict", VerdictName(diagnosis.verdict)},
+              {"effects", diagnosis.effects},
+              {"explanation", diagnosis.explanation},
+              {"experiment", diagnosis.experiment},
+              {"noise_m", diagnosis.noise},
+              {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
+              {"noise_variance_factor", diagnosis.noise_level.variance},
+              {"has_held_out", diagnosis.errors.has_held_out},
+              {"control_evidence", diagnosis.control},
+              {"left_in_noise", diagnosis.left_in_noise},
+              {"present_in_noise", diagnosis.present_in_noise},
+              {"nuisances", nuisances},
+              {"ranking", ranking},
+              {"instead",
+               {{"nuisances_evidence", diagnosis.instead.nuisances},
+                {"held_out_in_noise_without_nuisances", diagnosis.instead.bare.without_nuisances},
+                {"effects", instead}}},
+              {"untried", untried}};
+  all.update(ErrorsJson(diagnosis.errors));
   WriteFileAtomically(file, all.dump(2) + "\n");
 }
 

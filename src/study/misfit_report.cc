@@ -57,6 +57,7 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
     const RecordingMisfit& recording = misfits[r];
     const RecordingModel& model = problem.models()[r];
     const Misfit& misfit = recording.misfit;
+    const Eigen::VectorXd residual = misfit.ResidualWithout(recording.place_offset);
     for (size_t f = 0; f < misfit.frames.size(); ++f) {
       const int frame = misfit.frames[f];
       const Observed& observed = misfit.observed[f];
@@ -65,11 +66,9 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
         const Eigen::Vector3d measured = observed.measured.col(m);
         Eigen::Vector3d difference = Eigen::Vector3d::Constant(kNotMeasured);
         if (misfit.count[at] > 0 && misfit.Components() == 3)
-          difference =
-              misfit.residual.segment<3>(3 * at) - observed.Shown(m, recording.place_offset.col(m));
+          difference = residual.segment<3>(3 * at);
         if (misfit.count[at] > 0 && misfit.Components() == 1)
-          difference =
-              (misfit.residual[at] - recording.place_offset(0, m)) * observed.normal.col(m);
+          difference = residual[at] * observed.normal.col(m);
         const double row[] = {static_cast<double>(r),
                               static_cast<double>(frame),
                               model.item().recording.times[frame],

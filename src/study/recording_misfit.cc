@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "study/own_nuisance.h"
 
 namespace lacuna {
 namespace {
@@ -44,7 +47,10 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
     const MeasurementErrors errors = problem.ErrorsOf(model);
     RecordingMisfit recording;
     recording.name = item.name;
-    recording.misfit = model.Predict(item.frames, problem.NuisanceOf(r, values), {});
+    const std::optional<Eigen::MatrixXd> known = problem.PlacesFromFitted(r, values);
+    const Eigen::VectorXd nuisance =
+        known ? OwnNuisance(model, errors, known) : problem.NuisanceOf(r, values);
+    recording.misfit = model.Predict(item.frames, nuisance, {});
     // Of a recording that is not fitted, only what it shows before it moves tells the places, where
     // no fitted one does.
     std::vector<char> tells_places;
@@ -53,7 +59,6 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
       recording.fitted.push_back(item.fitted && time <= item.fit_until);
       tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
     }
-    const std::optional<Eigen::MatrixXd> known = problem.PlacesFromFitted(r, values);
     recording.has_own_places = !known;
     recording.place_offset = known ? *known
                                    : CommonError(recording.misfit.residual, recording.misfit.count,

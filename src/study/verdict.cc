@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "effects/catalogue.h"
 
@@ -75,6 +76,19 @@ const RankedEffect* Find(const std::vector<RankedEffect>& ranking, const std::st
   return nullptr;
 }
 
+// The usable refits that count, the one with the most evidence first.
+std::vector<const RankedEffect*> ByEvidence(
+    const std::vector<RankedEffect>& effects,
+    const std::function<bool(const RankedEffect& effect)>& counts) {
+  std::vector<const RankedEffect*> chosen;
+  for (const RankedEffect& effect : effects)
+    if (effect.refitted && effect.refit_message.empty() && counts(effect))
+      chosen.push_back(&effect);
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  return chosen;
+}
+
 // Share of the squared misfit beyond that of noise that went, both misfits in σ.
 double ExcessExplained(double before, double after) {
   if (before <= 1) return 1;
@@ -127,13 +141,10 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const bool is_noise = diagnosis->left_in_noise <= kAtNoise;
-  std::vector<const RankedEffect*> refitted;
-  for (const RankedEffect& effect : diagnosis->ranking)
-    if (effect.refitted && effect.refit_message.empty() &&
-        effect.errors.without_nuisances <= kNoWorse * diagnosis->errors.without_nuisances)
-      refitted.push_back(&effect);
-  std::stable_sort(refitted.begin(), refitted.end(),
-                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  const std::vector<const RankedEffect*> refitted =
+      ByEvidence(diagnosis->ranking, [&](const RankedEffect& effect) {
+        return effect.errors.without_nuisances <= kNoWorse * diagnosis->errors.without_nuisances;
+      });
   const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
   double in_the_model = 0;
   bool corrected = false;
@@ -218,15 +229,12 @@ void Decide(Diagnosis* diagnosis) {
 
 void DecideAgainstNuisances(Diagnosis* diagnosis) {
   const Diagnosis::Instead& instead = diagnosis->instead;
-  std::vector<const RankedEffect*> rivals;
-  for (const RankedEffect& effect : instead.effects)
-    if (effect.refit_message.empty() &&
-        effect.evidence > std::max(diagnosis->control, kInstead * instead.nuisances) &&
-        effect.errors.without_nuisances < kPredicts * instead.bare.without_nuisances)
-      rivals.push_back(&effect);
+  const std::vector<const RankedEffect*> rivals =
+      ByEvidence(instead.effects, [&](const RankedEffect& effect) {
+        return effect.evidence > std::max(diagnosis->control, kInstead * instead.nuisances) &&
+               effect.errors.without_nuisances < kPredicts * instead.bare.without_nuisances;
+      });
   if (rivals.empty()) return;
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
   const RankedEffect& best = *rivals.front();
   std::vector<std::string> effects;
   for (const RankedEffect* rival : rivals) effects.push_back(rival->scored.candidate.type);

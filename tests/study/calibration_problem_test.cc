@@ -179,7 +179,8 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   Misplace(folder / "recording.yaml");
   const std::vector<RecordingMisfit> together = misfits();
   EXPECT_FALSE(together[0].has_own_places);
-  EXPECT_EQ(together[0].place_offset, together[1].place_offset);
+  // Each from a prediction whose equilibrium was sought near another one.
+  EXPECT_LT((together[0].place_offset - together[1].place_offset).lpNorm<Eigen::Infinity>(), 1e-9);
   EXPECT_NEAR(std::abs(together[0].place_offset(0, 7)), 1.5e-3, 2e-4);
   // The meshes differ.
   EXPECT_LT(together[0].held_out.rms, 3e-4);
