@@ -76,6 +76,7 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
   }
   for (CalibratedParameter& parameter : parameters_)
     if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
+  estimates_noise_ = !has_scans && (noise_ == 0 || study.noise_is_estimated);
   if (noise_ == 0 || !has_markers) noise_ = of_markers;
   if (has_markers && !(noise_ > 0)) {
     throw InputError(
@@ -100,6 +101,7 @@ MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) cons
 PredictionStudy CalibrationProblem::AsChosen() const {
   PredictionStudy given = study_;
   given.noise = noise_;
+  given.noise_is_estimated = estimates_noise_;
   given.scan.noise = scan_noise_;
   given.patches = patches_;
   return given;

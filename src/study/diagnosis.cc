@@ -154,7 +154,8 @@ class Refits {
   // The noise is what the best of them leaves; evidence is weighed with that.
   void Weigh() {
     const FittedHypothesis& best = Best();
-    diagnosis_.noise_level = LevelOf(best.left, best.misfit, best.misfit.by.cols());
+    diagnosis_.noise_level =
+        LevelOf(best.left, best.misfit, best.misfit.by.cols(), problem_.LeastNoiseVariance());
     diagnosis_.left_in_noise = InNoise(best);
     const HypothesisEvidence before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level);
     for (size_t k = 0; k < refits_.size(); ++k)

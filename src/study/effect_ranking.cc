@@ -230,7 +230,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
 
   // What no effect explains is taken for noise.
   const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
-  ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols());
+  ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols(), problem.LeastNoiseVariance());
   for (NuisanceCandidate& nuisance :
        grips.Candidates(misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects)))
     AddNuisance(std::move(nuisance), false);

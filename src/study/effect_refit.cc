@@ -17,9 +17,10 @@ namespace {
 // A rival need not be at its very best to be told from one that fits.
 constexpr int kIterations = 25;
 constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
-// Of the steps that then take the held-out frames in: the most, and the log evidence that ends
-// them.
-constexpr int kSettlingSteps = 4;
+// Of the steps that then take the held-out frames in: the most, by how much those that lead nowhere
+// are shortened, and the log evidence to be won below which none is made.
+constexpr int kSettlingSteps = 5;
+constexpr double kShorter = 0.3;
 constexpr double kSettled = 0.5;
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
@@ -116,19 +117,27 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
 HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns = WhitenedRows(misfit.by, misfit, noise.correlation_time, false);
-  const Eigen::VectorXd left = WhitenedRows(hypothesis.left, misfit, noise.correlation_time, false);
+  const Eigen::VectorXd residual =
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
+  const auto own = hypothesis.priors.begin() + hypothesis.parameters;
+  // What was adopted is linear, hence at its best; the parameters are where they are.
+  const LinearFit adopted =
+      LinearModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
+                  {own, hypothesis.priors.end()})
+          .FitAll(noise.variance);
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
-    if (k < hypothesis.parameters && std::isfinite(prior.deviation))
-      prior_cost += std::pow(prior.mean / prior.deviation, 2);
+    const double change = k < hypothesis.parameters ? 0 : adopted.change[k - hypothesis.parameters];
+    if (std::isfinite(prior.deviation))
+      prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
   // The determinant is that of the linear model, whatever its residual.
   const LinearFit nothing =
-      LinearModel(Eigen::VectorXd::Zero(left.size()), columns, WithoutMeans(hypothesis.priors))
+      LinearModel(Eigen::VectorXd::Zero(residual.size()), columns, WithoutMeans(hypothesis.priors))
           .FitAll(noise.variance);
   HypothesisEvidence evidence;
-  evidence.misfit = left.squaredNorm();
+  evidence.misfit = adopted.misfit;
   evidence.log_evidence =
       nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
   return evidence;
@@ -136,15 +145,12 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 
 namespace {
 
-// The values after a step to first order from a hypothesis' own, which takes the held-out frames in
-// too.
-Eigen::VectorXd Moved(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                      const FittedHypothesis& hypothesis, const LinearisedMisfit& same) {
-  const LinearFit fit =
-      LinearModel(WhitenedRows(hypothesis.misfit.residual, same, 0, false),
-                  WhitenedRows(hypothesis.misfit.by, same, 0, false), hypothesis.priors)
-          .FitAll(1);
-  return MovedBy(problem.parameters(), values, fit.change);
+// To first order, at the parameters that are best for all frames.
+LinearFit BestNear(const FittedHypothesis& hypothesis) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  return LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
+                     WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
+      .FitAll(1);
 }
 
 // The hypothesis at the parameters that are best for all frames, sought from `values`: the held-out
@@ -155,15 +161,20 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
   FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
   if (!hypothesis.misfit.usable) return hypothesis;
   double evidence = EvidenceOf(hypothesis, white).log_evidence;
+  double part = 1;  // of the step that first order proposes
   for (int step = 0; step < kSettlingSteps; ++step) {
-    values = Moved(problem, values, hypothesis, same);
-    FittedHypothesis next = HypothesisAt(problem, values, adopted, same, &hypothesis);
-    if (!next.misfit.usable) break;
-    const double gain = EvidenceOf(next, white).log_evidence - evidence;
-    if (!(gain > 0)) break;
+    const LinearFit best = BestNear(hypothesis);
+    if (best.log_evidence - evidence < kSettled) break;
+    const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, part * best.change);
+    FittedHypothesis next = HypothesisAt(problem, moved, adopted, same, &hypothesis);
+    const double gain = next.misfit.usable ? EvidenceOf(next, white).log_evidence - evidence : -1.0;
+    if (!(gain > 0)) {
+      part *= kShorter;
+      continue;
+    }
+    values = moved;
     evidence += gain;
     hypothesis = std::move(next);
-    if (gain < kSettled) break;
   }
   return hypothesis;
 }

@@ -48,7 +48,7 @@ Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit
 }
 
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
-                   Eigen::Index parameters) {
+                   Eigen::Index parameters, double least) {
   NoiseLevel level;
   const auto pooled = [&](const Eigen::VectorXd& rows) {
     SeriesStatistics mean{0, 0, 0};
@@ -66,7 +66,7 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
   const Eigen::VectorXd white = WhitenedRows(left, misfit, level.correlation_time, false);
   const double freedom =
       static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(misfit) - parameters));
-  level.variance = std::max(1.0, white.squaredNorm() / freedom) * pooled(white).long_run;
+  level.variance = std::max(least, white.squaredNorm() / freedom) * pooled(white).long_run;
   return level;
 }
 

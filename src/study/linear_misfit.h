@@ -30,13 +30,13 @@ Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit
 // The noise that hypotheses are weighed with.
 struct NoiseLevel {
   double correlation_time = 0;  // s
-  double variance = 1;  // of the whitened rows: more than 1 where the best hypothesis leaves more
+  double variance = 1;  // of the whitened rows
 };
 
-// The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and larger
-// than the study's own where it is larger.
+// The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and as
+// large, but of no smaller variance than `least` times the study's.
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
-                   Eigen::Index parameters);
+                   Eigen::Index parameters, double least);
 
 // Rows that were observed.
 Eigen::Index ObservedRows(const LinearisedMisfit& misfit);

@@ -67,9 +67,10 @@ struct PredictionStudy {
   double density = 0;                            // kg/m³
   std::vector<std::shared_ptr<Effect>> effects;  // the material first
   TimeScheme scheme = TimeScheme::kTwoStep;
-  double time_step = 0.005;        // s
-  bool chooses_time_step = false;  // the fit shortens it as far as the recordings ask for
-  double noise = 0;                // m, of a marker's coordinate; 0: estimated from the recordings
+  double time_step = 0.005;         // s
+  bool chooses_time_step = false;   // the fit shortens it as far as the recordings ask for
+  double noise = 0;                 // m, of a marker's coordinate; 0: estimated from the recordings
+  bool noise_is_estimated = false;  // it has been
   // m, of a marker's place on the object: it adds to all frames alike.
   double place_deviation = 0.001;
   ScanSettings scan;
