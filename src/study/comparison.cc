@@ -208,6 +208,9 @@ ComparedPart MeasurePart(const ComparedRecording& recording, bool fitted, int fi
   part.in_noise = part.rms / recording.LengthOf(recording.noise);
   if (recording.floor > 0) part.in_floor = part.rms / recording.LengthOf(recording.floor);
 
+  part.changing = Rms(PointLengths(Centred(difference)));
+  part.steady = std::sqrt(std::max(0.0, part.rms * part.rms - part.changing * part.changing));
+
   part.in_time = WhitenessInTime(difference);
   const Eigen::VectorXd times = recording.times.segment(begin, count);
   if (count > 1)

@@ -41,6 +41,8 @@ struct ComparedPart {
   int largest_column = -1;
   double in_noise = kUnknown;  // rms over √3 σ, σ the noise that the fit weighed with
   double in_floor = kUnknown;  // rms over √3 times the recording's own floor
+  // m, rms of what is the same in all frames (of each marker, its mean error), and of the rest.
+  double steady = kUnknown, changing = kUnknown;
   TimeWhiteness in_time;
   double correlation_time = kUnknown;  // s
   SpaceWhiteness in_space;

@@ -135,6 +135,13 @@ std::string PartInWords(const ComparedRecording& recording, const ComparedPart& 
   text += fmt::format("; largest {} at {} {}, {:.3f} s. ", Millimetres(part.largest),
                       recording.PointName(), recording.markers[part.largest_marker],
                       recording.times[part.largest_column]);
+  if (part.in_noise >= kBeyondNoise && part.steady > part.changing) {
+    text += fmt::format(
+        "Most of it, {}, is the same in all frames, as of {}, a frame that is turned or a steady "
+        "load; {} change. ",
+        Millimetres(part.steady), recording.is_scan ? "another rest shape" : "misplaced markers",
+        Millimetres(part.changing));
+  }
   text += NoiseInWords(part, recording.is_scan ? "patches" : "markers");
   if (part.in_noise < kBeyondNoise && part.in_time.p_value >= kSignificant &&
       !(part.in_space.p_value < kSignificant))
@@ -181,6 +188,8 @@ json ToJson(const ComparedRecording& recording, const ComparedPart& part) {
           {"rms_m", Number(part.rms)},
           {"in_noise", Number(part.in_noise)},
           {"in_floor", Number(part.in_floor)},
+          {"steady_m", Number(part.steady)},
+          {"changing_m", Number(part.changing)},
           {"largest_m", Number(part.largest)},
           {"largest_marker", part.largest_marker},
           {"mean_difference_m", Numbers(part.mean_error.mean)},

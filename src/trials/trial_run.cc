@@ -64,11 +64,12 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
     const ParameterEstimate& estimate = calibration.estimates[static_cast<size_t>(shared) + k];
     const double truth = hidden.parameters.at(hidden.amplitude[k]);
-    difference += std::pow(estimate.value - truth, 2);
-    size += truth * truth;
+    const double detectable = effect->scored.score.detectable[static_cast<Eigen::Index>(k)];
+    difference += std::pow((estimate.value - truth) / detectable, 2);
+    size += std::pow(truth / detectable, 2);
     outcome->covered.push_back(estimate.low <= truth && truth <= estimate.high);
   }
-  outcome->relative_error = std::sqrt(difference / size);
+  outcome->relative_error = size > 0 ? std::sqrt(difference / size) : 1;
 }
 
 }  // namespace

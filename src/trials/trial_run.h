@@ -22,8 +22,10 @@ struct TrialOutcome {
   // Of the first hidden effect, fitted; false where it is not in the library, has no size, or its
   // fit failed.
   bool has_truth = false;
-  double error_after = 0;     // held out, in multiples of the noise
-  double relative_error = 0;  // of its size: |estimate − truth| / |truth|
+  double error_after = 0;  // held out, in multiples of the noise
+  // |estimate − truth| / |truth|, each component in units of its detectable size: weight along a
+  // bar, say, hardly shows, and need not be known.
+  double relative_error = 0;
   std::vector<char> covered;  // per amplitude: the 95 % interval holds the truth
   double seconds = 0;
 };

@@ -248,6 +248,23 @@ TEST(Comparison, AnErrorThatGoesWithSpeedIsToldSo) {
   EXPECT_THAT(ComparisonInWords(CompareRun(folder / "run"))[0], HasSubstr("It rises with speed"));
 }
 
+// 1 mm to one side, of every second marker: √(1/2) mm, but for noise and for frames in which the
+// last one was not seen.
+TEST(Comparison, AnErrorThatStaysIsToldFromOneThatChanges) {
+  const TemporaryFolder folder;
+  WriteRun(folder / "run", {"a"}, [](int frame, int marker) {
+    return Eigen::Vector3d(0, marker % 2 == 0 ? 1e-3 : 0, 4e-4 * std::sin(frame));
+  });
+  const Comparison comparison = CompareRun(folder / "run");
+  const ComparedPart& fitted = comparison.recordings[0].parts[0];
+  EXPECT_NEAR(fitted.steady, std::sqrt(0.5) * 1e-3, 2e-5);
+  EXPECT_NEAR(fitted.changing, std::sqrt(0.5) * 4e-4, 2e-5);
+  EXPECT_THAT(ComparisonInWords(comparison)[0], HasSubstr("is the same in all frames"));
+  WriteRun(folder / "noise", {"a"}, Nothing);
+  EXPECT_THAT(ComparisonInWords(CompareRun(folder / "noise"))[0],
+              Not(HasSubstr("the same in all")));
+}
+
 TEST(Comparison, RepeatsAreComparedWithEachOther) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a", "b"}, Nothing);
