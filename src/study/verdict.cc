@@ -43,6 +43,9 @@ constexpr double kMostOfIt = 0.85;
 // Where more than noise is left, a nuisance that explains this share of the misfit is still what is
 // to be seen to first.
 constexpr double kMostByNuisance = 0.5;
+// Where the error is that of the noise, a nuisance that explains less than this share of it is
+// certain, and does not matter.
+constexpr double kNuisanceMatters = 0.05;
 // In place of adopted nuisances, an effect is their rival with this part of their evidence, where
 // it lowers the held-out error to this part: a time error of every frame follows each frame as well
 // as physics does, but predicts none.
@@ -99,14 +102,19 @@ double ExcessExplained(double before, double after) {
 void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noise) {
   const std::string error = fmt::format(
       "{:.3f} mm or {:.1f} σ", 1e3 * diagnosis->errors.held_out_rms, diagnosis->errors.in_noise);
-  std::vector<std::string> advice;
+  std::vector<std::string> advice, small;
   double most_explained = 0;
+  const bool at_noise = diagnosis->errors.in_noise <= kAtNoise;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
-    const bool counts = nuisance.candidate.is_always_taken
-                            ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed &&
-                                  diagnosis->errors.in_noise > kAtNoise
-                            : nuisance.adopted || nuisance.evidence > kNamed;
+    const bool counts =
+        nuisance.candidate.is_always_taken
+            ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed && !at_noise
+            : nuisance.adopted || nuisance.evidence > kNamed;
     if (!counts) continue;
+    if (at_noise && nuisance.explained < kNuisanceMatters) {
+      small.push_back(nuisance.candidate.what);
+      continue;
+    }
     most_explained = std::max(most_explained, nuisance.explained);
     diagnosis->effects.push_back(nuisance.candidate.name);
     advice.push_back(fmt::format("{} explains {:.0f} % of the misfit: {}", nuisance.candidate.what,
@@ -120,6 +128,9 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     diagnosis->explanation = fmt::format(
         "the error, {}, is that of the noise, and no effect has evidence beyond what chance gives",
         error);
+    if (!small.empty())
+      diagnosis->explanation += fmt::format("; {} shows, and explains less than {:.0f} % of it",
+                                            fmt::join(small, ", "), 100 * kNuisanceMatters);
   } else {
     diagnosis->verdict = Verdict::kNotInLibrary;
     diagnosis->explanation = fmt::format(

@@ -93,6 +93,28 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
 }
 
+// A grip that is certainly misplaced, by a twentieth of a millimetre.
+TEST(Verdict, TellsASmallNuisanceAtTheNoiseWithoutNamingIt) {
+  Diagnosis diagnosis = SaggingBeam(1, 1);
+  for (RankedEffect& effect : diagnosis.ranking) effect.refitted = false;
+  diagnosis.present_in_noise = 0.9;
+  diagnosis.errors.in_noise = 1.1;
+  ScoredNuisance& placement = diagnosis.nuisances.emplace_back();
+  placement.candidate.name = "grip_placement";
+  placement.candidate.what = "the placement";
+  placement.evidence = 40;
+  placement.explained = 0.03;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
+  EXPECT_NE(diagnosis.explanation.find("the placement"), std::string::npos);
+
+  diagnosis.effects.clear();
+  diagnosis.nuisances.front().explained = 0.3;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, ElementsAre("grip_placement"));
+}
+
 TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
   diagnosis.instead.effects.front().scored.look_alikes = {"drag"};  // which was not tried
