@@ -27,6 +27,7 @@ struct CalibratedParameter {
   double prior_deviation = std::numeric_limits<double>::infinity();
   // A change that matters, in units of φ, > 0: what "flat" is judged by, and the fit's own unit.
   double typical = 1;
+  bool is_linear = false;  // ∂r/∂θ is the same everywhere: its first value is kept
 };
 
 struct Prediction {

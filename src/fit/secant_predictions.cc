@@ -19,7 +19,7 @@ const Prediction& SecantPredictions::ExactAt(const Eigen::VectorXd& values) {
 }
 
 // J + (y − J s) sᵀ/(sᵀ s) for the change s of the parameters, in typical ones, and y of the
-// residual: the least change of J that agrees with both.
+// residual: the least change of J that agrees with both. What is linear has no part in it.
 void SecantPredictions::FollowTo(const Eigen::VectorXd& values) {
   constexpr double kNoChange = 1e-12;  // of sᵀ s: y would be rounding
   ++count_;
@@ -32,7 +32,7 @@ void SecantPredictions::FollowTo(const Eigen::VectorXd& values) {
   for (size_t k = 0; k < parameters_.size(); ++k) {
     const Eigen::Index at = static_cast<Eigen::Index>(k);
     const double unit = parameters_[k].typical * (parameters_[k].log_scale ? values[at] : 1);
-    along[at] /= unit * unit;
+    along[at] *= parameters_[k].is_linear ? 0 : 1 / (unit * unit);
   }
   prediction_.jacobian = known_.prediction.jacobian;
   const double square = along.dot(change);

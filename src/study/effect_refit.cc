@@ -197,6 +197,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     amount.name = "nuisance";
     amount.start = amount.prior_mean = prior.mean;
     amount.prior_deviation = amount.typical = prior.deviation;
+    amount.is_linear = true;
     parameters.push_back(amount);
   }
   // Adopted nuisances change the misfit as they did at the model without the effect.

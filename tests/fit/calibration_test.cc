@@ -138,6 +138,28 @@ TEST(Calibration, SecantsComeToTheSameEndWithFewJacobians) {
                 0.1 * exact.estimates[k].posterior_deviation);
 }
 
+// A drift is added to a decay: what the decay's curvature does is not blamed on the drift.
+TEST(Calibration, SecantsLeaveTheColumnsOfLinearParametersAlone) {
+  const Decay decay(2, 0.7, 1);
+  const auto drifting = [&](const Eigen::VectorXd& at, bool with_jacobian) {
+    Prediction prediction = decay(at.head(2), with_jacobian);
+    prediction.residual += 10 * (at[2] - 3) * decay.times;
+    if (!with_jacobian) return prediction;
+    prediction.jacobian.conservativeResize(Eigen::NoChange, 3);
+    prediction.jacobian.col(2) = 10 * decay.times;
+    return prediction;
+  };
+  auto parameters = AmplitudeAndTime();
+  parameters.push_back({.name = "drift", .start = 0});
+  const Calibration without = Calibrate(parameters, drifting, {.near_rms = 1e3});
+  parameters.back().is_linear = true;
+  const Calibration with = Calibrate(parameters, drifting, {.near_rms = 1e3});
+  EXPECT_LT(with.predictions, without.predictions);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(with.parameters[k], without.parameters[k],
+                0.3 * without.estimates[k].posterior_deviation);
+}
+
 TEST(Calibration, EndsWhereTheStepThatADerivativePromisesGainsNothing) {
   // A kink: the derivative at its bottom promises to halve the residual.
   const auto kink = [](const Eigen::VectorXd& at, bool) {
