@@ -37,6 +37,9 @@ constexpr double kPredictsBetter = 0.97;
 // well.
 constexpr double kFirstOrderDoubt = 0.1;
 constexpr double kGripRival = 0.5, kOtherRival = 0.98;
+// A nuisance is compared with the effect to first order too, from where both were scored, if the
+// refit bears out this part of that: the model without either, refitted, is another one.
+constexpr double kBornOut = 0.9;
 // Where the best effect leaves more than noise, it must have explained this share of what is more
 // than noise to be named.
 constexpr double kMostOfIt = 0.85;
@@ -211,12 +214,16 @@ void Decide(Diagnosis* diagnosis) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
+  const double to_first_order = best.scored.score.evidence;
+  const double same_footing =
+      evidence > kBornOut * to_first_order ? std::max(evidence, to_first_order) : evidence;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : kOtherRival;
     if (kDoubtful * nuisance.doubt + kLeastLead > evidence) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
-    } else if (!nuisance.adopted && nuisance.evidence > std::min(evidence - lead, part * evidence))
+    } else if (!nuisance.adopted &&
+               nuisance.evidence > std::min(same_footing - lead, part * same_footing))
       diagnosis->effects.push_back(nuisance.candidate.name);
   }
   const std::string drop =

@@ -93,6 +93,26 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
 }
 
+// The refit of the present model has taken 5 % of the effect's evidence; the drift's would have
+// lost as much.
+TEST(Verdict, ComparesANuisanceWithTheEffectOnTheSameFooting) {
+  const auto effects_with = [](double to_first_order) {
+    Diagnosis diagnosis = SaggingBeam(1, 1);
+    RankedEffect& force = diagnosis.ranking.front();
+    force.evidence = 1900;
+    force.scored.score.evidence = to_first_order;
+    ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
+    drift.candidate.name = "registration_drift";
+    drift.evidence = 1880;
+    Decide(&diagnosis);
+    return diagnosis.effects;
+  };
+  EXPECT_THAT(effects_with(2000), ElementsAre("point_force"));
+  EXPECT_THAT(effects_with(1850), ElementsAre("point_force", "registration_drift"));
+  // First order has promised what the refit does not bear out.
+  EXPECT_THAT(effects_with(4000), ElementsAre("point_force", "registration_drift"));
+}
+
 // A grip that is certainly misplaced, by a twentieth of a millimetre.
 TEST(Verdict, TellsASmallNuisanceAtTheNoiseWithoutNamingIt) {
   Diagnosis diagnosis = SaggingBeam(1, 1);
