@@ -84,7 +84,7 @@ Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measu
 OuterSearchSettings ReadOuterSearch(const Config& search) {
   OuterSearchSettings settings;
   settings.variables = {
-      ReadVariable(search, "radius_edge_ratio", kDimensionless, {1, 100, false, false},
+      ReadVariable(search, "radius_edge_ratio", kDimensionless, {1, 100, true, false},
                    SearchScale::kLinear),
       ReadVariable(search, "max_volume", kVolume, kPositive, SearchScale::kLogarithmic),
       ReadVariable(search, "young_modulus", kPressure, kPositive, SearchScale::kLogarithmic),
@@ -141,7 +141,7 @@ int OuterSearchResult::Worst(OuterMeasure measure) const {
   int worst = best;
   for (size_t k = 0; k < evaluations.size(); ++k) {
     if (!evaluations[k].usable) continue;
-    if (ValueOf(evaluations[k], measure) > ValueOf(evaluations[worst], measure))
+    if (worst < 0 || ValueOf(evaluations[k], measure) > ValueOf(evaluations[worst], measure))
       worst = static_cast<int>(k);
   }
   return worst;

@@ -14,7 +14,7 @@ namespace lacuna {
 MeshSettings ReadMeshSettings(const Config& config) {
   MeshSettings settings;
   settings.tets.radius_edge_ratio =
-      config.Number("radius_edge_ratio", {1, 100, false, false}, settings.tets.radius_edge_ratio);
+      config.Number("radius_edge_ratio", {1, 100, true, false}, settings.tets.radius_edge_ratio);
   settings.tets.max_volume = config.Quantity("max_volume", kVolume, kPositive);
   settings.tets.preserve_surface = config.Flag("preserve_surface", settings.tets.preserve_surface);
   settings.order = config.Integer("order", 1, 2, 1);

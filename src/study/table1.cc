@@ -4,12 +4,14 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "core/atomic_file.h"
+#include "core/claim.h"
 #include "core/hash.h"
 #include "study/evaluation_record.h"
 
@@ -43,6 +45,8 @@ class Recordings {
     Scene scene = study_.scene;
     scene.scanner->options.seed += static_cast<uint64_t>(seed) - 1;
     MakeFolder(folder);
+    // Until it is whole, the recording is nobody's.
+    std::filesystem::remove(folder / "scene.key");
     WriteSceneRecording(scene, *motion_, folder);
     WriteFileAtomically(folder / "scene.key", key);
     return folder;
@@ -104,6 +108,13 @@ OuterParameters TruthOf(const Table1Study& study, const Table1Configuration& con
   const std::vector<SearchVariable>& variables = configuration.search.variables;
   return {variables[0].start, variables[1].start, study.true_young_modulus,
           study.true_poisson_ratio};
+}
+
+bool IsFolderName(const std::string& name) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.';
+  };
+  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), plain);
 }
 
 void RefuseOtherScans(const Table1Configuration& configuration, const nlohmann::json& first,
@@ -261,6 +272,9 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
     if (config.Has("row")) config.Integer("row", 1, 1000);
     Table1Configuration configuration{
         config.Text("name"), config, ReadOuterSearch(config.Child("search")), {}};
+    // A search lies in a folder of that name, beside the recording.
+    if (!IsFolderName(configuration.name) || configuration.name == "recording")
+      config.Fail("name", "must be of letters, digits and _ - + ., and not \"recording\"");
     if (config.Has("paper_drop"))
       configuration.paper_drop = config.Number("paper_drop", {0, 1, false, false});
     configuration.varies = config.Text("varies", "");
@@ -289,6 +303,10 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
 
 Table1Result RunTable1(const Table1Study& study, const Table1Options& options, Progress* progress) {
   MakeFolder(options.output);
+  const Claim claim(options.output / "claimed");
+  if (!claim.holds())
+    throw InputError({options.output.string()},
+                     "is being worked on by " + HolderOf(options.output / "claimed"));
   Recordings recordings(study, options.output, progress);
   Table1Result result;
   for (int seed = options.first_seed; seed < options.first_seed + options.seeds; ++seed)

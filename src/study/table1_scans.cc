@@ -24,6 +24,7 @@ std::filesystem::path RecordingOf(const Table1Study& table1, const std::filesyst
   if (!motion.IsUsable())
     throw InputError(fmt::format("scene {}: {}", table1.scene.name, motion.message));
   MakeFolder(folder / "recording");
+  std::filesystem::remove(folder / "recording" / "scene.key");
   WriteSceneRecording(table1.scene, motion, folder / "recording");
   WriteFileAtomically(folder / "recording" / "scene.key", key);
   return folder / "recording";

@@ -36,7 +36,7 @@ std::string HashOf(const SweepCase& entry, SweepCommand command) {
   for (const CaseChange& change : entry.changes) text += change.field + "\n" + change.value + "\n";
   if (command == SweepCommand::kTable1)
     text += fmt::format("{} {}\n", entry.settings.seeds, entry.settings.turns);
-  return HashBytes(text).substr(0, 8);
+  return HashBytes(text);
 }
 
 // The experiment's files as they will lie in the case's folder.
@@ -157,7 +157,7 @@ SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
     const auto before = known.find(hash);
     wanted.insert(hash);
     entry.number = before == known.end() ? ++number : before->second.number;
-    entry.name = fmt::format("{:04}-{}", entry.number, hash);
+    entry.name = fmt::format("{:04}-{}", entry.number, hash.substr(0, 8));
     try {
       const CaseFiles files =
           Compose(command, entry, request, sweep_file.File(), folder / entry.name);

@@ -65,10 +65,13 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
   close(terminal);
 }
 
-// Of a case whose process crashed; unless another one has taken it up.
-void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::string& reason) {
+// Of a case whose process crashed; unless another one has taken it up. A case that is tried again
+// has a failure of before, which this one replaces.
+void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::string& reason,
+               bool retries) {
   const Claim claim(case_folder / "claimed");
-  if (!claim.holds() || LoadOutcome(case_folder)) return;
+  const auto before = LoadOutcome(case_folder);
+  if (!claim.holds() || (before && (before->done || !retries))) return;
   CaseOutcome outcome;
   outcome.message = reason + "; log.txt has its last words";
   SaveOutcome(outcome, case_folder);
@@ -101,9 +104,7 @@ int RunSweep(const fs::path& given_folder, const SweepRunOptions& options) {
     if (IsToRun(folder / entry.name, options.retry_failed)) to_run.push_back(entry);
   WorkerOptions work{.workers = options.workers, .threads = options.threads};
   work.crashed = [&](size_t k, const std::string& reason) {
-    // A case that is tried again has a failure of before, which this one replaces.
-    if (options.retry_failed) fs::remove(folder / to_run[k].name / "outcome.json");
-    KeepCrash(to_run[k], folder / to_run[k].name, reason);
+    KeepCrash(to_run[k], folder / to_run[k].name, reason, options.retry_failed);
   };
   ShareOut(to_run.size(), work, [&](size_t k) {
     RunCase(identity, to_run[k], folder / to_run[k].name, options.retry_failed);

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/text_layout.h"
+#include "record/csv_text.h"
 
 namespace lacuna {
 namespace {
@@ -57,17 +58,7 @@ std::string ValueOf(const SweepCase& entry, const std::string& field) {
 std::string CsvOf(const Cells& cells) {
   std::string text;
   for (const auto& row : cells) {
-    for (size_t k = 0; k < row.size(); ++k) {
-      const bool quoted = row[k].find_first_of(",\"\n\r") != std::string::npos;
-      if (k > 0) text += ",";
-      if (!quoted) {
-        text += row[k];
-        continue;
-      }
-      text += '"';
-      for (const char c : row[k]) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-      text += '"';
-    }
+    for (size_t k = 0; k < row.size(); ++k) text += (k > 0 ? "," : "") + CsvField(row[k]);
     text += "\n";
   }
   return text;

@@ -139,6 +139,26 @@ TEST(Ablation, FilesHoldTheTable) {
   EXPECT_THAT(FileContent(folder / "ablation.txt"), HasSubstr("Is it as good? D 20.0 % lower"));
 }
 
+TEST(Ablation, ACommaStaysInItsField) {
+  const TemporaryFolder folder;
+  Ablation ablation = MakeAblation();
+  ablation.study.configurations[1].varies = "forces, y and p";
+  WriteAblation(ablation.study, ablation.result, folder.Path());
+  EXPECT_THAT(FileContent(folder / "ablation.csv"), HasSubstr("rival,\"forces, y and p\",base,1,"));
+}
+
+// Its search would lie outside the output, or in the recording's folder.
+TEST(Ablation, ANameThatIsNoFolderIsRefused) {
+  const fs::path base = fs::path(LACUNA_SOURCE_DIR) / "experiments/ablation/base.yaml";
+  for (const char* name : {"../evil", "recording", ".hidden", "a b"}) {
+    std::string text = FileContent(base);
+    text.replace(text.find("name: base"), 10, std::string("name: ") + name);
+    EXPECT_THAT([&] { ReadTable1(std::vector<Config>{Config::Parse(text, base)}); },
+                ThrowsMessage<InputError>(HasSubstr("letters, digits")))
+        << name;
+  }
+}
+
 TEST(Ablation, AnUnknownRowToBeHeldAgainstIsRefused) {
   Ablation ablation = MakeAblation();
   CheckAblation(ablation.study);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <string>
 
 #include "study/reduced_bend.h"
@@ -207,6 +208,11 @@ TEST(OuterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
   text = std::string(kSearch) + "method: nlopt_bobyqa\n";
   text.replace(text.find(", lower: 0.1, upper: 0.45"), 25, "");
   EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
+  // No tetrahedron's radius is so short beside its edges.
+  text = std::regex_replace(std::string(kSearch),
+                            std::regex("(radius_edge_ratio: \\{start: )[^,}]+"), "$011");
+  EXPECT_NE(text, kSearch);
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
   text = kSearch;
   text.replace(text.find("start: 3 MPa"), 12, "start: 30 MPa");
   EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);

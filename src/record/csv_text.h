@@ -1,0 +1,19 @@
+// Text in a table of comma-separated values.
+#ifndef LACUNA_RECORD_CSV_TEXT_H_
+#define LACUNA_RECORD_CSV_TEXT_H_
+
+#include <string>
+
+namespace lacuna {
+
+// As one field (RFC 4180): in quotes where it holds a comma, a quote or a line's end.
+inline std::string CsvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return field + '"';
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_CSV_TEXT_H_
