@@ -40,11 +40,10 @@ int Plan(const Arguments& arguments) {
 int Submit(const Arguments& arguments) {
   SlurmOptions options;
   options.program = std::filesystem::read_symlink("/proc/self/exe");
-  options.numbers = UnfinishedCases(arguments.folder, arguments.retry_failed);
-  std::erase_if(options.numbers, [&arguments](int number) {
-    const std::vector<int>& chosen = arguments.numbers;
-    return !chosen.empty() && std::find(chosen.begin(), chosen.end(), number) == chosen.end();
-  });
+  SweepRunOptions chosen;
+  chosen.numbers = arguments.numbers;
+  chosen.retry_failed = arguments.retry_failed;
+  options.numbers = UnfinishedCases(arguments.folder, chosen);
   if (options.numbers.empty()) {
     fmt::print("{}: no case is left to run\n", arguments.folder);
     return 0;
@@ -56,7 +55,9 @@ int Submit(const Arguments& arguments) {
   const std::string job = SubmitToSlurm(arguments.folder, options);
   fmt::print("Slurm job {}: {} tasks; `squeue -j {}` and `lacuna sweep collect {}` tell of them\n",
              job, options.numbers.size(), job, arguments.folder);
-  return 0;
+  if (!arguments.wait) return 0;
+  chosen.retry_failed = true;  // a failed case is not done
+  return UnfinishedCases(arguments.folder, chosen).empty() ? 0 : 1;
 }
 
 int Run(const Arguments& arguments) {

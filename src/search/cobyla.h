@@ -8,7 +8,8 @@
 //
 // Bounds are kept at each evaluation: they are exact linear constraints of the trust-region
 // problem, and vertices and geometry steps turn to the other side or shorten at them. A trial point
-// that fails is a poor step, and never enters the simplex.
+// that fails is a poor step, and never enters the simplex; a vertex of the first simplex that fails
+// wherever it is tried counts as worse than the worst by more than the spread of all.
 //
 // The path depends on the outcomes of the evaluations alone: one thread, sums in one written order
 // (ordered_algebra.h) and lengths that are equal by construction compared beyond their rounding, so

@@ -118,11 +118,11 @@ int RunSweep(const fs::path& given_folder, const SweepRunOptions& options) {
   return unfinished;
 }
 
-std::vector<int> UnfinishedCases(const fs::path& folder, bool retry_failed) {
+std::vector<int> UnfinishedCases(const fs::path& folder, const SweepRunOptions& options) {
   LoadIdentity(folder);
   std::vector<int> numbers;
-  for (const SweepCase& entry : LoadCases(folder))
-    if (IsToRun(folder / entry.name, retry_failed)) numbers.push_back(entry.number);
+  for (const SweepCase& entry : Chosen(folder, options.numbers))
+    if (IsToRun(folder / entry.name, options.retry_failed)) numbers.push_back(entry.number);
   return numbers;
 }
 

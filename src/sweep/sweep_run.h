@@ -20,8 +20,10 @@ struct SweepRunOptions {
 // cases have not ended well. Throws InputError, and Interrupted when it was asked to stop.
 int RunSweep(const std::filesystem::path& folder, const SweepRunOptions& options);
 
-// Of the cases that a call would run.
-std::vector<int> UnfinishedCases(const std::filesystem::path& folder, bool retry_failed);
+// Numbers of the cases that a call with these options would run. Throws InputError where one of
+// options.numbers is no case.
+std::vector<int> UnfinishedCases(const std::filesystem::path& folder,
+                                 const SweepRunOptions& options);
 
 }  // namespace lacuna
 

@@ -80,7 +80,7 @@ TEST_F(SweepRunTest, AFailureKeepsItsReasonAndDoneCasesStay) {
   PlanWithoutSecondFrame();
   SaveOutcome(MadeUp(0.25), Case(0));
   const std::string before = FileContent(Case(0) / "outcome.json");
-  EXPECT_THAT(UnfinishedCases(sweep_, false), ElementsAre(2));
+  EXPECT_THAT(UnfinishedCases(sweep_, {}), ElementsAre(2));
   EXPECT_EQ(RunSweep(sweep_, {.workers = 2}), 1);
   EXPECT_EQ(FileContent(Case(0) / "outcome.json"), before);
   const auto failed = LoadOutcome(Case(1));
@@ -91,7 +91,9 @@ TEST_F(SweepRunTest, AFailureKeepsItsReasonAndDoneCasesStay) {
   const std::string first = FileContent(Case(1) / "outcome.json");
   EXPECT_EQ(RunSweep(sweep_, {}), 1);
   EXPECT_EQ(FileContent(Case(1) / "outcome.json"), first);
-  EXPECT_THAT(UnfinishedCases(sweep_, true), ElementsAre(2));
+  EXPECT_THAT(UnfinishedCases(sweep_, {.retry_failed = true}), ElementsAre(2));
+  EXPECT_THAT([&] { UnfinishedCases(sweep_, {.numbers = {99}}); },
+              ThrowsMessage<InputError>(HasSubstr("has no case 99")));
   std::filesystem::rename(folder_ / "recording/a.xyz", folder_ / "recording/b.xyz");
   EXPECT_EQ(RunSweep(sweep_, {.retry_failed = true}), 1);
   EXPECT_THAT(LoadOutcome(Case(1))->message, HasSubstr("a.xyz"));
