@@ -31,6 +31,10 @@ constexpr double kClosestVertices = 10 * kTetGenTolerance;
 // shifts the surface of bodies with many triangles by more than rounding.
 constexpr double kFlatAngle = 179.9999;
 
+// At half a kilobyte each, and as much again for what is done with them, more than a workstation
+// has.
+constexpr double kMostTets = 2e7;
+
 // The share of the volume that the tetrahedra may miss before the mesh is refused.
 constexpr double kVolumeTolerance = 1e-7;
 
@@ -185,6 +189,17 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   const std::string too_close = TooCloseVertices(surface, frame.size);
   if (!too_close.empty()) {
     Fail(MeshStatus::kTooSmallFeature, too_close, result);
+    return result;
+  }
+
+  const double least_tets =
+      options.max_volume > 0 ? EnclosedVolume(surface) / options.max_volume : 0;
+  if (least_tets > kMostTets) {
+    Fail(MeshStatus::kOutOfMemory,
+         fmt::format("max_volume asks for {:.0f} million tetrahedra at least, {:.0f} million are "
+                     "the most",
+                     1e-6 * least_tets, 1e-6 * kMostTets),
+         result);
     return result;
   }
 

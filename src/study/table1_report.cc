@@ -148,7 +148,11 @@ void AppendClaims(const Table1Study& study, const Table1Summary& summary, std::s
         row.name,
         std::isnan(summary.mesh_noise)
             ? "mesh noise not measured"
-            : Verdict(row.seeds > 0 && row.drop_from_start.least > 2 * summary.mesh_noise));
+            : Verdict(row.with_start == summary.seeds &&
+                      row.drop_from_start.least > 2 * summary.mesh_noise));
+    if (row.with_start < summary.seeds)
+      *text += fmt::format("  ({} of {} seeds have a start and a best point to compare)\n",
+                           row.with_start, summary.seeds);
     const auto& paper = study.configurations[c].paper_drop;
     if (!paper) continue;
     *text += fmt::format("- {} drops by at least {:.1f} % (median): {} per point, {} as a sum\n",
@@ -256,6 +260,7 @@ SeedRange RangeOf(std::vector<double> values) {
 
 Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
   Table1Summary summary;
+  summary.seeds = static_cast<int>(result.seeds.size());
   for (size_t c = 0; c < study.configurations.size(); ++c) {
     const OuterMeasure measure = study.configurations[c].search.measure;
     std::vector<double> from_max, from_start, of_sum, best, below_truth, modulus, ratio;
@@ -273,9 +278,12 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
       modulus.push_back(found.parameters[found.best].young_modulus);
       ratio.push_back(found.parameters[found.best].poisson_ratio);
     }
+    const auto with_start = std::count_if(from_start.begin(), from_start.end(),
+                                          [](double drop) { return !std::isnan(drop); });
     summary.rows.push_back({study.configurations[c].name, static_cast<int>(best.size()),
                             RangeOf(from_max), RangeOf(from_start), RangeOf(of_sum), RangeOf(best),
-                            RangeOf(modulus), RangeOf(ratio), RangeOf(below_truth)});
+                            RangeOf(modulus), RangeOf(ratio), RangeOf(below_truth),
+                            static_cast<int>(with_start)});
   }
   for (const Table1Seed& seed : result.seeds) {
     const OuterSearchResult& last = seed.searches.back().found;

@@ -28,9 +28,11 @@ struct Table1Row {
   SeedRange best, young_modulus, poisson_ratio;  // m per point, Pa, 1
   // 1 − best / value at the true parameters; > 0: the search beats the truth.
   SeedRange below_truth;
+  int with_start = 0;  // seeds whose start succeeded, too
 };
 
 struct Table1Summary {
+  int seeds = 0;
   std::vector<Table1Row> rows;
   // Seeds in which the last configuration does at least as well as each of the others.
   int last_is_best = 0, compared = 0;

@@ -195,6 +195,14 @@ TEST(MeshTetrahedra, NamesVerticesTooCloseForTetGen) {
   EXPECT_THAT(result.message, HasSubstr("are 1e-10 m apart"));
 }
 
+TEST(MeshTetrahedra, RefusesMoreTetrahedraThanMemoryHolds) {
+  TetOptions options;
+  options.max_volume = 1e-9;
+  const MeshResult result = MeshTetrahedra(BoxSurface({1, 1, 1}, {2, 2, 2}), options);
+  EXPECT_EQ(result.status, MeshStatus::kOutOfMemory);
+  EXPECT_THAT(result.message, HasSubstr("max_volume asks for 1000 million"));
+}
+
 TEST(MeshTetrahedra, RefusesCavities) {
   const TriMesh outer = Icosphere(1, 2);
   TriMesh inner = Icosphere(0.5, 2);
