@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/atomic_file.h"
 #include "fit/gradient_search.h"
@@ -188,9 +189,15 @@ OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchS
   for (const SearchStep& step : found.trace) {
     result.parameters.push_back(ParametersOf(space.FromUnit(step.x)));
     const OuterEvaluation* known = record.Find(result.parameters.back());
-    if (known == nullptr) {
-      throw InputError(SourcePosition{(folder / "evaluations.jsonl").string()},
-                       "lacks an evaluation that search.log has; remove both to search anew");
+    const auto agrees = [&] {
+      return step.outcome.value ? *step.outcome.value == ValueOf(*known, settings.measure)
+                                : !std::isfinite(ValueOf(*known, settings.measure));
+    };
+    if (known == nullptr || (known->usable && !agrees())) {
+      throw InputError(
+          SourcePosition{(folder / "evaluations.jsonl").string()},
+          "lacks an evaluation that search.log has, or has another value of it; remove "
+          "both to search anew");
     }
     result.evaluations.push_back(*known);
   }

@@ -81,6 +81,14 @@ TEST_F(OuterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResu
   for (size_t k = 0; k < whole.evaluations.size(); ++k)
     EXPECT_EQ(resumed.evaluations[k].residual_sum, whole.evaluations[k].residual_sum) << k;
   EXPECT_EQ(FileContent(folder / "stopped/search.log"), FileContent(folder / "whole/search.log"));
+
+  // A record that was changed since does not pass for what was searched.
+  const std::string record = FileContent(folder / "stopped/evaluations.jsonl");
+  std::string changed =
+      std::regex_replace(record, std::regex("(residual_per_point[^:]*\":)0\\.00"), "$010.01");
+  ASSERT_NE(changed, record);
+  std::ofstream(folder / "stopped/evaluations.jsonl") << changed;
+  EXPECT_THROW(Search(Settings(), folder / "stopped"), InputError);
 }
 
 TEST_F(OuterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
