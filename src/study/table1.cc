@@ -303,10 +303,10 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
 
 Table1Result RunTable1(const Table1Study& study, const Table1Options& options, Progress* progress) {
   MakeFolder(options.output);
-  const Claim claim(options.output / "claimed");
+  const std::filesystem::path claimed = options.output / ".claimed";
+  const Claim claim(claimed);
   if (!claim.holds())
-    throw InputError({options.output.string()},
-                     "is being worked on by " + HolderOf(options.output / "claimed"));
+    throw InputError({options.output.string()}, "is being worked on by " + HolderOf(claimed));
   Recordings recordings(study, options.output, progress);
   Table1Result result;
   for (int seed = options.first_seed; seed < options.first_seed + options.seeds; ++seed)
