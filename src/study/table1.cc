@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -14,6 +12,7 @@
 #include "core/claim.h"
 #include "core/hash.h"
 #include "study/evaluation_record.h"
+#include "study/kept_recording.h"
 
 namespace lacuna {
 namespace {
@@ -23,11 +22,6 @@ constexpr double kStartSpread = 0.1;  // of a variable's range, either way
 constexpr int kObjectiveVersion = 1;  // raised when the code changes so that |D_anim| does
 constexpr double kFactors[] = {0.25, 0.5, 1, 2, 4};
 
-std::string TextOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // The recording of a seed, and the scene's motion where one has to be scanned.
 class Recordings {
  public:
@@ -36,19 +30,15 @@ class Recordings {
 
   std::filesystem::path Folder(int seed) {
     const std::filesystem::path folder = output_ / fmt::format("seed_{}", seed) / "recording";
-    const std::string key = study_.scene_key + fmt::format(" {}\n", seed);
-    if (TextOf(folder / "scene.key") == key) return folder;
+    const std::string key = RecordingKey(study_, seed);
+    if (IsKeptRecording(folder, key)) return folder;
     if (!motion_) motion_ = SimulateScene(study_.scene, progress_);
     if (!motion_->IsUsable()) {
       throw InputError(fmt::format("scene {}: {}", study_.scene.name, motion_->message));
     }
     Scene scene = study_.scene;
     scene.scanner->options.seed += static_cast<uint64_t>(seed) - 1;
-    MakeFolder(folder);
-    // Until it is whole, the recording is nobody's.
-    std::filesystem::remove(folder / "scene.key");
-    WriteSceneRecording(scene, *motion_, folder);
-    WriteFileAtomically(folder / "scene.key", key);
+    KeepRecording(scene, *motion_, folder, key);
     return folder;
   }
 
@@ -299,6 +289,10 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
   const Recording announced = AnnouncedRecording(study.scene);
   for (const Config& config : files) ReadReconstruction(config, announced);
   return study;
+}
+
+std::string RecordingKey(const Table1Study& study, int seed) {
+  return fmt::format("{} {}", study.scene_key, seed);
 }
 
 Table1Result RunTable1(const Table1Study& study, const Table1Options& options, Progress* progress) {

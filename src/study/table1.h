@@ -35,6 +35,8 @@ struct Table1Study {
   std::string scene_key;  // hash of all that decides its motion and scans
   double true_young_modulus = 0, true_poisson_ratio = 0;
 };
+// Names the recording of a seed (study/kept_recording.h).
+std::string RecordingKey(const Table1Study& study, int seed);
 
 // Reads every .yaml file in `folder`. Throws InputError for a file that cannot be used, or when two
 // of them name different scenes.

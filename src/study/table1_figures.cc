@@ -13,6 +13,7 @@
 #include "report/arrow_mesh.h"
 #include "scan/scan_writer.h"
 #include "study/evaluation_record.h"
+#include "study/kept_recording.h"
 #include "study/outer_objective.h"
 
 namespace lacuna {
@@ -56,9 +57,10 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
   const std::filesystem::path file = results / "table1.json";
   if (!std::filesystem::exists(file))
     throw InputError(SourcePosition{file.string()}, "is not there; run `lacuna table1` first");
-  if (TextOf(results / "seed_1" / "recording" / "scene.key") != FirstRecordingKey(table1))
-    throw InputError(SourcePosition{file.string()},
-                     "is of another scene; run `lacuna table1` again");
+  if (!IsKeptRecording(results / "seed_1" / "recording", RecordingKey(table1, 1)))
+    throw InputError(
+        SourcePosition{file.string()},
+        "is of another scene, or its recording was changed; run `lacuna table1` again");
   std::vector<Optimum> optima;
   try {
     const nlohmann::json table = nlohmann::json::parse(TextOf(file));

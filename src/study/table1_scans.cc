@@ -2,31 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
-#include "core/atomic_file.h"
+#include "study/kept_recording.h"
 
 namespace lacuna {
 namespace {
 
-std::string TextOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 std::filesystem::path RecordingOf(const Table1Study& table1, const std::filesystem::path& results,
                                   const std::filesystem::path& folder, Progress* progress) {
-  const std::string key = FirstRecordingKey(table1);
+  const std::string key = RecordingKey(table1, 1);
   for (const auto& place : {results / "seed_1" / "recording", folder / "recording"})
-    if (TextOf(place / "scene.key") == key) return place;
+    if (IsKeptRecording(place, key)) return place;
   const SceneMotion motion = SimulateScene(table1.scene, progress);
   if (!motion.IsUsable())
     throw InputError(fmt::format("scene {}: {}", table1.scene.name, motion.message));
-  MakeFolder(folder / "recording");
-  std::filesystem::remove(folder / "recording" / "scene.key");
-  WriteSceneRecording(table1.scene, motion, folder / "recording");
-  WriteFileAtomically(folder / "recording" / "scene.key", key);
+  KeepRecording(table1.scene, motion, folder / "recording", key);
   return folder / "recording";
 }
 
@@ -73,7 +62,5 @@ Table1Scans PrepareScans(const Table1Study& table1, const Table1FigureSettings& 
   scans.tracked = TrackFrames(scans.study, scans.states, progress);
   return scans;
 }
-
-std::string FirstRecordingKey(const Table1Study& table1) { return table1.scene_key + " 1\n"; }
 
 }  // namespace lacuna

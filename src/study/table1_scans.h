@@ -36,9 +36,6 @@ Table1Scans PrepareScans(const Table1Study& table1, const Table1FigureSettings& 
                          const std::filesystem::path& results, const std::filesystem::path& folder,
                          Progress* progress);
 
-// How `lacuna table1` marks the recording of its first seed, in scene.key beside it.
-std::string FirstRecordingKey(const Table1Study& table1);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_STUDY_TABLE1_SCANS_H_

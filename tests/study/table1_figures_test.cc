@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "report/arrow_mesh.h"
 #include "study/evaluation_record.h"
+#include "study/kept_recording.h"
 #include "study/reduced_bend.h"
 #include "support/temporary_folder.h"
 
@@ -112,7 +113,8 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
               ThrowsMessage<InputError>(HasSubstr("another scene")));
   fs::create_directories(folder / "seed_1/recording");
-  std::ofstream(folder / "seed_1/recording/scene.key") << "a scene 1\n";
+  std::ofstream(folder / "seed_1/recording/a.ply") << "ply\n";
+  MarkRecording(folder / "seed_1/recording", RecordingKey(*table1_, 1));
   const FigureContent figure = DrawAlignment(*table1_, *scans_, *settings_, folder / ".");
   ASSERT_EQ(figure.numbers.size(), 1u);
   EXPECT_EQ(figure.numbers[0].at("residual_per_point_m"), found.residual_per_point);
@@ -120,6 +122,10 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   const Eigen::VectorXd& distance = figure.picture.panels[0].surfaces[0].vertex_values;
   EXPECT_NEAR(1e-3 * distance.mean(), figure.numbers[0].at("distances")[0].at("mean_m"), 1e-15);
   EXPECT_LT(distance.mean(), 1) << "mm; the body follows the scan";
+
+  std::ofstream(folder / "seed_1/recording/a.ply") << "another\n";
+  EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
+              ThrowsMessage<InputError>(HasSubstr("was changed")));
 }
 
 }  // namespace
