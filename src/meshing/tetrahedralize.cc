@@ -193,7 +193,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   }
 
   const double least_tets =
-      options.max_volume > 0 ? EnclosedVolume(surface) / options.max_volume : 0;
+      options.max_volume > 0 ? result.surface_report.volume / options.max_volume : 0;
   if (least_tets > kMostTets) {
     Fail(MeshStatus::kOutOfMemory,
          fmt::format("max_volume asks for {:.0f} million tetrahedra at least, {:.0f} million are "
