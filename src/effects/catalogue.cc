@@ -34,6 +34,7 @@ CatalogueEntry PointForce();
 CatalogueEntry FollowerForce();
 CatalogueEntry PlaneContact();
 CatalogueEntry ElasticSupport();
+CatalogueEntry SlippingSupport();
 CatalogueEntry ExpressionForce();
 
 const std::vector<CatalogueEntry>& Catalogue() {
@@ -64,6 +65,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       FollowerForce(),
       PlaneContact(),
       ElasticSupport(),
+      SlippingSupport(),
       // The user's own.
       ExpressionForce(),
   };

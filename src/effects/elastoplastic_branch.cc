@@ -119,7 +119,8 @@ class ElastoplasticLaw {
             "load, unload and scan again after a long rest: a permanent set stays, a "
             "viscoelastic branch recovers; run the loop at half the speed: here its width "
             "stays the same, that of any damping changes",
-        .look_alikes = {"viscoelastic_branch", "softening", "stiffness_damping", "mass_damping"},
+        .look_alikes = {"viscoelastic_branch", "softening", "stiffness_damping", "mass_damping",
+                        "slipping_support"},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

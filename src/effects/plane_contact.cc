@@ -159,7 +159,7 @@ class PlaneContactEffect final : public Effect {
             "lift the body off the plane: contact ends at once, gravity and damping stay; for "
             "friction, push it at two speeds: Coulomb's force is the same, mass-proportional "
             "damping doubles, and only friction grows with a weight laid on top",
-        .look_alikes = {"gravity", "mass_damping", "elastic_support"},
+        .look_alikes = {"gravity", "mass_damping", "elastic_support", "slipping_support"},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -82,7 +82,7 @@ std::vector<Variant> Places(const Extent& extent, const std::vector<double>& sha
     const Eigen::Vector3d place =
         extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0);
     variant.name = fmt::format("at {:.0f} % of the length", 100 * share);
-    SetVector("centre", place, &variant.values);
+    for (const char* name : {"centre", "point"}) SetVector(name, place, &variant.values);
     variant.values["radius"] = radius_share * extent.length[0];
     variants.push_back(variant);
   }
@@ -128,6 +128,26 @@ std::vector<Variant> Numbers(const std::string& parameter, const std::string& sy
   return variants;
 }
 
+// The whole surface, or near an end or the middle of the length.
+std::vector<Variant> Supports(const Extent& extent) {
+  std::vector<Variant> variants = Places(extent, {0.05, 0.5, 0.95}, 0.1);
+  variants.insert(variants.begin(), {"of the whole surface", {}});
+  return variants;
+}
+
+std::vector<Variant> SlippingSupports(const Extent& extent) {
+  std::vector<Variant> variants;
+  for (const double share : {0.002, 0.02}) {
+    const double distance = share * extent.length[0];
+    for (Variant variant : Supports(extent)) {
+      variant.name += fmt::format(", sliding at {:.2g} mm", 1e3 * distance);
+      variant.values["slip_distance"] = distance;
+      variants.push_back(std::move(variant));
+    }
+  }
+  return variants;
+}
+
 std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
   std::vector<double> times;
   for (double time = std::max(4 * setting.time_step, 0.003 * setting.duration);
@@ -151,6 +171,8 @@ std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
     return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
   if (type == "elastoplastic_branch")
     return Numbers("yield_strain", "yield at a strain", "", {0.01, 0.05});
+  if (type == "elastic_support") return Supports(extent);
+  if (type == "slipping_support") return SlippingSupports(extent);
   if (type == "softening") return Numbers("softening_strain", "κ₀", "", {0.1});
   return {{"", {}}};
 }

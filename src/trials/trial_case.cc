@@ -137,6 +137,11 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
     drawn["stiffness"] = 3e3 * trial.young_modulus;  // Pa/m
     drawn["offset"] = -half - gap;
   }
+  if (type == "elastic_support" || type == "slipping_support") {
+    SetVector("point", place, &drawn);
+    drawn["radius"] = 0.1 * trial.size[0];
+    drawn["slip_distance"] = draws.LogBetween(2e-4, 2e-3);
+  }
   const bool has_size = !IsLaw(hidden) && type != "plane_contact";
   const bool is_vector = card.parameters[0].name.ends_with("_x");
   const Eigen::Vector3d direction = draws.Direction();

@@ -1,0 +1,171 @@
+// A support that slips: an elastic bed whose springs slide once they are stretched by so much.
+//
+//   f_i = −k w_i A_i e_i,  e_i = u_i − s_i,  ‖e_i‖ ≤ d,  s_i flows along e_i at the limit only,
+// with the displacement u_i = x_i − X_i and the slip s_i of each boundary node: a Jenkin element in
+// the plane of forces, in any direction. It stands for a clamp, a glued pad or a sleeve in which the
+// body begins to slide: under a clamping pressure p with the coefficient of friction μ, k d = μ p.
+// The limit is stated as a distance so that the slip does not depend on k: a support of size zero
+// slips as one of any size would, and can be tried to first order. Nodes that a grip holds do not
+// feel it. What is at rest in a plane that the body may leave is a contact.
+//
+// The nearest point at the end of the step (radial return, M. L. Wilkins 1964): its incremental
+// potential is quadratic up to the limit and linear beyond, convex.
+#include <glog/logging.h>
+
+#include <limits>
+
+#include "effects/bedding.h"
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+class SlippingSupportEffect final : public Effect {
+ public:
+  enum Parameter { kModulus, kSlipDistance };
+
+  static const EffectCard& TheCard() {
+    static const EffectCard card = MakeCard();
+    return card;
+  }
+
+  explicit SlippingSupportEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
+
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return parameters_; }
+  void SetParameters(const Eigen::VectorXd& values) override {
+    CHECK_EQ(values.size(), static_cast<Eigen::Index>(TheCard().parameters.size()));
+    parameters_ = values;
+    part_.SetParameters(values);
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
+      force->segment<3>(3 * node) -= Modulus() * area * Held(stretch);
+    });
+  }
+
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool /*convexify*/,
+                   BlockMatrix* tangent) const override {
+    ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
+      const double length = stretch.norm();
+      Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
+      if (length > SlipDistance()) {
+        const Eigen::Vector3d direction = stretch / length;
+        slope = SlipDistance() / length * (slope - direction * direction.transpose()).eval();
+      }
+      tangent->Block(tangent->pattern().diagonal[node]) -=
+          weights.position * Modulus() * area * slope;
+    });
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK(parameter == kModulus || parameter == kSlipDistance) << "the others are settings";
+    ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
+      if (parameter == kModulus)
+        derivative->segment<3>(3 * node) -= area * Held(stretch);
+      else if (stretch.norm() > SlipDistance())
+        derivative->segment<3>(3 * node) -= Modulus() * area * stretch.normalized();
+    });
+  }
+
+  std::optional<double> Energy(const Kinematics& at) const override {
+    double energy = 0;
+    const double limit = SlipDistance();
+    ForEachSpring(at, [&](int, double area, const Eigen::Vector3d& stretch) {
+      const double length = stretch.norm();
+      energy += Modulus() * area *
+                (length <= limit ? 0.5 * length * length : limit * (length - 0.5 * limit));
+    });
+    return energy;
+  }
+
+  // s_i, m.
+  Eigen::Index StateSize(const Body& body) const override { return 3 * body.NodeCount(); }
+  void InitialState(const Body& body, Eigen::VectorXd* state) const override {
+    *state = Eigen::VectorXd::Zero(StateSize(body));
+  }
+  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
+    CHECK_EQ(state_at_end->size(), StateSize(at.body));
+    *state_at_end = at.state;
+    ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
+      state_at_end->segment<3>(3 * node) += stretch - Held(stretch);
+    });
+  }
+
+ private:
+  static EffectCard MakeCard() {
+    EffectCard card{
+        .type = "slipping_support",
+        .title = "Support that slips",
+        .equation =
+            "f_i = −k w_i A_i (u_i − s_i),  ‖u_i − s_i‖ ≤ d,  s_i flows along u_i − s_i at the "
+            "limit only,  u_i = x_i − X_i,  w_i = exp(−|X_i − c|²/(2 r²)) or 1",
+        .citation =
+            "E. Winkler, Die Lehre von der Elasticität und Festigkeit, Prag 1867 (the bed); G. "
+            "Masing, Eigenspannungen und Verfestigung beim Messing, 1926 (elements that slide); "
+            "R. D. Mindlin, Compliance of Elastic Bodies in Contact, Journal of Applied Mechanics "
+            "16, 1949 (partial slip)",
+        .parameters = {BeddingModulus(),
+                       {.name = "slip_distance",
+                        .meaning =
+                            "displacement at which a place of the support starts to slide, d; the "
+                            "largest traction is k d",
+                        .dimension = kLength,
+                        .bounds = kPositive,
+                        .null_value = std::numeric_limits<double>::quiet_NaN(),
+                        .plausible_min = 1e-5,
+                        .plausible_max = 1e-2,
+                        .default_value = std::numeric_limits<double>::quiet_NaN(),
+                        .log_scale = true}},
+        .residual_when_missing =
+            "one part of the surface is held back at small displacements, then slides and does not "
+            "come back: what is left over after each large motion stays until the next",
+        .separating_experiment =
+            "load gently, then hard, and look at the support at rest in between: a slip stays and "
+            "shows at the support itself; a yielding support or a softer body come back, and a "
+            "permanent set of the material is where it is strained most",
+        .look_alikes = {"elastic_support", "elastoplastic_branch", "plane_contact"},
+        .repeatable = true,
+        .conserves_momentum = false,
+        .conserves_angular_momentum = false};
+    AppendBeddedPart(&card);
+    return card;
+  }
+
+  double Modulus() const { return parameters_[kModulus]; }
+  double SlipDistance() const { return parameters_[kSlipDistance]; }
+
+  // The nearest stretch within the limit.
+  Eigen::Vector3d Held(const Eigen::Vector3d& stretch) const {
+    const double length = stretch.norm();
+    return length <= SlipDistance() ? stretch : Eigen::Vector3d(SlipDistance() / length * stretch);
+  }
+
+  // Calls visit(node, w_i A_i, x_i − X_i − s_i) with the slip at the start of the step.
+  template <typename Visit>
+  void ForEachSpring(const Kinematics& at, const Visit& visit) const {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    const auto areas = part_.Areas(at.body, TheCard().type);
+    for (const int node : at.body.boundary.node) {
+      if ((*areas)[node] == 0) continue;
+      const Eigen::Vector3d stretch = at.position.segment<3>(3 * node) -
+                                      at.body.mesh.nodes.col(node) -
+                                      at.state.segment<3>(3 * node);
+      visit(node, (*areas)[node], stretch);
+    }
+  }
+
+  Eigen::VectorXd parameters_;  // in the order of the card
+  BeddedPart part_;
+};
+
+}  // namespace
+
+CatalogueEntry SlippingSupport() {
+  return {&SlippingSupportEffect::TheCard(), CatalogueEntry::Kind::kEffect,
+          &MakeAs<SlippingSupportEffect>, &ReadParameters};
+}
+
+}  // namespace lacuna
