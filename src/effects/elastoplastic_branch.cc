@@ -73,57 +73,55 @@ class ElastoplasticLaw {
 
   static EffectCard MakeCard() {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    return {
-        .type = "elastoplastic_branch",
-        .title = "Elastic–perfectly plastic branch (Prandtl element)",
-        .equation =
-            "P = F S,  S = (2m/3) (dev E − E_p),  ‖dev E − E_p‖ ≤ √(3/2) ε_y,  E_p flows along "
-            "S at the limit only,  E = ½ (FᵀF − I);  in a slender bar at constant volume: "
-            "modulus m up to the strain ε_y, then the constant stress m ε_y",
-        .citation =
-            "L. Prandtl, Ein Gedankenmodell zur kinetischen Theorie der festen Körper, "
-            "Zeitschrift für angewandte Mathematik und Mechanik 8, 1928; G. Masing, "
-            "Eigenspannungen und Verfestigung beim Messing, 1926; radial return: M. L. "
-            "Wilkins, Calculation of Elastic-plastic Flow, 1964; J. C. Simo, T. J. R. Hughes, "
-            "Computational Inelasticity, Springer 1998, ch. 3; finite strain: A. E. Green, "
-            "P. M. Naghdi, A General Theory of an Elastic-plastic Continuum, Archive for "
-            "Rational Mechanics and Analysis 18, 1965",
-        .parameters = {{.name = "modulus",
-                        .meaning =
-                            "Young's modulus that the branch adds before it yields (three times "
-                            "its shear modulus), m; for soft solids a tenth to once that of the "
-                            "material",
-                        .dimension = kPressure,
-                        .bounds = kNotNegative,
-                        .null_value = 0,
-                        .plausible_min = 0,
-                        .plausible_max = 3e5,
-                        .default_value = kNone,
-                        .log_scale = false},
-                       {.name = "yield_strain",
-                        .meaning =
-                            "stretch at which a bar starts to flow, ε_y; from stiff pastes to "
-                            "soft foams",
-                        .dimension = kDimensionless,
-                        .bounds = kPositive,
-                        .null_value = kNone,
-                        .plausible_min = 1e-3,
-                        .plausible_max = 0.3,
-                        .default_value = kNone,
-                        .log_scale = true}},
-        .residual_when_missing =
-            "after unloading the body does not come back to its rest shape, by a residual "
-            "where it was strained most; force against displacement is a loop whose area does "
-            "not depend on the speed",
-        .separating_experiment =
-            "load, unload and scan again after a long rest: a permanent set stays, a "
-            "viscoelastic branch recovers; run the loop at half the speed: here its width "
-            "stays the same, that of any damping changes",
-        .look_alikes = {"viscoelastic_branch", "softening", "stiffness_damping", "mass_damping",
-                        "slipping_support"},
-        .repeatable = true,
-        .conserves_momentum = true,
-        .conserves_angular_momentum = true};
+    return {.type = "elastoplastic_branch",
+            .title = "Elastic–perfectly plastic branch (Prandtl element)",
+            .equation =
+                "P = F S,  S = (2m/3) (dev E − E_p),  ‖dev E − E_p‖ ≤ √(3/2) ε_y,  E_p flows along "
+                "S at the limit only,  E = ½ (FᵀF − I);  in a slender bar at constant volume: "
+                "modulus m up to the strain ε_y, then the constant stress m ε_y",
+            .citation =
+                "L. Prandtl, Ein Gedankenmodell zur kinetischen Theorie der festen Körper, "
+                "Zeitschrift für angewandte Mathematik und Mechanik 8, 1928; G. Masing, "
+                "Eigenspannungen und Verfestigung beim Messing, 1926; radial return: M. L. "
+                "Wilkins, Calculation of Elastic-plastic Flow, 1964; J. C. Simo, T. J. R. Hughes, "
+                "Computational Inelasticity, Springer 1998, ch. 3; finite strain: A. E. Green, "
+                "P. M. Naghdi, A General Theory of an Elastic-plastic Continuum, Archive for "
+                "Rational Mechanics and Analysis 18, 1965",
+            .parameters =
+                {{.name = "modulus",
+                  .meaning = "Young's modulus that the branch adds before it yields (three times "
+                             "its shear modulus), m; for soft solids a tenth to once that of the "
+                             "material",
+                  .dimension = kPressure,
+                  .bounds = kNotNegative,
+                  .null_value = 0,
+                  .plausible_min = 0,
+                  .plausible_max = 3e5,
+                  .default_value = kNone,
+                  .log_scale = false},
+                 {.name = "yield_strain",
+                  .meaning = "stretch at which a bar starts to flow, ε_y; from stiff pastes to "
+                             "soft foams",
+                  .dimension = kDimensionless,
+                  .bounds = kPositive,
+                  .null_value = kNone,
+                  .plausible_min = 1e-3,
+                  .plausible_max = 0.3,
+                  .default_value = kNone,
+                  .log_scale = true}},
+            .residual_when_missing =
+                "after unloading the body does not come back to its rest shape, by a residual "
+                "where it was strained most; force against displacement is a loop whose area does "
+                "not depend on the speed",
+            .separating_experiment =
+                "load, unload and scan again after a long rest: a permanent set stays, a "
+                "viscoelastic branch recovers; run the loop at half the speed: here its width "
+                "stays the same, that of any damping changes",
+            .look_alikes = {"viscoelastic_branch", "softening", "stiffness_damping", "mass_damping",
+                            "slipping_support"},
+            .repeatable = true,
+            .conserves_momentum = true,
+            .conserves_angular_momentum = true};
   }
 
   static KelvinVector Trial(const KelvinVector& strain, const State& plastic) {
