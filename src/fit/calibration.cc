@@ -19,8 +19,9 @@ constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
 // deviations could not be told from no change.
 constexpr double kNoticeable = 2;
 constexpr double kDead = 1e-6;
-// A start at a bound is moved inside by this much, and a value this near to one is tried at it.
-constexpr double kInside = 0.98;
+// A start that is this near to a bound, or at it, could not move: it is moved inside. One that is a
+// little farther stays, as a typical change may be far more than what the data allow.
+constexpr double kAtBound = 1e-6, kInside = 0.02;
 // Of fits that start near: more, and the start was not.
 constexpr int kSecantRounds = 3;
 // Steps are in typical changes: one that overshoots is shortened at once. A round goes on from the
@@ -29,6 +30,10 @@ constexpr double kFirstRadius = 100, kWidened = 9;
 
 double ToFree(const CalibratedParameter& parameter, double value) {
   return parameter.log_scale ? std::log(value) : value;
+}
+
+double PriorMeanOf(const CalibratedParameter& parameter) {
+  return std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
 }
 
 double FromFree(const CalibratedParameter& parameter, double free) {
@@ -64,19 +69,23 @@ struct Free {
     return {has_low ? low + (root - 1) : high - (root - 1), inside / root};
   }
 
-  // u of φ/typical; a value at a bound is taken a little inside, where it can still move.
+  // u of φ/typical.
   double From(double scaled) const {
     const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
     if (has_low && has_high) {
       const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
       if (half == 0) return middle;
-      return middle + half * std::asin(std::clamp((scaled - middle) / half, -kInside, kInside));
+      const double away = (scaled - middle) / half;
+      return middle + half * std::asin(std::copysign(1 - Inside(1 - std::abs(away)), away));
     }
     if (!has_low && !has_high) return scaled;
-    const double inside = std::max(has_low ? scaled - low : high - scaled, 1 - kInside) + 1;
+    const double inside = Inside(has_low ? scaled - low : high - scaled) + 1;
     const double root = std::sqrt(inside * inside - 1);
     return has_low ? low + root : high - root;
   }
+
+ private:
+  static double Inside(double distance) { return distance < kAtBound ? kInside : distance; }
 };
 
 class PredictionCost : public ceres::CostFunction {
@@ -215,9 +224,8 @@ double CostOf(const Prediction& prediction, const std::vector<CalibratedParamete
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
     if (!std::isfinite(parameter.prior_deviation)) continue;
-    const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
-    const double away =
-        ToFree(parameter, values[static_cast<Eigen::Index>(k)]) - ToFree(parameter, mean);
+    const double away = ToFree(parameter, values[static_cast<Eigen::Index>(k)]) -
+                        ToFree(parameter, PriorMeanOf(parameter));
     cost += std::pow(away / parameter.prior_deviation, 2);
   }
   return 0.5 * cost;
@@ -249,7 +257,7 @@ void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
     double& value = snapped[static_cast<Eigen::Index>(k)];
-    const double now = ToFree(parameter, value), near = 2 * (1 - kInside) * parameter.typical;
+    const double now = ToFree(parameter, value), near = 2 * kInside * parameter.typical;
     const bool has_low = !(parameter.log_scale && parameter.min <= 0);
     if (has_low && now - ToFree(parameter, parameter.min) < near) value = parameter.min;
     if (ToFree(parameter, parameter.max) - now < near) value = parameter.max;
@@ -309,9 +317,9 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     for (int k = 0; k < count; ++k) {
       const CalibratedParameter& parameter = parameters[k];
       if (!std::isfinite(parameter.prior_deviation)) continue;
-      const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
       problem.AddResidualBlock(
-          new PriorCost(Free(parameter), ToFree(parameter, mean) / parameter.typical,
+          new PriorCost(Free(parameter),
+                        ToFree(parameter, PriorMeanOf(parameter)) / parameter.typical,
                         parameter.prior_deviation / parameter.typical),
           nullptr, blocks[k]);
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "study/calibration_fits.h"
 #include "study/model_change.h"
@@ -22,6 +23,13 @@ constexpr double kTolerance = 1;  // of the cost, whose unit is one standard dev
 constexpr int kSettlingSteps = 5;
 constexpr double kShorter = 0.3;
 constexpr double kSettled = 0.5;
+// A refit begins this part of the way to what first order expects: the first that predicts better
+// than the model without the effect. Moduli that fall below a part of themselves are not believed.
+constexpr double kPartsOfTheWay[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
+constexpr double kSoundPart = 0.2;
+// σ: what a refit leaves that has found its way. One that leaves 1.8 may end 1.1 from elsewhere.
+constexpr double kArrived = 1.2;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
 Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit) {
@@ -37,6 +45,14 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
   }
   kept.conservativeResize(count, Eigen::NoChange);
   return kept;
+}
+
+// Where a parameter that makes the effect's size has no effect; of other parameters, nothing.
+std::optional<double> NullOf(const ScoredEffect& scored, const ModelParameter& parameter) {
+  const auto [effect, index] = parameter.places.front();
+  const std::vector<int>& amplitude = scored.candidate.amplitude;
+  if (std::count(amplitude.begin(), amplitude.end(), index) == 0) return std::nullopt;
+  return effect->Card().parameters[index].null_value;
 }
 
 std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
@@ -212,28 +228,53 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     }
     return prediction;
   };
+  const auto within_bounds = [&](Eigen::VectorXd at) {
+    for (size_t k = 0; k < parameters.size(); ++k) {
+      double& value = at[static_cast<Eigen::Index>(k)];
+      value = std::clamp(value, parameters[k].min, parameters[k].max);
+    }
+    return at;
+  };
+  // The problem's parameters, those of the effect as the study begins with them.
   const auto start_from = [&](const Eigen::VectorXd& of_problem) {
     Eigen::VectorXd start(static_cast<Eigen::Index>(parameters.size()));
     for (size_t k = 0; k < parameters.size(); ++k)
       start[static_cast<Eigen::Index>(k)] = parameters[k].start;
     start.head(shared) = of_problem.head(shared);
     start.segment(shared + added, own - shared - added) = of_problem.tail(own - shared - added);
-    for (size_t k = 0; k < parameters.size(); ++k) {
-      double& value = start[static_cast<Eigen::Index>(k)];
-      value = std::clamp(value, parameters[k].min, parameters[k].max);
-    }
     return start;
   };
   progress->Begin(effect != nullptr ? "refit " + effect->candidate.type : "refit", 0);
-  Eigen::VectorXd start = start_from(values);
-  const Eigen::VectorXd expected = start_from(effect != nullptr ? effect->fitted : values);
-  bool sound = effect != nullptr;
-  for (Eigen::Index k = 0; k < shared; ++k)
-    if (parameters[k].log_scale && !(expected[k] > 0.2 * start[k])) sound = false;
-  if (sound) {
-    const Prediction near = predict(expected, false), far = predict(start, false);
-    if (near.usable && (!far.usable || near.residual.norm() < far.residual.norm()))
-      start = expected;
+  Eigen::VectorXd start = within_bounds(start_from(values));
+  if (effect != nullptr) {
+    bool sound = true;
+    for (Eigen::Index k = 0; k < shared; ++k)
+      if (parameters[k].log_scale && !(effect->fitted[k] > kSoundPart * values[k])) sound = false;
+    const Eigen::VectorXd expected = sound ? effect->fitted : values;
+    // Towards there, the effect's size too.
+    const auto part_way = [&](double part) {
+      Eigen::VectorXd at = start_from(values + part * (expected - values));
+      for (Eigen::Index k = shared; k < shared + added; ++k)
+        if (const std::optional<double> null = NullOf(*effect, study.fitted[k]))
+          at[k] = *null + part * (at[k] - *null);
+      return within_bounds(at);
+    };
+    const auto missed = [&](const Eigen::VectorXd& at) {
+      const Prediction prediction = predict(at, false);
+      return prediction.usable ? prediction.residual.norm() : kInfinity;
+    };
+    const double present = (FittedRows(WhitenedRows(misfit.residual, misfit, 0, true), misfit) +
+                            nuisance * start.tail(start.size() - own))
+                               .norm();
+    double least = missed(start);
+    for (const double part : kPartsOfTheWay) {
+      const Eigen::VectorXd at = part_way(part);
+      if (const double there = missed(at); there < least) {
+        least = there;
+        start = at;
+      }
+      if (least < present || effect->candidate.IsPilot()) break;
+    }
   }
 
   EffectRefit refit;
@@ -241,22 +282,19 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
   const auto calibrate_from = [&](const Eigen::VectorXd& from) {
     for (size_t k = 0; k < parameters.size(); ++k)
       parameters[k].start = from[static_cast<Eigen::Index>(k)];
-    return Calibrate(parameters,
-                     [&](const Eigen::VectorXd& at, bool with_jacobian) {
-                       const Prediction prediction = predict(at, with_jacobian);
-                       progress->Report(++evaluations, prediction.usable
-                                                           ? RootMeanSquare(prediction.residual)
-                                                           : std::nan(""));
-                       return prediction;
-                     },
-                     {.max_iterations = kIterations,
-                      .cost_tolerance = kTolerance,
-                      .near_rms = std::numeric_limits<double>::infinity()});
+    return Calibrate(
+        parameters,
+        [&](const Eigen::VectorXd& at, bool with_jacobian) {
+          const Prediction prediction = predict(at, with_jacobian);
+          progress->Report(++evaluations,
+                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+          return prediction;
+        },
+        {.max_iterations = kIterations, .cost_tolerance = kTolerance, .near_rms = kInfinity});
   };
   refit.calibration = calibrate_from(start);
   progress->End(refit.calibration.usable ? "" : refit.calibration.message);
-  const bool arrived =
-      !refit.calibration.estimates.empty() && refit.calibration.rms <= kMayBeAstray;
+  const bool arrived = !refit.calibration.estimates.empty() && refit.calibration.rms <= kArrived;
   if (effect != nullptr && is_far_off && !arrived) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
     const Calibration afresh = FitFrom(with, with.Start(), progress);

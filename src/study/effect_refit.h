@@ -46,11 +46,12 @@ struct EffectRefit {
   FittedHypothesis hypothesis;
 };
 
-// From where first order expects the best parameters, or from `values` where that is nearer. Null
-// `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
-// Leaves the study's effects at `values`. `misfit`: of the model as it is. `is_far_off`: so is the
-// model as it is, and a refit from there that leaves more than kMayBeAstray is made again from
-// where the model with the effect ends when it is fitted afresh. Throws Interrupted.
+// From where first order expects the best parameters, or from `values` where that is nearer, or
+// part of the way where neither predicts as well as the model without the effect. Null `effect`:
+// the model as it is, with what was adopted, so that it is compared at its best too. Leaves the
+// study's effects at `values`. `misfit`: of the model as it is. `is_far_off`: so is the model as it
+// is, and a refit from there that leaves more than noise is made again from where the model
+// with the effect ends when it is fitted afresh. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, bool is_far_off, Progress* progress);

@@ -5,7 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "effects/catalogue.h"
+#include "study/calibration_fits.h"
+#include "study/held_bar.h"
 #include "study/linear_misfit.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
@@ -66,6 +70,34 @@ TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   EXPECT_LT(of_far.misfit, 1.05 * of_usual.misfit);
   // (0.8 / 0.2)² / 2 = 8, if the column fixes it.
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
+}
+
+// First order may expect a size at which everything is another motion, from where no fit finds
+// back.
+TEST(EffectRefit, IsNotWorseThanTheModelWithout) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 1));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const Calibration fit = FitFromStart(problem, &progress);
+  ASSERT_FALSE(fit.estimates.empty()) << fit.message;
+  const LinearisedMisfit misfit = problem.Linearise(fit.parameters, true);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+
+  ScoredEffect bed;
+  bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
+  bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
+  bed.fitted = fit.parameters;
+  const EffectRefit refit =
+      Refit(problem, fit.parameters, &bed, {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0},
+            misfit, false, &progress);
+  ASSERT_TRUE(refit.message.empty()) << refit.message;
+  // A refit ends where a step gains less than one standard deviation.
+  EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
+  EXPECT_LT(refit.calibration.start_rms, 3 * fit.rms);
 }
 
 }  // namespace

@@ -125,7 +125,8 @@ TEST(Diagnosis, PrefersAPlaneThatTheBarMeets) {
       EXPECT_LT(other.evidence, contact->evidence);
     }
   }
-  for (const std::string& named : diagnosis.effects) EXPECT_EQ(named, "plane_contact");
+  for (const std::string& named : diagnosis.effects)
+    EXPECT_EQ(named, "plane_contact") << diagnosis.explanation;
 }
 
 TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
