@@ -195,114 +195,143 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
   return hypothesis;
 }
 
+// The problem with one more effect, as a fit: its parameters, then the amounts of what was adopted.
+class ExtendedProblem {
+ public:
+  // As Refit().
+  ExtendedProblem(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
+                  const LinearisedMisfit& misfit)
+      : values_(values),
+        effect_(effect),
+        study_(effect != nullptr ? WithEffect(problem.AsChosen(), *effect) : problem.AsChosen()),
+        with_(study_, problem.body()->mesh),
+        shared_(static_cast<Eigen::Index>(problem.study().fitted.size())),
+        added_(static_cast<Eigen::Index>(study_.fitted.size()) - shared_),
+        own_(static_cast<Eigen::Index>(with_.parameters().size())),
+        present_(FittedRows(WhitenedRows(misfit.residual, misfit, 0, true), misfit)),
+        nuisance_(FittedRows(WhitenedRows(adopted.by, misfit, 0, true), misfit)),
+        parameters_(with_.parameters()) {
+    for (const LinearPrior& prior : adopted.priors) {
+      CalibratedParameter amount;
+      amount.name = "nuisance";
+      amount.start = amount.prior_mean = prior.mean;
+      amount.prior_deviation = amount.typical = prior.deviation;
+      amount.is_linear = true;
+      parameters_.push_back(amount);
+    }
+  }
+
+  const CalibrationProblem& with() const { return with_; }
+  Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
+
+  // Where a fit is to begin.
+  Eigen::VectorXd Start() const {
+    const Eigen::VectorXd present = PartWay(1, values_);
+    if (effect_ == nullptr) return present;
+    Eigen::VectorXd expected = effect_->fitted;
+    for (Eigen::Index k = 0; k < shared_; ++k)
+      if (parameters_[k].log_scale && !(expected[k] > kSoundPart * values_[k])) expected = values_;
+    const double without = (present_ + nuisance_ * present.tail(present.size() - own_)).norm();
+    Eigen::VectorXd start = present;
+    double least = Missed(start);
+    for (const double part : kPartsOfTheWay) {
+      const Eigen::VectorXd at = PartWay(part, expected);
+      if (const double there = Missed(at); there < least) {
+        least = there;
+        start = at;
+      }
+      if (least < without || effect_->candidate.IsPilot()) break;
+    }
+    return start;
+  }
+
+  Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+                            Progress* progress) const {
+    std::vector<CalibratedParameter> parameters = parameters_;
+    for (size_t k = 0; k < parameters.size(); ++k)
+      parameters[k].start = start[static_cast<Eigen::Index>(k)];
+    int evaluations = 0;
+    const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
+      const Prediction prediction = Predict(at, with_jacobian);
+      progress->Report(++evaluations,
+                       prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+      return prediction;
+    };
+    progress->Begin(stage, 0);
+    const Calibration calibration = Calibrate(
+        parameters, predict,
+        {.max_iterations = kIterations, .cost_tolerance = kTolerance, .near_rms = kInfinity});
+    progress->End(calibration.usable ? "" : calibration.message);
+    return calibration;
+  }
+
+ private:
+  // Adopted nuisances change the misfit as they did at the model without the effect.
+  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian) const {
+    Prediction prediction = with_.Predict(at.head(own_), with_jacobian);
+    if (!prediction.usable) return prediction;
+    prediction.residual += nuisance_ * at.tail(at.size() - own_);
+    if (with_jacobian) {
+      prediction.jacobian.conservativeResize(Eigen::NoChange, at.size());
+      prediction.jacobian.rightCols(at.size() - own_) = nuisance_;
+    }
+    return prediction;
+  }
+
+  double Missed(const Eigen::VectorXd& at) const {
+    const Prediction prediction = Predict(at, /*with_jacobian=*/false);
+    return prediction.usable ? prediction.residual.norm() : kInfinity;
+  }
+
+  // From the present parameters towards others, and the effect from nothing towards the size that
+  // it begins with.
+  Eigen::VectorXd PartWay(double part, const Eigen::VectorXd& towards) const {
+    const Eigen::VectorXd of_problem = values_ + part * (towards - values_);
+    Eigen::VectorXd at(static_cast<Eigen::Index>(parameters_.size()));
+    for (Eigen::Index k = 0; k < at.size(); ++k) at[k] = parameters_[k].start;
+    at.head(shared_) = of_problem.head(shared_);
+    at.segment(shared_ + added_, own_ - shared_ - added_) =
+        of_problem.tail(own_ - shared_ - added_);
+    for (Eigen::Index k = shared_; k < shared_ + added_; ++k)
+      if (const std::optional<double> null = NullOf(*effect_, study_.fitted[k]))
+        at[k] = *null + part * (at[k] - *null);
+    for (Eigen::Index k = 0; k < at.size(); ++k)
+      at[k] = std::clamp(at[k], parameters_[k].min, parameters_[k].max);
+    return at;
+  }
+
+  const Eigen::VectorXd& values_;
+  const ScoredEffect* effect_;
+  PredictionStudy study_;
+  CalibrationProblem with_;
+  // How many of the parameters are the model's, then the effect's, and, with those of recordings,
+  // all of with_'s.
+  Eigen::Index shared_, added_, own_;
+  Eigen::VectorXd present_;   // whitened misfit of the model without the effect, fitted frames
+  Eigen::MatrixXd nuisance_;  // and how what was adopted changes it, per unit
+  std::vector<CalibratedParameter> parameters_;
+};
+
 }  // namespace
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredEffect* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, bool is_far_off, Progress* progress) {
-  const PredictionStudy chosen = problem.AsChosen();
-  const PredictionStudy study = effect != nullptr ? WithEffect(chosen, *effect) : chosen;
-  const CalibrationProblem with(study, problem.body()->mesh);
-  const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
-  const Eigen::Index added = static_cast<Eigen::Index>(study.fitted.size()) - shared;
-  const Eigen::Index own = static_cast<Eigen::Index>(with.parameters().size());
-
-  std::vector<CalibratedParameter> parameters = with.parameters();
-  for (const LinearPrior& prior : adopted.priors) {
-    CalibratedParameter amount;
-    amount.name = "nuisance";
-    amount.start = amount.prior_mean = prior.mean;
-    amount.prior_deviation = amount.typical = prior.deviation;
-    amount.is_linear = true;
-    parameters.push_back(amount);
-  }
-  // Adopted nuisances change the misfit as they did at the model without the effect.
-  const Eigen::MatrixXd nuisance = FittedRows(WhitenedRows(adopted.by, misfit, 0, true), misfit);
-  const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
-    Prediction prediction = with.Predict(at.head(own), with_jacobian);
-    if (!prediction.usable) return prediction;
-    prediction.residual += nuisance * at.tail(at.size() - own);
-    if (with_jacobian) {
-      prediction.jacobian.conservativeResize(Eigen::NoChange, at.size());
-      prediction.jacobian.rightCols(at.size() - own) = nuisance;
-    }
-    return prediction;
-  };
-  const auto within_bounds = [&](Eigen::VectorXd at) {
-    for (size_t k = 0; k < parameters.size(); ++k) {
-      double& value = at[static_cast<Eigen::Index>(k)];
-      value = std::clamp(value, parameters[k].min, parameters[k].max);
-    }
-    return at;
-  };
-  // The problem's parameters, those of the effect as the study begins with them.
-  const auto start_from = [&](const Eigen::VectorXd& of_problem) {
-    Eigen::VectorXd start(static_cast<Eigen::Index>(parameters.size()));
-    for (size_t k = 0; k < parameters.size(); ++k)
-      start[static_cast<Eigen::Index>(k)] = parameters[k].start;
-    start.head(shared) = of_problem.head(shared);
-    start.segment(shared + added, own - shared - added) = of_problem.tail(own - shared - added);
-    return start;
-  };
-  progress->Begin(effect != nullptr ? "refit " + effect->candidate.type : "refit", 0);
-  Eigen::VectorXd start = within_bounds(start_from(values));
-  if (effect != nullptr) {
-    bool sound = true;
-    for (Eigen::Index k = 0; k < shared; ++k)
-      if (parameters[k].log_scale && !(effect->fitted[k] > kSoundPart * values[k])) sound = false;
-    const Eigen::VectorXd expected = sound ? effect->fitted : values;
-    // Towards there, the effect's size too.
-    const auto part_way = [&](double part) {
-      Eigen::VectorXd at = start_from(values + part * (expected - values));
-      for (Eigen::Index k = shared; k < shared + added; ++k)
-        if (const std::optional<double> null = NullOf(*effect, study.fitted[k]))
-          at[k] = *null + part * (at[k] - *null);
-      return within_bounds(at);
-    };
-    const auto missed = [&](const Eigen::VectorXd& at) {
-      const Prediction prediction = predict(at, false);
-      return prediction.usable ? prediction.residual.norm() : kInfinity;
-    };
-    const double present = (FittedRows(WhitenedRows(misfit.residual, misfit, 0, true), misfit) +
-                            nuisance * start.tail(start.size() - own))
-                               .norm();
-    double least = missed(start);
-    for (const double part : kPartsOfTheWay) {
-      const Eigen::VectorXd at = part_way(part);
-      if (const double there = missed(at); there < least) {
-        least = there;
-        start = at;
-      }
-      if (least < present || effect->candidate.IsPilot()) break;
-    }
-  }
-
+  const ExtendedProblem extended(problem, values, effect, adopted, misfit);
+  const CalibrationProblem& with = extended.with();
+  const Eigen::Index own = extended.OwnCount();
+  const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
+  Eigen::VectorXd start = extended.Start();
   EffectRefit refit;
-  int evaluations = 0;
-  const auto calibrate_from = [&](const Eigen::VectorXd& from) {
-    for (size_t k = 0; k < parameters.size(); ++k)
-      parameters[k].start = from[static_cast<Eigen::Index>(k)];
-    return Calibrate(
-        parameters,
-        [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction = predict(at, with_jacobian);
-          progress->Report(++evaluations,
-                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
-          return prediction;
-        },
-        {.max_iterations = kIterations, .cost_tolerance = kTolerance, .near_rms = kInfinity});
-  };
-  refit.calibration = calibrate_from(start);
-  progress->End(refit.calibration.usable ? "" : refit.calibration.message);
+  refit.calibration = extended.CalibrateFrom(start, stage, progress);
   const bool arrived = !refit.calibration.estimates.empty() && refit.calibration.rms <= kArrived;
   if (effect != nullptr && is_far_off && !arrived) {
     // The model without the effect was fitted to what it cannot do: begin where that did.
     const Calibration afresh = FitFrom(with, with.Start(), progress);
     if (afresh.parameters.size() == own) {
       start.head(own) = afresh.parameters;
-      progress->Begin("refit " + effect->candidate.type + " from there", 0);
-      const Calibration other = calibrate_from(start);
-      progress->End(other.usable ? "" : other.message);
+      const Calibration other = extended.CalibrateFrom(start, stage + " from there", progress);
       if (!other.estimates.empty() &&
           (refit.calibration.estimates.empty() || other.rms < refit.calibration.rms))
         refit.calibration = other;
