@@ -20,7 +20,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& par
   std::vector<MisfitDirection> directions;
   for (const ModelParameter& parameter : parameters)
     for (const auto& [effect, index] : parameter.places)
-      directions.push_back({{.effect = effect, .parameter = index}});
+      directions.push_back({.perturbation = {.effect = effect, .parameter = index}});
   return directions;
 }
 
@@ -57,7 +57,10 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
       body_(std::make_shared<const Body>(MakeBody(mesh, study.density))),
       patches_(study.patches),
       noise_(study.noise) {
-  for (const ModelParameter& parameter : study.fitted) parameters_.push_back(parameter.prior);
+  for (const ModelParameter& parameter : study.fitted) {
+    parameters_.push_back(parameter.prior);
+    units_.push_back(parameter.unit);
+  }
   const bool has_scans =
       std::any_of(study.recordings.begin(), study.recordings.end(),
                   [](const PredictedRecording& item) { return item.scans != nullptr; });
@@ -69,7 +72,10 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
     models_.emplace_back(study, item, mesh, body_, patches_);
     first_nuisance_.push_back(item.fitted ? static_cast<Eigen::Index>(parameters_.size()) : -1);
     if (item.fitted)
-      for (const auto& nuisance : models_.back().nuisances()) parameters_.push_back(nuisance.prior);
+      for (const auto& nuisance : models_.back().nuisances()) {
+        parameters_.push_back(nuisance.prior);
+        units_.push_back(nuisance.unit);
+      }
     has_markers = has_markers || item.scans == nullptr;
     double& largest = item.scans != nullptr ? of_scans : of_markers;
     largest = std::max(largest, EstimateRecordingNoise(item, models_.back().FittedFrames()));
@@ -235,7 +241,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
     // The clock comes last: its derivative is the speed, with the sign turned.
     std::vector<MisfitDirection> wanted;
     if (with_jacobian) wanted = DirectionsFor(r, directions);
-    wanted.push_back({.perturbation = {}, .is_clock = true});
+    wanted.push_back({MisfitDirection::Of::kClock});
     Misfit misfit =
         model.Predict(item.frames, NuisanceOf(r, values), wanted,
                       same != nullptr ? &same->parts[all.parts.size()].observed : nullptr);

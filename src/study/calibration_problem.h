@@ -50,14 +50,15 @@ class CalibrationProblem {
 
   // The study's parameters, then the nuisances of each fitted recording.
   const std::vector<CalibratedParameter>& parameters() const { return parameters_; }
+  const std::string& UnitOf(size_t parameter) const { return units_[parameter]; }  // SI
   Eigen::VectorXd Start() const;
   // σ of a marker's coordinate, and of a scanned point along the normal, m, that residuals are
   // weighed with; 0 where no recording has such.
   double noise() const { return noise_; }
   double scan_noise() const { return scan_noise_; }
-  // As a part of that, the least variance that what models leave may tell of. An estimate from eight
-  // frames at rest, and the larger one of two recordings, is up to 1.4 times too large, and a model
-  // that leaves less has not found it by chance: its hundreds of rows fix σ to some per cent.
+  // As a part of that, the least variance that what models leave may tell of. An estimate from
+  // eight frames at rest, and the larger one of two recordings, is up to 1.4 times too large, and a
+  // model that leaves less has not found it by chance: its hundreds of rows fix σ to some per cent.
   double LeastNoiseVariance() const { return estimates_noise_ ? 0.25 : 1; }
   MeasurementErrors ErrorsOf(const RecordingModel& model) const;
   const PredictionStudy& study() const { return study_; }
@@ -110,6 +111,7 @@ class CalibrationProblem {
   SurfacePatches patches_;
   std::vector<RecordingModel> models_;
   std::vector<CalibratedParameter> parameters_;
+  std::vector<std::string> units_;            // of the parameters
   std::vector<Eigen::Index> first_nuisance_;  // −1 for a recording that is not fitted
   double noise_ = 0, scan_noise_ = 0;
   bool estimates_noise_ = false;  // of markers, and there is nothing else

@@ -17,7 +17,7 @@ namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 8;
+constexpr int kCalibrationVersion = 9;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -47,12 +47,8 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   record.predictions = calibration.predictions;
   for (size_t k = 0; k < calibration.estimates.size(); ++k) {
     const CalibratedParameter& prior = problem.parameters()[k];
-    const bool of_model = k < study.fitted.size();
-    record.parameters.push_back({prior.name,
-                                 of_model                         ? study.fitted[k].unit
-                                 : prior.name.ends_with(".clock") ? "s"
-                                                                  : "N",
-                                 prior.log_scale, calibration.estimates[k], std::nullopt});
+    record.parameters.push_back(
+        {prior.name, problem.UnitOf(k), prior.log_scale, calibration.estimates[k], std::nullopt});
   }
   if (calibration.estimates.size() != problem.parameters().size()) return stage;  // no prediction
   progress->Begin("predict", 0);

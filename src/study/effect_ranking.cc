@@ -147,7 +147,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
   std::vector<MisfitDirection> directions;
   for (const CandidateEffect& candidate : candidates)
     for (const int parameter : candidate.amplitude)
-      directions.push_back({{.effect = candidate.effect, .parameter = parameter}});
+      directions.push_back({.perturbation = {.effect = candidate.effect, .parameter = parameter}});
   return directions;
 }
 

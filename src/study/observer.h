@@ -36,12 +36,6 @@ struct Observed {
   // Along which a point of one component is measured: 3 × points, unit length; 3 × 0 of three.
   Eigen::Matrix3Xd normal;
   int offered = 0, used = 0;  // scanned points in the frame, and those that were compared
-
-  // How an error of a point's place (its components, m) shows in this frame.
-  Eigen::VectorXd Shown(int point, const Eigen::VectorXd& error) const {
-    if (deformation.empty()) return error;
-    return deformation[static_cast<size_t>(point)] * error;
-  }
 };
 
 class Observer {

@@ -33,8 +33,11 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
     const Observed& seen = part.observed[static_cast<size_t>(f)];
     for (Eigen::Index i = 0; i < points; ++i) {
       if (seen.count[i] == 0) continue;
-      const Eigen::VectorXd own = residual.segment(components * (f * points + i), components) -
-                                  seen.Shown(static_cast<int>(i), places.col(i));
+      Eigen::VectorXd shown = places.col(i);
+      if (!part.layout.deformation.empty())
+        shown = part.layout.deformation[static_cast<size_t>(f * points + i)] * shown;
+      const Eigen::VectorXd own =
+          residual.segment(components * (f * points + i), components) - shown;
       if (components == 3)
         displacements.col(f * points + i) = own;
       else

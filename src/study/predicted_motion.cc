@@ -20,6 +20,8 @@ namespace {
 // Markers rest where their distances stay within this many times those of noise, so many frames.
 constexpr double kRestThreshold = 2.5;
 constexpr int kFewestAtRest = 8;
+using Of = MisfitDirection::Of;
+
 constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
 
 double ShareUsed(const Observed& observed) {
@@ -72,6 +74,14 @@ void RequireStaticStart(const PredictedRecording& item) {
   }
 }
 
+// Stacked vectors, in columns.
+template <typename Stacked>
+void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
+  if (stacked->size() == 0) return;
+  const Eigen::Matrix3Xd turned = turn * stacked->reshaped(3, stacked->size() / 3);
+  *stacked = turned.reshaped(stacked->rows(), stacked->cols());
+}
+
 }  // namespace
 
 Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) const {
@@ -79,9 +89,10 @@ Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) con
   const Eigen::Index components = Components();
   for (size_t at = 0; at < count.size(); ++at) {
     const int point = static_cast<int>(at) % points;
-    if (count[at] > 0)
-      rest.segment(components * static_cast<Eigen::Index>(at), components) -=
-          observed[at / static_cast<size_t>(points)].Shown(point, place_offset.col(point));
+    if (count[at] == 0) continue;
+    Eigen::VectorXd shown = place_offset.col(point);
+    if (!deformation.empty()) shown = deformation[at] * shown;
+    rest.segment(components * static_cast<Eigen::Index>(at), components) -= shown;
   }
   return rest;
 }
@@ -111,13 +122,23 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
   for (const auto& load : MakeKnownForces(recording.recording, model_))
     model_.effects.push_back(load);
   if (item_.hold) AddHold(mesh);
-  if (item_.clock_deviation > 0) {
-    Nuisance nuisance;
-    nuisance.prior.name = item_.name + ".clock";
-    nuisance.prior.prior_deviation = nuisance.prior.typical = item_.clock_deviation;
-    nuisance.direction.is_clock = true;
-    nuisances_.push_back(std::move(nuisance));
+  if (item_.clock_deviation > 0) AddNuisance("clock", "s", item_.clock_deviation, {Of::kClock});
+  for (const bool turns : {false, true}) {
+    const double deviation = turns ? item_.turn_deviation : item_.shift_deviation;
+    for (int axis = 0; deviation > 0 && axis < 3; ++axis)
+      AddNuisance(fmt::format("{}_{}", turns ? "turn" : "shift", "xyz"[axis]), turns ? "rad" : "m",
+                  deviation, {turns ? Of::kTurn : Of::kShift, axis});
   }
+}
+
+void RecordingModel::AddNuisance(const std::string& name, const std::string& unit, double deviation,
+                                 MisfitDirection direction) {
+  Nuisance nuisance;
+  nuisance.prior.name = item_.name + "." + name;
+  nuisance.prior.prior_deviation = nuisance.prior.typical = deviation;
+  nuisance.direction = std::move(direction);
+  nuisance.unit = unit;
+  nuisances_.push_back(std::move(nuisance));
 }
 
 void RecordingModel::AddHold(const TetMesh& mesh) {
@@ -132,13 +153,11 @@ void RecordingModel::AddHold(const TetMesh& mesh) {
   const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
   const double weight = 10 * model_.body->node_mass.sum();  // N, about that of the object
   for (int axis = 0; axis < 3; ++axis) {
-    Nuisance nuisance;
-    nuisance.prior.name = fmt::format("{}.hold_force_{}", item_.name, "xyz"[axis]);
-    nuisance.prior.prior_deviation = nuisance.prior.typical = weight;
-    Eigen::VectorXd& force = nuisance.direction.perturbation.held_force;
+    MisfitDirection direction;
+    Eigen::VectorXd& force = direction.perturbation.held_force;
     force = Eigen::VectorXd::Zero(3 * share.size());
     for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
-    nuisances_.push_back(std::move(nuisance));
+    AddNuisance(fmt::format("hold_force_{}", "xyz"[axis]), "N", weight, std::move(direction));
   }
 }
 
@@ -184,8 +203,32 @@ PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const
 double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
   double late = 0;
   for (size_t k = 0; k < nuisances_.size(); ++k)
-    if (nuisances_[k].direction.is_clock) late += nuisance[static_cast<Eigen::Index>(k)];
+    if (nuisances_[k].direction.of == Of::kClock) late += nuisance[static_cast<Eigen::Index>(k)];
   return late;
+}
+
+Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) const {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
+  for (size_t k = 0; k < nuisances_.size(); ++k) {
+    const MisfitDirection& direction = nuisances_[k].direction;
+    if (direction.of == Of::kShift) shift[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+    if (direction.of == Of::kTurn) turn[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+  }
+  Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
+  if (shift.isZero(0) && turn.isZero(0)) return registration;
+  const Eigen::Vector3d middle = Middle();
+  const double angle = turn.norm();
+  if (angle > 0) registration.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  registration.translation() = middle + shift - registration.linear() * middle;
+  return registration;
+}
+
+Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
+                                               const Eigen::Isometry3d& registration,
+                                               const Eigen::Vector3d& place) const {
+  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(direction.axis);
+  if (direction.of == Of::kShift) return axis;
+  return axis.cross(place - registration * Middle());
 }
 
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
@@ -197,13 +240,15 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
 
-  // The clock needs no tangent: a later clock sees the motion earlier.
+  // Clock and registration need no tangent: a later clock sees the motion earlier.
   std::vector<Perturbation> perturbations;
   std::vector<Eigen::Index> column;
   for (const MisfitDirection& direction : directions) {
-    column.push_back(direction.is_clock ? -1 : static_cast<Eigen::Index>(perturbations.size()));
-    if (!direction.is_clock) perturbations.push_back(direction.perturbation);
+    column.push_back(static_cast<Eigen::Index>(perturbations.size()));
+    if (direction.of == Of::kModel) perturbations.push_back(direction.perturbation);
   }
+  const Eigen::Isometry3d registration = Registration(nuisance);
+  const bool is_registered = item_.shift_deviation > 0 || item_.turn_deviation > 0;
 
   Misfit misfit;
   misfit.points = PointCount();
@@ -217,10 +262,18 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         const Eigen::Index begin = rows_of_frame * index;
         Observed seen =
             observed != nullptr ? (*observed)[index] : observer_->Observe(frame, state.position);
-        const Eigen::VectorXd predicted = *seen.rows * state.position;
-        const Eigen::VectorXd velocity = *seen.rows * state.velocity;
+        Eigen::VectorXd predicted = *seen.rows * state.position;
+        Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
         if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        std::vector<Eigen::Matrix3d> deformation = seen.deformation;
+        if (is_registered) {
+          Turn(registration.linear(), &predicted);
+          predicted += registration.translation().replicate(misfit.points, 1);
+          Turn(registration.linear(), &velocity);
+          Turn(registration.linear(), &by);
+          for (Eigen::Matrix3d& F : deformation) F = registration.linear() * F;
+        }
         for (int point = 0; point < misfit.points; ++point) {
           misfit.count.push_back(seen.count[point]);
           const Eigen::Index row = begin + components * point, own = components * point;
@@ -229,18 +282,23 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
           misfit.residual.segment(row, components) =
               predicted.segment(own, components) - seen.target.segment(own, components);
           for (size_t k = 0; k < directions.size(); ++k) {
-            const Eigen::Index at = static_cast<Eigen::Index>(k);
-            const bool moves = state.time > options.start_time;
-            if (column[k] >= 0) {
-              misfit.by.col(at).segment(row, components) =
-                  by.col(column[k]).segment(own, components);
-            } else if (moves) {
-              misfit.by.col(at).segment(row, components) = -velocity.segment(own, components);
+            auto derivative = misfit.by.col(static_cast<Eigen::Index>(k)).segment(row, components);
+            switch (directions[k].of) {
+              case Of::kModel:
+                derivative = by.col(column[k]).segment(own, components);
+                break;
+              case Of::kClock:
+                if (state.time > options.start_time)
+                  derivative = -velocity.segment(own, components);
+                break;
+              case Of::kShift:
+              case Of::kTurn:
+                derivative = ByRegistration(directions[k], registration, predicted.segment<3>(own));
+                break;
             }
           }
         }
-        misfit.deformation.insert(misfit.deformation.end(), seen.deformation.begin(),
-                                  seen.deformation.end());
+        misfit.deformation.insert(misfit.deformation.end(), deformation.begin(), deformation.end());
         misfit.frames.push_back(frame);
         misfit.observed.push_back(std::move(seen));
       });

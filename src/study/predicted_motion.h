@@ -3,6 +3,7 @@
 #define LACUNA_STUDY_PREDICTED_MOTION_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,8 +23,9 @@ struct Misfit {
   Eigen::VectorXd residual;  // components·points·frames
   Eigen::MatrixXd by;      // ∂residual/∂(parameter), rows × columns; 0 columns: not asked for
   std::vector<int> count;  // points × frames: measurements that each is the mean of; 0: not seen
-  std::vector<Eigen::Matrix3d> deformation;  // points × frames: F (Observed); empty of scans
-  std::vector<Observed> observed;            // of each frame: what the prediction was compared with
+  // points × frames: F (Observed), turned into the measuring frame; empty of scans.
+  std::vector<Eigen::Matrix3d> deformation;
+  std::vector<Observed> observed;  // of each frame: what the prediction was compared with
   PredictionSummary summary;
 
   Eigen::Index Components() const {
@@ -35,8 +37,12 @@ struct Misfit {
 
 // Of one column of a Misfit's derivative.
 struct MisfitDirection {
-  Perturbation perturbation;
-  bool is_clock = false;  // the recording's clock runs late by the parameter, s
+  // Of the model; or of the recording: its clock runs late by the parameter, s; or its measuring
+  // frame is shifted, m, or turned, rad, along an axis.
+  enum class Of { kModel, kClock, kShift, kTurn };
+  Of of = Of::kModel;
+  int axis = 0;
+  Perturbation perturbation = {};  // of the model
 };
 
 // The model in the place of one recording.
@@ -58,10 +64,11 @@ class RecordingModel {
     return dynamic_cast<const MarkerObserver*>(observer_.get());
   }
   // What the recording itself leaves open: three components of the force that holds the body, the
-  // clock. `prior` is by name and deviation; start 0.
+  // clock, the registration. `prior` is by name and deviation; start 0.
   struct Nuisance {
     CalibratedParameter prior;
     MisfitDirection direction;
+    std::string unit;  // SI
   };
   const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
@@ -77,6 +84,13 @@ class RecordingModel {
   // How the model is run with these nuisances, and by how much, s, the recording's clock is late.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
+  // From the fixture, in which the model is, to the recording's measuring frame: turned about the
+  // middle of the markers' places, then shifted.
+  Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
+  // ∂(a place in the measuring frame)/∂(a shift or turn), the turn small.
+  Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
+                                 const Eigen::Isometry3d& registration,
+                                 const Eigen::Vector3d& place) const;
   // In which frames of a scan points found no place on the predicted surface: fewer than `least`
   // times the share that did in the best frame, or in the first with the undeformed surface.
   std::vector<int> LostFrames(const Misfit& misfit, double least) const;
@@ -86,7 +100,10 @@ class RecordingModel {
   const PredictedRecording& item_;
   Model model_;
   void AddHold(const TetMesh& mesh);
+  void AddNuisance(const std::string& name, const std::string& unit, double deviation,
+                   MisfitDirection direction);
   void RequireThatScansShowTheObject();
+  Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
   std::unique_ptr<const Observer> observer_;
   double shown_ = 0;  // share of the first scan's points that the undeformed surface has

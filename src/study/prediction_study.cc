@@ -109,6 +109,12 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   item.fit_until =
       config.Has("fit_until") ? config.Quantity("fit_until", kTime, kAnyValue) : kForever;
   item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
+  if (const auto registration = config.OptionalChild("registration")) {
+    if (item.scans != nullptr)
+      config.Fail("registration", "is known for markers only, not for scans");
+    item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
+    item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
+  }
   if (const auto hold = config.OptionalChild("hold")) item.hold = ReadHold(*hold, item.recording);
   for (const Config& effect : config.Items("effects"))
     item.effects.push_back(MakeEffect(effect, material));

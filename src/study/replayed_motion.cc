@@ -65,6 +65,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
   motion.delay = recording.Delay(nuisance);
+  motion.registration = recording.Registration(nuisance);
   FindUp(model, &motion);
 
   // The start is visited too, between the frames before it and those after.
@@ -96,10 +97,15 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       return;
     }
     const int frame = index < at_start ? index : index - 1;
-    motion.predicted.col(frame) = observer.rows() * state.position;
-    motion.velocity.col(frame) = observer.rows() * state.velocity;
+    const auto vectors = [&](const Eigen::VectorXd& nodal) {
+      const Eigen::VectorXd stacked = observer.rows() * nodal;
+      return Eigen::Matrix3Xd(stacked.reshaped(3, markers));
+    };
+    motion.predicted.col(frame) = (motion.registration * vectors(state.position)).reshaped();
+    motion.velocity.col(frame) =
+        (motion.registration.linear() * vectors(state.velocity)).reshaped();
     for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
-      motion.deformation.push_back(deformation);
+      motion.deformation.emplace_back(motion.registration.linear() * deformation);
     for (Eigen::Index m = 0; m < markers; ++m) {
       const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
       motion.strain(m, frame) = LargestPrincipal(strain.strain);

@@ -4,6 +4,7 @@
 #define LACUNA_STUDY_REPLAYED_MOTION_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct ReplayedMotion {
   PredictionSummary summary;
   double delay = 0;  // s, by which the recording's clock is late: model time = time − delay
   Eigen::VectorXd nuisance;                  // of the recording
+  Eigen::Isometry3d registration;            // from the model to the measuring frame, in which are:
   Eigen::MatrixXd predicted;                 // m, the markers' places
   Eigen::MatrixXd velocity;                  // m/s
   std::vector<Eigen::Matrix3d> deformation;  // markers × frames: F at each

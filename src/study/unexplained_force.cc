@@ -68,8 +68,9 @@ class Problem {
     prior_.resize(static_cast<Eigen::Index>(recording.nuisances().size()));
     for (const auto& nuisance : recording.nuisances()) {
       prior_[static_cast<Eigen::Index>(held_shape_.size())] = nuisance.prior.prior_deviation;
-      held_shape_.push_back(nuisance.direction.is_clock ? -1 : shapes_.cols());
-      if (nuisance.direction.is_clock) continue;
+      const bool holds = nuisance.direction.of == MisfitDirection::Of::kModel;
+      held_shape_.push_back(holds ? shapes_.cols() : -1);
+      if (!holds) continue;
       shapes_.conservativeResize(Eigen::NoChange, shapes_.cols() + 1);
       shapes_.rightCols(1) = nuisance.direction.perturbation.held_force;
     }
@@ -132,10 +133,17 @@ class Problem {
     ForEachSeen([&](int frame, int m, Eigen::Index row) {
       const Eigen::Index index = row / (3 * recording_.PointCount());
       rows.coordinates += 3;
-      by.middleRows<3>(row) = moved[index].middleRows<3>(3 * m);
-      for (Eigen::Index k = 0; k < nuisances; ++k)
-        if (held_shape_[k] < 0 && times[index] > field_.start)
-          by.col(forces + k).segment<3>(row) = -motion.velocity.col(frame).segment<3>(3 * m);
+      by.middleRows<3>(row) = motion.registration.linear() * moved[index].middleRows<3>(3 * m);
+      for (Eigen::Index k = 0; k < nuisances; ++k) {
+        const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
+        auto column = by.col(forces + k).segment<3>(row);
+        if (direction.of == MisfitDirection::Of::kModel) continue;
+        if (direction.of != MisfitDirection::Of::kClock)
+          column = recording_.ByRegistration(direction, motion.registration,
+                                             motion.predicted.col(frame).segment<3>(3 * m));
+        else if (times[index] > field_.start)
+          column = -motion.velocity.col(frame).segment<3>(3 * m);
+      }
     });
     by = Whiten(by);
     rows.residual = Residual(motion);
@@ -172,7 +180,7 @@ class Problem {
   double noise_, place_deviation_;
   Eigen::MatrixXd shapes_;                // of the field, then of what holds
   Eigen::VectorXd prior_;                 // deviations of the nuisances
-  std::vector<Eigen::Index> held_shape_;  // of each nuisance; −1: the clock
+  std::vector<Eigen::Index> held_shape_;  // of each nuisance; −1: no force
   std::vector<int> chosen_;
   std::vector<Eigen::Matrix3d> deformation_;  // markers × chosen frames
 };

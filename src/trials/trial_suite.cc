@@ -111,7 +111,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   }
   const std::shared_ptr<Effect> effect = MakeHidden(none);
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
-    directions.push_back({{.effect = effect, .parameter = static_cast<int>(k)}});
+    directions.push_back({.perturbation = {.effect = effect, .parameter = static_cast<int>(k)}});
   const GripNuisances grips(problem);
   directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
   LinearisedMisfit misfit = problem.Linearise(values, true, directions);

@@ -35,23 +35,33 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
   const PredictionStudy study =
       ReadBarStudy(folder.Path(), {{"{name: mass_damping.alpha}",
                                     "{name: poisson_ratio}, {name: mass_damping.alpha}, "
-                                    "{name: gravity.acceleration_z}"}});
+                                    "{name: gravity.acceleration_z}"},
+                                   {"clock_deviation: 10 ms\n",
+                                    "clock_deviation: 10 ms\n    registration: {shift_deviation: "
+                                    "1 mm, turn_deviation: 1 deg}\n"}});
   const CalibrationProblem problem(study, StudyMesh());
+  constexpr Eigen::Index kCount = 14;
   std::vector<std::string> names;
   for (const CalibratedParameter& parameter : problem.parameters()) names.push_back(parameter.name);
-  EXPECT_THAT(names, testing::ElementsAre("young_modulus", "poisson_ratio", "mass_damping.alpha",
-                                          "gravity.acceleration_z", "bar.hold_force_x",
-                                          "bar.hold_force_y", "bar.hold_force_z", "bar.clock"));
+  EXPECT_THAT(names,
+              testing::ElementsAre("young_modulus", "poisson_ratio", "mass_damping.alpha",
+                                   "gravity.acceleration_z", "bar.hold_force_x", "bar.hold_force_y",
+                                   "bar.hold_force_z", "bar.clock", "bar.shift_x", "bar.shift_y",
+                                   "bar.shift_z", "bar.turn_x", "bar.turn_y", "bar.turn_z"));
+  EXPECT_EQ(problem.UnitOf(7), "s");
+  EXPECT_EQ(problem.UnitOf(13), "rad");
   Eigen::VectorXd at = problem.Start();
-  at.tail(4) << 0.01, 0.03, -0.02, 0.001;
-  const Eigen::VectorXd steps =
-      (Eigen::VectorXd(8) << 200, 1e-3, 1e-2, 1e-2, 2e-3, 2e-3, 2e-3, 1e-4).finished();
+  // A turn's derivative is that of a small one.
+  at.tail(10) << 0.01, 0.03, -0.02, 0.001, 1e-3, -2e-3, 1e-3, 5e-4, -3e-4, 2e-4;
+  const Eigen::VectorXd steps = (Eigen::VectorXd(kCount) << 200, 1e-3, 1e-2, 1e-2, 2e-3, 2e-3, 2e-3,
+                                 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
+                                    .finished();
   // How errors of the markers' places show is what it is at `at`.
   const LinearisedMisfit here = problem.Linearise(at, true);
   ASSERT_TRUE(here.usable) << here.message;
-  ASSERT_EQ(here.by.cols(), 8);
-  for (Eigen::Index k = 0; k < 8; ++k) {
-    const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(8, k);
+  ASSERT_EQ(here.by.cols(), kCount);
+  for (Eigen::Index k = 0; k < kCount; ++k) {
+    const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(kCount, k);
     const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
                                         problem.Linearise(at - shift, false, {}, &here).residual) /
                                        (2 * steps[k]);
@@ -184,6 +194,38 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   EXPECT_NEAR(std::abs(together[0].place_offset(0, 7)), 1.5e-3, 2e-4);
   // The meshes differ.
   EXPECT_LT(together[0].held_out.rms, 3e-4);
+}
+
+// Of a recording that is not fitted, the measuring frame may have been set up anew.
+TEST(CalibrationProblem, KnowsTheRegistrationOfARecording) {
+  const TemporaryFolder folder;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.02, Eigen::Vector3d(1, -2, 2) / 3).toRotationMatrix();
+  std::vector<Eigen::Matrix3Xd> markers = FilmHeldBar({});
+  WriteBarRecording(folder.Path(), markers);
+  for (Eigen::Matrix3Xd& frame : markers)
+    frame = (turn * frame).colwise() + Eigen::Vector3d(0.5e-3, 1e-3, -0.7e-3);
+  WriteBarRecording(folder / "other", markers);
+  const auto misfits = [&](const std::string& registration) {
+    const PredictionStudy study =
+        ReadBarStudy(folder.Path(),
+                     {{"recordings:\n",
+                       "recordings:\n  - recording: other/recording.yaml\n    name: other\n"
+                       "    fitted: false\n    clock_deviation: 10 ms\n" +
+                           registration +
+                           "    hold:\n      region: {half_space: {point: "
+                           "[0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n      release: 0.0437 s\n"}});
+    const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 2));
+    const Calibration calibration = FitOf(problem);
+    EXPECT_TRUE(calibration.usable) << calibration.message;
+    return MisfitsOf(problem, calibration.parameters);
+  };
+  EXPECT_GT(misfits("")[0].held_out.rms, 1e-3);
+  const std::vector<RecordingMisfit> registered =
+      misfits("    registration: {shift_deviation: 1 mm, turn_deviation: 1 deg}\n");
+  // As well as the same motion is predicted in the measuring frame that the model is in.
+  EXPECT_LT(registered[0].held_out.rms,
+            1.2 * std::max(registered[1].in_fit.rms, registered[1].held_out.rms));
 }
 
 std::string MessageOf(const PredictionStudy& study) {

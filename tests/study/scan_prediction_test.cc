@@ -112,8 +112,8 @@ TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
   const std::vector<int> frames{0, 3, 4, 5, 6};
   std::vector<MisfitDirection> directions;
   for (const ModelParameter& parameter : study.fitted)
-    directions.push_back(
-        {{.effect = parameter.places[0].first, .parameter = parameter.places[0].second}});
+    directions.push_back({.perturbation = {.effect = parameter.places[0].first,
+                                           .parameter = parameter.places[0].second}});
   for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
   Eigen::VectorXd at(6);
   at << 1e5, 2, 0.01, 0.04, 0.02, 0.001;
