@@ -134,20 +134,25 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
   return OwnNuisance(model, ErrorsOf(model), PlacesFromFitted(recording, values));
 }
 
-std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
-    size_t recording, const Eigen::VectorXd& values) const {
+std::optional<size_t> CalibrationProblem::PlacesToldBy(size_t recording) const {
   if (models_[recording].Markers() == nullptr || first_nuisance_[recording] >= 0)
     return std::nullopt;
-  for (size_t r = 0; r < models_.size(); ++r) {
-    const RecordingModel& fitted = models_[r];
-    if (first_nuisance_[r] < 0 || fitted.Markers() == nullptr) continue;
-    if (!HasTheSameMarkers(models_[recording].item().recording, fitted.item().recording)) continue;
-    const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(r, values), {});
-    if (!misfit.summary.IsUsable()) return std::nullopt;
-    return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
-                       std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
-  }
+  for (size_t r = 0; r < models_.size(); ++r)
+    if (first_nuisance_[r] >= 0 && models_[r].Markers() != nullptr &&
+        HasTheSameMarkers(models_[recording].item().recording, models_[r].item().recording))
+      return r;
   return std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
+    size_t recording, const Eigen::VectorXd& values) const {
+  const std::optional<size_t> teller = PlacesToldBy(recording);
+  if (!teller) return std::nullopt;
+  const RecordingModel& fitted = models_[*teller];
+  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values), {});
+  if (!misfit.summary.IsUsable()) return std::nullopt;
+  return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
+                     std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,

@@ -71,11 +71,10 @@ class CalibrationProblem {
   // Recording r's nuisances: among the parameters where it is fitted; else found from its first
   // tenth, the model staying as `values` have set it (SetModel).
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
-  // The errors of the marker places of a recording that is not fitted (3 × markers, m), from the
-  // first fitted recording that has markers of the same names at the same places: they are on the
-  // object, and so the same in both. None where no recording has, and of scans.
-  std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
-                                                  const Eigen::VectorXd& values) const;
+  // Which recording tells the errors of the marker places of one that is not fitted: the first
+  // fitted one that has markers of the same names at the same places. They are on the object, and
+  // so the same in both. None where no recording has, and of scans.
+  std::optional<size_t> PlacesToldBy(size_t recording) const;
 
   // Gives the study's effects, which other problems may share and have changed, these values.
   void SetModel(const Eigen::VectorXd& values) const;
@@ -98,6 +97,9 @@ class CalibrationProblem {
                              const LinearisedMisfit* same = nullptr) const;
 
  private:
+  // Those errors, 3 × markers, m.
+  std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
+                                                  const Eigen::VectorXd& values) const;
   // What a recording's Misfit is differentiated by: the places of the study's parameters,
   // `further`, the recording's own nuisances; and those columns as ∂/∂(parameters), then by
   // `further` of them.

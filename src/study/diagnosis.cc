@@ -137,11 +137,11 @@ class Refits {
     if (!bare.message.empty()) return instead;
     const HypothesisEvidence before = EvidenceOf(bare.hypothesis, diagnosis_.noise_level);
     instead.bare = bare.errors;
-    instead.nuisances =
+    instead.nuisances_evidence =
         EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence - before.log_evidence;
     for (const ScoredEffect& scored : ranking_.instead) {
       if (static_cast<int>(instead.effects.size()) == count ||
-          scored.score.evidence < kCouldDoAsMuch * instead.nuisances)
+          scored.score.evidence < kCouldDoAsMuch * instead.nuisances_evidence)
         break;
       RankedEffect& effect = instead.effects.emplace_back();
       effect.scored = scored;

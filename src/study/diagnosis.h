@@ -60,7 +60,7 @@ struct Diagnosis {
   // has; where no effect has evidence beside them.
   struct Instead {
     std::vector<RankedEffect> effects;  // refitted without those nuisances; evidence: against bare
-    double nuisances = 0;               // evidence of the nuisances against bare
+    double nuisances_evidence = 0;      // evidence of the nuisances against bare
     ModelErrors bare;                   // of the model with neither
   } instead;
   int scored = 0;      // effects and variants

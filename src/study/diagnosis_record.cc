@@ -157,7 +157,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
               {"nuisances", nuisances},
               {"ranking", ranking},
               {"instead",
-               {{"nuisances_evidence", diagnosis.instead.nuisances},
+               {{"nuisances_evidence", diagnosis.instead.nuisances_evidence},
                 {"held_out_in_noise_without_nuisances", diagnosis.instead.bare.without_nuisances},
                 {"effects", instead}}},
               {"untried", untried}};

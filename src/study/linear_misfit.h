@@ -30,7 +30,7 @@ Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit
 // The noise that hypotheses are weighed with.
 struct NoiseLevel {
   double correlation_time = 0;  // s
-  double variance = 1;  // of the whitened rows
+  double variance = 1;          // of the whitened rows
 };
 
 // The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and as

@@ -33,11 +33,11 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
     const Observed& seen = part.observed[static_cast<size_t>(f)];
     for (Eigen::Index i = 0; i < points; ++i) {
       if (seen.count[i] == 0) continue;
-      Eigen::VectorXd shown = places.col(i);
-      if (!part.layout.deformation.empty())
-        shown = part.layout.deformation[static_cast<size_t>(f * points + i)] * shown;
-      const Eigen::VectorXd own =
-          residual.segment(components * (f * points + i), components) - shown;
+      Eigen::VectorXd own = residual.segment(components * (f * points + i), components);
+      if (part.layout.deformation.empty())
+        own -= places.col(i);
+      else
+        own -= part.layout.deformation[static_cast<size_t>(f * points + i)] * places.col(i);
       if (components == 3)
         displacements.col(f * points + i) = own;
       else

@@ -90,9 +90,11 @@ Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) con
   for (size_t at = 0; at < count.size(); ++at) {
     const int point = static_cast<int>(at) % points;
     if (count[at] == 0) continue;
-    Eigen::VectorXd shown = place_offset.col(point);
-    if (!deformation.empty()) shown = deformation[at] * shown;
-    rest.segment(components * static_cast<Eigen::Index>(at), components) -= shown;
+    auto row = rest.segment(components * static_cast<Eigen::Index>(at), components);
+    if (deformation.empty())
+      row -= place_offset.col(point);
+    else
+      row -= deformation[at] * place_offset.col(point);
   }
   return rest;
 }

@@ -41,8 +41,8 @@ struct PredictedRecording {
   std::optional<Hold> hold;
   // By how much the recording's clock may differ from the model's, s (prior); 0: not at all.
   double clock_deviation = 0;
-  // By how much its measuring frame may be shifted, m, and turned, rad, against the fixture (priors,
-  // of each axis); 0: not at all.
+  // By how much its measuring frame may be shifted, m, and turned, rad, against the fixture
+  // (priors, of each axis); 0: not at all.
   double shift_deviation = 0, turn_deviation = 0;
   std::vector<std::shared_ptr<Effect>> effects;  // of this recording only, e.g. a hung mass
 

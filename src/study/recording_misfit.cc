@@ -40,16 +40,25 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values) {
   problem.SetModel(values);
-  std::vector<RecordingMisfit> all;
-  for (size_t r = 0; r < problem.models().size(); ++r) {
+  const size_t count = problem.models().size();
+  // Those first that tell the others where their markers are.
+  std::vector<size_t> order;
+  for (const bool is_told : {false, true})
+    for (size_t r = 0; r < count; ++r)
+      if (problem.PlacesToldBy(r).has_value() == is_told) order.push_back(r);
+  std::vector<RecordingMisfit> all(count);
+  for (const size_t r : order) {
     const RecordingModel& model = problem.models()[r];
     const PredictedRecording& item = model.item();
     const MeasurementErrors errors = problem.ErrorsOf(model);
-    RecordingMisfit recording;
+    RecordingMisfit& recording = all[r];
     recording.name = item.name;
-    const std::optional<Eigen::MatrixXd> known = problem.PlacesFromFitted(r, values);
+    std::optional<Eigen::MatrixXd> known;
+    if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
+        teller && all[*teller].misfit.summary.IsUsable())
+      known = all[*teller].place_offset;
     const Eigen::VectorXd nuisance =
-        known ? OwnNuisance(model, errors, known) : problem.NuisanceOf(r, values);
+        item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, known);
     recording.misfit = model.Predict(item.frames, nuisance, {});
     // Of a recording that is not fitted, only what it shows before it moves tells the places, where
     // no fitted one does.
@@ -66,7 +75,6 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                                  recording.misfit.deformation);
     recording.in_fit = Measure(recording, true, errors.noise);
     recording.held_out = Measure(recording, false, errors.noise);
-    all.push_back(std::move(recording));
   }
   return all;
 }

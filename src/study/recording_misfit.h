@@ -32,7 +32,7 @@ struct RecordingMisfit {
 };
 
 // Of every recording at these values of the problem's parameters; of one that is not fitted, as
-// CalibrationProblem::NuisanceOf and PlacesFromFitted have it.
+// CalibrationProblem::NuisanceOf and PlacesToldBy have it.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values);
 

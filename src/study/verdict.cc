@@ -249,7 +249,8 @@ void DecideAgainstNuisances(Diagnosis* diagnosis) {
   const Diagnosis::Instead& instead = diagnosis->instead;
   const std::vector<const RankedEffect*> rivals =
       ByEvidence(instead.effects, [&](const RankedEffect& effect) {
-        return effect.evidence > std::max(diagnosis->control, kInstead * instead.nuisances) &&
+        return effect.evidence >
+                   std::max(diagnosis->control, kInstead * instead.nuisances_evidence) &&
                effect.errors.without_nuisances < kPredicts * instead.bare.without_nuisances;
       });
   if (rivals.empty()) return;
@@ -263,9 +264,9 @@ void DecideAgainstNuisances(Diagnosis* diagnosis) {
   diagnosis->explanation = fmt::format(
       "{}: without {}, whose odds are e^{:.0f}, the best of them has e^{:.0f} and lowers the {} "
       "error from {:.1f} σ to {:.1f} σ: these recordings cannot tell them apart",
-      Titles(effects), fmt::join(diagnosis->effects, ", "), instead.nuisances, best.evidence,
-      diagnosis->errors.has_held_out ? "held-out" : "fitted", instead.bare.without_nuisances,
-      best.errors.without_nuisances);
+      Titles(effects), fmt::join(diagnosis->effects, ", "), instead.nuisances_evidence,
+      best.evidence, diagnosis->errors.has_held_out ? "held-out" : "fitted",
+      instead.bare.without_nuisances, best.errors.without_nuisances);
   diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances)
     if (nuisance.adopted && !nuisance.candidate.is_always_taken)

@@ -52,7 +52,7 @@ TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
   const Diagnosis diagnosis = DiagnoseBar(truth, {});
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
   EXPECT_THAT(diagnosis.effects, Contains("time_jitter"));
-  EXPECT_GT(diagnosis.instead.nuisances, 50);
+  EXPECT_GT(diagnosis.instead.nuisances_evidence, 50);
   EXPECT_GT(diagnosis.instead.bare.without_nuisances, diagnosis.errors.without_nuisances);
 }
 

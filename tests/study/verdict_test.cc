@@ -26,7 +26,7 @@ Diagnosis DelayedFrames(double evidence, double error) {
   jitter.candidate.advice = "check the camera's clock";
   jitter.evidence = kEvidence;
   jitter.adopted = true;
-  diagnosis.instead.nuisances = kEvidence;
+  diagnosis.instead.nuisances_evidence = kEvidence;
   diagnosis.instead.bare.without_nuisances = 10;
   RankedEffect& damping = diagnosis.instead.effects.emplace_back();
   damping.scored.candidate.type = "mass_damping";
