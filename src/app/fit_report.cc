@@ -1,6 +1,7 @@
 #include "app/fit_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -61,6 +62,12 @@ void PrintCalibration(const CalibrationRecord& record) {
   for (const FittedRecording& recording : record.recordings) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));
+    std::vector<std::string> own;
+    for (const OwnValue& value : recording.own)
+      own.push_back(fmt::format("{} {:.3g} {}", value.name.substr(recording.name.size() + 1),
+                                value.value, value.unit));
+    if (!own.empty())
+      fmt::print("  {:14} its own, from its first tenth: {}\n", "", fmt::join(own, ", "));
     if (recording.scan)
       fmt::print("  {:14} {} patches, {:.0f} % of the scanned points compared\n", "",
                  recording.scan->places.cols(), 100 * recording.scan->used);

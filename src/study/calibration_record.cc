@@ -87,6 +87,8 @@ json ToJson(const CalibrationRecord& record) {
                   {"in_fit", MeasureToJson(recording.in_fit)},
                   {"held_out", MeasureToJson(recording.held_out)}};
     if (recording.scan) entry["scan"] = ScanToJson(*recording.scan);
+    for (const OwnValue& own : recording.own)
+      entry["own"].push_back({{"name", own.name}, {"unit", own.unit}, {"value", own.value}});
     recordings.push_back(entry);
   }
   json all = {{"schema_version", 1},
@@ -142,6 +144,8 @@ CalibrationRecord FromJson(const json& value) {
                                  MeasureFromJson(entry.at("in_fit")),
                                  MeasureFromJson(entry.at("held_out")), std::nullopt});
     if (entry.contains("scan")) record.recordings.back().scan = ScanFromJson(entry.at("scan"));
+    for (const json& own : entry.value("own", json::array()))
+      record.recordings.back().own.push_back({own.at("name"), own.at("unit"), own.at("value")});
   }
   record.strains = value.at("strains").get<std::vector<std::string>>();
   return record;

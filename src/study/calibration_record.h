@@ -29,12 +29,19 @@ struct FittedScan {
   double used = 0;          // share of the frames' points that were compared
 };
 
+// What a recording that is not fitted tells of itself: its clock, the force that holds the object.
+struct OwnValue {
+  std::string name, unit;
+  double value = 0;  // SI
+};
+
 struct FittedRecording {
   std::string name;
   bool fitted = true;
   double noise = 0;  // m, the white part, as this recording's own points tell it
   MisfitMeasure in_fit, held_out;
   std::optional<FittedScan> scan;  // absent: markers
+  std::vector<OwnValue> own = {};  // found from its first tenth; of a fitted one among parameters
 };
 
 // calibration/calibration.json

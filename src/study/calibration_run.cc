@@ -58,11 +58,15 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
     record.recordings.push_back({misfits[r].name, item.fitted,
                                  EstimateRecordingNoise(item, item.frames), misfits[r].in_fit,
                                  misfits[r].held_out, std::nullopt});
+    const auto& own = problem.models()[r].nuisances();
+    for (size_t k = 0; k < own.size() && !item.fitted; ++k)
+      record.recordings.back().own.push_back(
+          {own[k].prior.name, own[k].unit, misfits[r].nuisance[static_cast<Eigen::Index>(k)]});
     if (item.scans != nullptr)
       record.recordings.back().scan =
           DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
   }
-  record.strains = Strains(problem, calibration.parameters, misfits);
+  record.strains = Strains(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);
   progress->End();
   if (calibration.rms <= kFarOff) {

@@ -95,18 +95,20 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
   return table;
 }
 
-std::vector<std::string> Strains(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+std::vector<std::string> Strains(const CalibrationProblem& problem,
                                  const std::vector<RecordingMisfit>& misfits) {
   std::vector<std::string> strains;
   const PredictionStudy& study = problem.study();
-  for (size_t k = study.fitted.size(); k < problem.parameters().size(); ++k) {
-    const CalibratedParameter& prior = problem.parameters()[k];
-    const double away = std::abs(values[static_cast<Eigen::Index>(k)]) / prior.prior_deviation;
-    if (away > kStrained)
-      strains.push_back(
-          fmt::format("{} is {:.1f} deviations of its prior away from 0", prior.name, away));
-  }
   for (size_t r = 0; r < misfits.size(); ++r) {
+    const auto& own = problem.models()[r].nuisances();
+    for (size_t k = 0; k < own.size() && misfits[r].nuisance.size() > 0; ++k) {
+      const CalibratedParameter& prior = own[k].prior;
+      const double away =
+          std::abs(misfits[r].nuisance[static_cast<Eigen::Index>(k)]) / prior.prior_deviation;
+      if (away > kStrained)
+        strains.push_back(
+            fmt::format("{} is {:.1f} deviations of its prior away from 0", prior.name, away));
+    }
     if (study.recordings[r].scans != nullptr) {
       AddScanStrains(study.scan, misfits[r], problem.models()[r], &strains);
     } else {

@@ -19,7 +19,7 @@ CsvTable MisfitTable(const CalibrationProblem& problem,
 
 // What the fit took for granted against its prior, in sentences: points far from where the
 // recording has them, a clock or a hold far from what was allowed, scans that lose the model.
-std::vector<std::string> Strains(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+std::vector<std::string> Strains(const CalibrationProblem& problem,
                                  const std::vector<RecordingMisfit>& misfits);
 
 // Of a recording of scans, σ being the noise of one scanned point.

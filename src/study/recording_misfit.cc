@@ -57,9 +57,9 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
     if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
         teller && all[*teller].misfit.summary.IsUsable())
       known = all[*teller].place_offset;
-    const Eigen::VectorXd nuisance =
+    recording.nuisance =
         item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, known);
-    recording.misfit = model.Predict(item.frames, nuisance, {});
+    recording.misfit = model.Predict(item.frames, recording.nuisance, {});
     // Of a recording that is not fitted, only what it shows before it moves tells the places, where
     // no fitted one does.
     std::vector<char> tells_places;

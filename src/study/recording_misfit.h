@@ -25,6 +25,7 @@ struct MisfitMeasure {
 struct RecordingMisfit {
   std::string name;
   Misfit misfit;
+  Eigen::VectorXd nuisance;        // in the order of RecordingModel::nuisances
   std::vector<char> fitted;        // per frame of the misfit
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
   bool has_own_places = true;      // false: they are those that fitted recordings tell
