@@ -162,7 +162,7 @@ const std::vector<double> kAlongLength = {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}
 
 std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
                                 const CandidateSetting& setting) {
-  if (type == "inclusion") return Places(extent, {0.2, 0.5, 0.8}, 0.15);
+  if (type == "inclusion") return Places(extent, {0.1, 0.25, 0.4, 0.55, 0.7, 0.85}, 0.15);
   if (type == "attached_mass") return Places(extent, kAlongLength, 0.05);
   if (type == "point_force" || type == "follower_force") return Places(extent, kAlongLength, 0.1);
   if (type == "fibre_stiffness" || type == "active_contraction") return Directions(extent);

@@ -208,6 +208,16 @@ void Decide(Diagnosis* diagnosis) {
           "better, to {:.1f} σ against {:.1f} σ",
           rival.scored.candidate.type, rival.evidence, error, of_best);
   }
+  // An effect of size zero has the evidence 0: a refit that ends below has gone astray, and what
+  // first order puts beside the best is not ruled out by it.
+  std::string astray;
+  for (const RankedEffect& rival : diagnosis->ranking) {
+    if (!rival.refitted || !rival.refit_message.empty() || rival.evidence >= 0) continue;
+    if (rival.scored.score.evidence < best.scored.score.evidence - lead) continue;
+    diagnosis->effects.push_back(rival.scored.candidate.type);
+    astray += fmt::format("; {}, e^{:.0f} to first order, could not be fitted",
+                          rival.scored.candidate.type, rival.scored.score.evidence);
+  }
   std::vector<std::string> refine;
   // Look-alikes that were not refitted cannot be ruled out either.
   for (const std::string& other : best.scored.look_alikes) {
@@ -237,8 +247,8 @@ void Decide(Diagnosis* diagnosis) {
   } else {
     diagnosis->verdict = Verdict::kAmbiguous;
     diagnosis->explanation =
-        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}",
-                    Titles(diagnosis->effects), drop, predicts_better);
+        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}{}",
+                    Titles(diagnosis->effects), drop, predicts_better, astray);
     diagnosis->experiment = refine.empty()
                                 ? best.scored.candidate.effect->Card().separating_experiment
                                 : fmt::format("{}, and fit again", fmt::join(refine, "; "));

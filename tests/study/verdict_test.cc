@@ -69,6 +69,21 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
+// An effect that is not there would do no harm: a refit that says it does has gone astray.
+TEST(Verdict, DoesNotRuleOutWhatCouldNotBeFitted) {
+  Diagnosis diagnosis = SaggingBeam(12, 12);
+  diagnosis.ranking[0].scored.score.evidence = 310;
+  diagnosis.ranking[1].scored.score.evidence = 305;
+  diagnosis.ranking[1].evidence = -20;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
+  diagnosis.ranking[1].scored.score.evidence = 200;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+}
+
 TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
   Diagnosis diagnosis = SaggingBeam(12, 11);
   Decide(&diagnosis);
