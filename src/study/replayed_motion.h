@@ -19,8 +19,9 @@ namespace lacuna {
 struct ReplayedMotion {
   PredictionSummary summary;
   double delay = 0;  // s, by which the recording's clock is late: model time = time − delay
-  Eigen::VectorXd nuisance;                  // of the recording
-  Eigen::Isometry3d registration;            // from the model to the measuring frame, in which are:
+  Eigen::VectorXd nuisance;  // of the recording
+  // From the model to the measuring frame, in which are:
+  Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   Eigen::MatrixXd predicted;                 // m, the markers' places
   Eigen::MatrixXd velocity;                  // m/s
   std::vector<Eigen::Matrix3d> deformation;  // markers × frames: F at each
