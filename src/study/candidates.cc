@@ -183,6 +183,16 @@ Eigen::Vector3d GravityOf(const std::vector<std::shared_ptr<Effect>>& effects) {
   return Eigen::Vector3d::Zero();
 }
 
+// Where a place on the body can be.
+std::map<std::string, CandidateEffect::Range> PlacesOn(const Body& body) {
+  std::map<std::string, CandidateEffect::Range> ranges;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::RowVectorXd along = body.mesh.nodes.row(axis);
+    ranges[fmt::format("centre_{}", "xyz"[axis])] = {along.minCoeff(), along.maxCoeff()};
+  }
+  return ranges;
+}
+
 // The first parameter, or three where it begins a vector.
 std::vector<int> AmplitudeOf(const EffectCard& card) {
   const bool is_vector = card.parameters[0].name.ends_with("_x");
@@ -243,6 +253,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       const Eigen::VectorXd values = ValuesOf(card, variant, setting);
       CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
       candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
+      candidates.back().known = PlacesOn(setting.body);
     }
   }
   return candidates;

@@ -25,6 +25,11 @@ struct CandidateEffect {
   // Of a pilot that acts besides: the parameters that a refit moves, each with its prior deviation
   // from the pilot setting, SI.
   std::map<std::string, double> refined = {};
+  // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
+  struct Range {
+    double min = 0, max = 0;
+  };
+  std::map<std::string, Range> known = {};
   // It takes the place of the model's elasticity law; false: it acts besides.
   bool replaces_material = false;
 

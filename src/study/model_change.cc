@@ -55,6 +55,14 @@ void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
   prior->max = std::min(prior->max, high);
 }
 
+// Anywhere in a range: the mean and the deviation of an even distribution.
+void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior) {
+  prior->min = std::min(range.min, prior->start);
+  prior->max = std::max(range.max, prior->start);
+  prior->prior_mean = 0.5 * (range.min + range.max);
+  prior->prior_deviation = prior->typical = (range.max - range.min) / std::sqrt(12.0);
+}
+
 }  // namespace
 
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate) {
@@ -87,6 +95,8 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& sco
         prior.prior_deviation = PlausibleScale(card);
       }
       KeepPlausible(card, &prior);
+      if (const auto known = own.known.find(card.name); known != own.known.end())
+        KeepWithin(known->second, &prior);
       with.fitted.push_back(parameter);
       continue;
     }
