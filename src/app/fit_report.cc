@@ -4,6 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/text_layout.h"
 
 namespace lacuna {
 namespace {
@@ -63,11 +67,17 @@ void PrintCalibration(const CalibrationRecord& record) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));
     std::vector<std::string> own;
-    for (const OwnValue& value : recording.own)
+    for (const OwnValue& value : recording.own) {
+      const bool is_small = value.unit == "m" || value.unit == "rad";
       own.push_back(fmt::format("{} {:.3g} {}", value.name.substr(recording.name.size() + 1),
-                                value.value, value.unit));
+                                is_small ? 1e3 * value.value : value.value,
+                                is_small ? "m" + value.unit : value.unit));
+    }
+    const std::string margin(17, ' ');
     if (!own.empty())
-      fmt::print("  {:14} its own, from its first tenth: {}\n", "", fmt::join(own, ", "));
+      fmt::print("{}",
+                 Wrapped(fmt::format("its own, from its first tenth: {}", fmt::join(own, ", ")),
+                         margin, margin));
     if (recording.scan)
       fmt::print("  {:14} {} patches, {:.0f} % of the scanned points compared\n", "",
                  recording.scan->places.cols(), 100 * recording.scan->used);
