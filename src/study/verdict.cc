@@ -25,7 +25,8 @@ constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 15;
 constexpr double kDoubtful = 2;
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
-// An effect may make the held-out error larger by this factor at most, which is chance.
+// An effect that is named first may make the held-out error larger by this factor at most, which is
+// chance.
 constexpr double kNoWorse = 1.03;
 // Recordings that were not fitted are no part of the evidence: which effect predicts them better by
 // this factor cannot be ruled out by those that were.
@@ -194,8 +195,11 @@ void Decide(Diagnosis* diagnosis) {
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   diagnosis->effects = {best.scored.candidate.type};
   std::string predicts_better;
-  for (size_t k = 1; k < refitted.size(); ++k) {
-    const RankedEffect& rival = *refitted[k];
+  // Evidence counts held-out frames too: rivals may make their error larger.
+  for (const RankedEffect* other :
+       ByEvidence(diagnosis->ranking, [](const RankedEffect&) { return true; })) {
+    const RankedEffect& rival = *other;
+    if (&rival == &best) continue;
     const double error = rival.errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
     const bool is_close = rival.evidence > evidence - lead;
     const bool predicts =

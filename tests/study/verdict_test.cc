@@ -69,6 +69,20 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
+// What is not named for the held-out frames may still be a rival: its evidence counts them too.
+TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutErrorAlone) {
+  Diagnosis diagnosis = SaggingBeam(12, 12);
+  diagnosis.ranking[1].evidence = 290;
+  diagnosis.ranking[1].errors.without_nuisances = 6;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
+  diagnosis.ranking[1].evidence = 310;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
+}
+
 // An effect that is not there would do no harm: a refit that says it does has gone astray.
 TEST(Verdict, DoesNotRuleOutWhatCouldNotBeFitted) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
