@@ -29,7 +29,8 @@ struct FittedScan {
   double used = 0;          // share of the frames' points that were compared
 };
 
-// What a recording that is not fitted tells of itself: its clock, the force that holds the object.
+// What a recording that is not fitted tells of itself: what held the object, its clock, its
+// registration.
 struct OwnValue {
   std::string name, unit;
   double value = 0;  // SI

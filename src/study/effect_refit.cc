@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "study/calibration_fits.h"
 #include "study/model_change.h"
@@ -169,13 +170,12 @@ LinearFit BestNear(const FittedHypothesis& hypothesis) {
       .FitAll(1);
 }
 
-// The hypothesis at the parameters that are best for all frames, sought from `values`: the held-out
-// ones move them little, and the derivatives less.
+// The hypothesis at the parameters that are best for all frames, sought from `values`, where it is
+// `hypothesis`: the held-out ones move them little, and the derivatives less.
 FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
-                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same) {
+                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same,
+                                   FittedHypothesis hypothesis) {
   const NoiseLevel white;
-  FittedHypothesis hypothesis = HypothesisAt(problem, values, adopted, same);
-  if (!hypothesis.misfit.usable) return hypothesis;
   double evidence = EvidenceOf(hypothesis, white).log_evidence;
   double part = 1;  // of the step that first order proposes
   for (int step = 0; step < kSettlingSteps; ++step) {
@@ -344,15 +344,15 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
         refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit);
+    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
-    const LinearisedMisfit fitted =
-        with.Linearise(refit.calibration.parameters, false, {}, &misfit);
-    if (!refit.hypothesis.misfit.usable || !fitted.usable) {
-      refit.message = fitted.usable ? refit.hypothesis.misfit.message : fitted.message;
-    } else {
+    refit.message = refit.hypothesis.misfit.message;
+    if (refit.hypothesis.misfit.usable) {
       refit.errors.without_nuisances = HeldOutInNoise(
-          WhitenedRows(fitted.residual + adopted.by * amounts, misfit, 0, false), misfit);
+          WhitenedRows(refit.hypothesis.misfit.residual + adopted.by * amounts, misfit, 0, false),
+          misfit);
+      refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
+                                           std::move(refit.hypothesis));
     }
   }
   problem.SetModel(values);  // the refit has changed effects that both models share

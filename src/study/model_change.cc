@@ -94,9 +94,10 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& sco
         prior.prior_mean = card.null_value;
         prior.prior_deviation = PlausibleScale(card);
       }
-      KeepPlausible(card, &prior);
       if (const auto known = own.known.find(card.name); known != own.known.end())
         KeepWithin(known->second, &prior);
+      else
+        KeepPlausible(card, &prior);
       with.fitted.push_back(parameter);
       continue;
     }

@@ -194,33 +194,32 @@ void Decide(Diagnosis* diagnosis) {
   const double lead =
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   diagnosis->effects = {best.scored.candidate.type};
-  std::string predicts_better;
+  // Why those that explain less are not ruled out.
+  std::string doubts;
   // Evidence counts held-out frames too: rivals may make their error larger.
   for (const RankedEffect* other :
        ByEvidence(diagnosis->ranking, [](const RankedEffect&) { return true; })) {
     const RankedEffect& rival = *other;
     if (&rival == &best) continue;
+    const std::string& type = rival.scored.candidate.type;
     const double error = rival.errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
     const bool is_close = rival.evidence > evidence - lead;
     const bool predicts =
         rival.evidence > std::max(kNamed, diagnosis->control) && error < kPredictsBetter * of_best;
-    if (!is_close && !predicts) continue;
-    diagnosis->effects.push_back(rival.scored.candidate.type);
-    if (!is_close)
-      predicts_better += fmt::format(
-          "; {} explains less, e^{:.0f}, but predicts the recordings that were not fitted "
-          "better, to {:.1f} σ against {:.1f} σ",
-          rival.scored.candidate.type, rival.evidence, error, of_best);
-  }
-  // An effect of size zero has the evidence 0: a refit that ends below has gone astray, and what
-  // first order puts beside the best is not ruled out by it.
-  std::string astray;
-  for (const RankedEffect& rival : diagnosis->ranking) {
-    if (!rival.refitted || !rival.refit_message.empty() || rival.evidence >= 0) continue;
-    if (rival.scored.score.evidence < best.scored.score.evidence - lead) continue;
-    diagnosis->effects.push_back(rival.scored.candidate.type);
-    astray += fmt::format("; {}, e^{:.0f} to first order, could not be fitted",
-                          rival.scored.candidate.type, rival.scored.score.evidence);
+    // An effect of size zero has the evidence 0: a refit that ends below has gone astray, and what
+    // first order puts beside the best is not ruled out by it.
+    const double to_first_order = rival.scored.score.evidence;
+    const bool is_astray =
+        rival.evidence < 0 && to_first_order >= best.scored.score.evidence - lead;
+    if (!is_close && !predicts && !is_astray) continue;
+    diagnosis->effects.push_back(type);
+    if (is_close) continue;
+    doubts += predicts ? fmt::format(
+                             "; {} explains less, e^{:.0f}, but predicts the recordings that "
+                             "were not fitted better, to {:.1f} σ against {:.1f} σ",
+                             type, rival.evidence, error, of_best)
+                       : fmt::format("; {}, e^{:.0f} to first order, could not be fitted", type,
+                                     to_first_order);
   }
   std::vector<std::string> refine;
   // Look-alikes that were not refitted cannot be ruled out either.
@@ -251,8 +250,8 @@ void Decide(Diagnosis* diagnosis) {
   } else {
     diagnosis->verdict = Verdict::kAmbiguous;
     diagnosis->explanation =
-        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}{}",
-                    Titles(diagnosis->effects), drop, predicts_better, astray);
+        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}",
+                    Titles(diagnosis->effects), drop, doubts);
     diagnosis->experiment = refine.empty()
                                 ? best.scored.candidate.effect->Card().separating_experiment
                                 : fmt::format("{}, and fit again", fmt::join(refine, "; "));
