@@ -95,14 +95,15 @@ void PrintNuisances(const DiagnosisRecord& diagnosis) {
         quiet.push_back(nuisance.name);
       continue;
     }
-    lines.push_back(fmt::format("  {}{}{}   {}", PaddedRight(nuisance.name, 22),
-                                PaddedLeft(fmt::format("{:.1f}", nuisance.evidence), 9),
-                                PaddedLeft(Percent(nuisance.explained), 10),
-                                nuisance.adopted ? "in the model" : ""));
+    lines.push_back(fmt::format(
+        "  {}{}{}{}   {}", PaddedRight(nuisance.name, 22),
+        PaddedLeft(fmt::format("{:.1f}", nuisance.evidence), 9),
+        PaddedLeft(nuisance.refitted ? fmt::format("{:.1f}", *nuisance.refitted) : "", 9),
+        PaddedLeft(Percent(nuisance.explained), 10), nuisance.adopted ? "in the model" : ""));
     lines.back().erase(lines.back().find_last_not_of(' ') + 1);
   }
-  fmt::print("\n  {}{}{}\n", PaddedRight("nuisance", 22), PaddedLeft("evidence", 9),
-             PaddedLeft("explains", 10));
+  fmt::print("\n  {}{}{}{}\n", PaddedRight("nuisance", 22), PaddedLeft("evidence", 9),
+             PaddedLeft("refitted", 9), PaddedLeft("explains", 10));
   for (const std::string& line : lines) fmt::print("{}\n", line);
   if (!quiet.empty()) PrintText(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
 }

@@ -20,6 +20,7 @@ using Values = std::map<std::string, double>;
 struct Variant {
   std::string name;
   Values values;
+  int line = 0;  // as in CandidateEffect
 };
 
 // The object's shape in a few numbers.
@@ -84,6 +85,7 @@ std::vector<Variant> Places(const Extent& extent, const std::vector<double>& sha
     variant.name = fmt::format("at {:.0f} % of the length", 100 * share);
     for (const char* name : {"centre", "point"}) SetVector(name, place, &variant.values);
     variant.values["radius"] = radius_share * extent.length[0];
+    variant.line = 1;
     variants.push_back(variant);
   }
   return variants;
@@ -124,7 +126,8 @@ std::vector<Variant> Numbers(const std::string& parameter, const std::string& sy
   for (const double number : numbers)
     variants.push_back(
         {fmt::format("{} = {:.2g}{}{}", symbol, number, unit.empty() ? "" : " ", unit),
-         {{parameter, number}}});
+         {{parameter, number}},
+         /*line=*/1});
   return variants;
 }
 
@@ -137,11 +140,14 @@ std::vector<Variant> Supports(const Extent& extent) {
 
 std::vector<Variant> SlippingSupports(const Extent& extent) {
   std::vector<Variant> variants;
+  int line = 0;
   for (const double share : {0.002, 0.02}) {
+    ++line;
     const double distance = share * extent.length[0];
     for (Variant variant : Supports(extent)) {
       variant.name += fmt::format(", sliding at {:.2g} mm", 1e3 * distance);
       variant.values["slip_distance"] = distance;
+      if (variant.line > 0) variant.line = line;
       variants.push_back(std::move(variant));
     }
   }
@@ -253,6 +259,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       const Eigen::VectorXd values = ValuesOf(card, variant, setting);
       CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
       candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
+      candidates.back().line = variant.line;
       candidates.back().known = PlacesOn(setting.body);
     }
   }

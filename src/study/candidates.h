@@ -25,6 +25,8 @@ struct CandidateEffect {
   // Of a pilot that acts besides: the parameters that a refit moves, each with its prior deviation
   // from the pilot setting, SI.
   std::map<std::string, double> refined = {};
+  // Variants of the same line, one after another in the list, are neighbours: in place or time.
+  int line = 0;  // 0: they have none
   // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
   struct Range {
     double min = 0, max = 0;

@@ -23,6 +23,10 @@ constexpr double kCloseBehind = 5;
 // the third's.
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
+// A nuisance that has this part of the best effect's evidence, both to first order, is fitted with
+// the model too: neither is judged by a promise. The most that are.
+constexpr double kRivalNuisance = 0.7;
+constexpr int kMostRivalNuisances = 3;
 // What has less than this part of the nuisances' evidence to first order is not tried in their
 // place.
 constexpr double kCouldDoAsMuch = 0.5;
@@ -35,6 +39,14 @@ double InNoise(const FittedHypothesis& hypothesis) {
   const Eigen::VectorXd white = WhitenedRows(hypothesis.left, hypothesis.misfit, 0, false);
   const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(hypothesis.misfit));
   return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+}
+
+// Of two refits of an effect, from two of its variants.
+bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
+  if (!a.message.empty() || !b.message.empty()) return a.message.empty();
+  const NoiseLevel white;
+  return EvidenceOf(a.hypothesis, white).log_evidence >
+         EvidenceOf(b.hypothesis, white).log_evidence;
 }
 
 // The study until soon after the start of each fitted recording.
@@ -126,6 +138,32 @@ class Refits {
         Run(k);
   }
 
+  // The nuisances that first order puts near the best effect, or beyond. To be called after
+  // Weigh().
+  void RunRivalNuisances(std::vector<ScoredNuisance>* nuisances) const {
+    const auto best = std::max_element(
+        diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
+        [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
+    if (best == diagnosis_.ranking.end() || best->evidence < kNoEvidence) return;
+    const double least = kRivalNuisance * std::min(best->evidence, best->scored.score.evidence);
+    std::vector<ScoredNuisance*> rivals;
+    for (ScoredNuisance& nuisance : *nuisances)
+      if (!nuisance.adopted && nuisance.evidence > std::max(least, kNoEvidence))
+        rivals.push_back(&nuisance);
+    std::stable_sort(rivals.begin(), rivals.end(),
+                     [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+    if (rivals.size() > kMostRivalNuisances) rivals.resize(kMostRivalNuisances);
+    for (ScoredNuisance* nuisance : rivals) {
+      const EffectRefit with =
+          Refit(problem_, values_, nullptr, ranking_.adopted.And(nuisance->candidate),
+                ranking_.misfit, false, &progress_);
+      if (!with.message.empty()) continue;
+      const double evidence = Compare(with, present_, diagnosis_.noise_level).all -
+                              nuisance->candidate.price - Price(nuisances->size());
+      if (std::isfinite(evidence)) nuisance->refitted = evidence;
+    }
+  }
+
   // What could do the work of the nuisances that were adopted: what first order gave a good part of
   // their evidence before they were. To be called after Weigh().
   Diagnosis::Instead RunInstead(int count) const {
@@ -135,10 +173,8 @@ class Refits {
     const EffectRefit bare =
         Refit(problem_, values_, nullptr, always, ranking_.misfit, false, &progress_);
     if (!bare.message.empty()) return instead;
-    const HypothesisEvidence before = EvidenceOf(bare.hypothesis, diagnosis_.noise_level);
     instead.bare = bare.errors;
-    instead.nuisances_evidence =
-        EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence - before.log_evidence;
+    instead.nuisances_evidence = Compare(present_, bare, diagnosis_.noise_level).all;
     for (const ScoredEffect& scored : ranking_.instead) {
       if (static_cast<int>(instead.effects.size()) == count ||
           scored.score.evidence < kCouldDoAsMuch * instead.nuisances_evidence)
@@ -146,7 +182,7 @@ class Refits {
       RankedEffect& effect = instead.effects.emplace_back();
       effect.scored = scored;
       const EffectRefit with = Tried(always, bare, &effect);
-      if (with.message.empty()) SetEvidence(with.hypothesis, before, &effect);
+      if (with.message.empty()) SetEvidence(with, bare, &effect);
     }
     return instead;
   }
@@ -157,23 +193,25 @@ class Refits {
     diagnosis_.noise_level =
         LevelOf(best.left, best.misfit, best.misfit.by.cols(), problem_.LeastNoiseVariance());
     diagnosis_.left_in_noise = InNoise(best);
-    const HypothesisEvidence before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level);
     for (size_t k = 0; k < refits_.size(); ++k)
-      if (IsUsable(k)) SetEvidence(refits_[k].hypothesis, before, &diagnosis_.ranking[k]);
+      if (IsUsable(k)) SetEvidence(refits_[k], present_, &diagnosis_.ranking[k]);
   }
 
  private:
-  void SetEvidence(const FittedHypothesis& with, const HypothesisEvidence& before,
+  void SetEvidence(const EffectRefit& with, const EffectRefit& without,
                    RankedEffect* effect) const {
-    const HypothesisEvidence after = EvidenceOf(with, diagnosis_.noise_level);
-    effect->evidence = after.log_evidence - before.log_evidence - Price(diagnosis_.ranking.size());
+    const RelativeEvidence gained = Compare(with, without, diagnosis_.noise_level);
+    effect->evidence = gained.all - Price(diagnosis_.ranking.size());
+    effect->held_out_evidence = gained.held_out;
     if (!std::isfinite(effect->evidence)) {
       effect->evidence = 0;
       effect->refit_message = "it ended where its evidence has no value";
       return;
     }
-    effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
-    effect->left_in_noise = InNoise(with);
+    const double before = EvidenceOf(without.hypothesis, diagnosis_.noise_level).misfit;
+    const double after = EvidenceOf(with.hypothesis, diagnosis_.noise_level).misfit;
+    effect->explained = std::clamp(1 - after / before, 0.0, 1.0);
+    effect->left_in_noise = InNoise(with.hypothesis);
   }
   bool IsUsable(size_t k) const {
     return diagnosis_.ranking[k].refitted && diagnosis_.ranking[k].refit_message.empty();
@@ -189,6 +227,12 @@ class Refits {
     const bool is_far_off = InNoise(without.hypothesis) > kFarOff;
     EffectRefit refit =
         Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, is_far_off, &progress_);
+    for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
+      if (elsewhere.score.evidence < kNearlyAsGood * effect->scored.score.evidence) break;
+      EffectRefit other =
+          Refit(problem_, values_, &elsewhere, adopted, ranking_.misfit, is_far_off, &progress_);
+      if (IsBetter(other, refit)) refit = std::move(other);
+    }
     effect->refitted = true;
     effect->refit_message = refit.message;
     effect->errors = refit.errors;
@@ -267,6 +311,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
   refits.Weigh();
   refits.RunLookAlikesOfBest();
   refits.Weigh();
+  refits.RunRivalNuisances(&ranking.nuisances);
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   if (diagnosis.verdict == Verdict::kNuisance) {

@@ -38,9 +38,10 @@ struct RankedEffect {
   bool refitted = false;
   std::string refit_message;  // why it is not usable; empty: it is
   ModelErrors errors;
-  double evidence = 0;       // ln of the odds against the model as it is
-  double explained = 0;      // share of the squared misfit that went
-  double left_in_noise = 0;  // over all frames, adopted nuisances at their best, in σ
+  double evidence = 0;           // ln of the odds against the model as it is
+  double held_out_evidence = 0;  // the part of it that held-out frames alone give
+  double explained = 0;          // share of the squared misfit that went
+  double left_in_noise = 0;      // over all frames, adopted nuisances at their best, in σ
   Calibration calibration;
 };
 

@@ -21,6 +21,11 @@ double FromNumber(const json& value) {
   return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
 }
 
+std::optional<double> OptionalFrom(const json& entry, const std::string& field) {
+  const json& value = entry.at(field);
+  return value.is_null() ? std::nullopt : std::optional<double>(value.get<double>());
+}
+
 // Of a model; has_held_out is the recordings', and stands once.
 json ErrorsJson(const ModelErrors& errors) {
   return {{"in_fit_rms_m", errors.in_fit_rms},
@@ -81,7 +86,8 @@ DiagnosisRecord FromJson(const json& value) {
   record.errors = ErrorsFrom(value, value.at("has_held_out"));
   for (const json& entry : value.at("nuisances"))
     record.nuisances.push_back({entry.at("nuisance"), entry.at("what"), entry.at("evidence"),
-                                entry.at("explained_share"), entry.at("adopted")});
+                                entry.at("explained_share"),
+                                OptionalFrom(entry, "refitted_evidence"), entry.at("adopted")});
   for (const json& entry : value.at("ranking"))
     record.ranking.push_back(EffectFrom(entry, record.errors.has_held_out));
   for (const json& entry : value.at("untried"))
@@ -117,6 +123,7 @@ json EffectJson(const RankedEffect& effect) {
   if (effect.refitted) {
     entry["refit"] = {{"message", effect.refit_message},
                       {"evidence", effect.evidence},
+                      {"held_out_evidence", effect.held_out_evidence},
                       {"explained_share", effect.explained},
                       {"left_in_noise", effect.left_in_noise}};
     entry["refit"].update(ErrorsJson(effect.errors));
@@ -133,16 +140,18 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
     instead.push_back(EffectJson(effect));
   json nuisances = json::array();
   for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-    nuisances.push_back({{"nuisance", nuisance.candidate.name},
-                         {"what", nuisance.candidate.what},
-                         {"evidence", nuisance.evidence},
-                         {"explained_share", nuisance.explained},
-                         {"adopted", nuisance.adopted},
-                         {"doubt", nuisance.doubt}});
+    nuisances.push_back(
+        {{"nuisance", nuisance.candidate.name},
+         {"what", nuisance.candidate.what},
+         {"evidence", nuisance.evidence},
+         {"refitted_evidence", nuisance.refitted ? json(*nuisance.refitted) : json(nullptr)},
+         {"explained_share", nuisance.explained},
+         {"adopted", nuisance.adopted},
+         {"doubt", nuisance.doubt}});
   json untried = json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  json all = {{"schema_version", 4},
+  json all = {{"schema_version", 5},
               {"verdict", VerdictName(diagnosis.verdict)},
               {"effects", diagnosis.effects},
               {"explanation", diagnosis.explanation},

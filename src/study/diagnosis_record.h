@@ -3,6 +3,7 @@
 #define LACUNA_STUDY_DIAGNOSIS_RECORD_H_
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct RecordedEffect {
 struct RecordedNuisance {
   std::string name, what;
   double evidence = 0, explained = 0;
-  bool adopted = false;  // taken into the model
+  std::optional<double> refitted;  // evidence once the model with it has been fitted again
+  bool adopted = false;            // taken into the model
 };
 
 struct DiagnosisRecord {

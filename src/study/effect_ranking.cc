@@ -172,11 +172,10 @@ class HypothesisRanking {
   EffectRanking Result();
 
  private:
-  // One effect, in the best of its variants.
+  // One effect.
   struct Entry {
-    ScoredEffect scored;
-    std::vector<int> own;  // columns
-    int variants = 0;
+    std::vector<size_t> variants;  // of candidates_
+    size_t best = 0;               // of them
   };
 
   void AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots);
@@ -185,10 +184,13 @@ class HypothesisRanking {
   Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
   void ScoreDiscretisation();
   void ScoreEffects(const LinearFit& before);
+  double BestEvidence() const;  // of an effect; 0: none has more
+  bool IsBetterThanNeighbours(size_t candidate) const;
   // The best nuisance that is not in the model; −1: there is none.
   int ScoreNuisances(const LinearFit& before);
   // The entries, with all that is known of them.
   std::vector<ScoredEffect> ScoredEntries() const;
+  ScoredVariant Variant(size_t candidate) const;
 
   const Eigen::VectorXd values_;
   const Eigen::Index known_;  // the problem's parameters
@@ -200,7 +202,8 @@ class HypothesisRanking {
   std::vector<std::vector<int>> of_candidate_, of_nuisance_;
   EffectRanking ranking_;
   std::optional<Weighed> weighed_;
-  std::vector<Entry> entries_;
+  std::vector<Score> scores_;   // of candidates_
+  std::vector<Entry> entries_;  // the best first
 };
 
 HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
@@ -257,7 +260,7 @@ void HypothesisRanking::AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pi
 
 void HypothesisRanking::AddNuisance(NuisanceCandidate candidate, bool adopted) {
   of_nuisance_.push_back(hypotheses_.Add(candidate.by, candidate.priors));
-  ranking_.nuisances.push_back({std::move(candidate), 0, 0, adopted});
+  ranking_.nuisances.push_back({.candidate = std::move(candidate), .adopted = adopted});
   if (adopted) base_ = Joined(base_, of_nuisance_.back());
 }
 
@@ -275,7 +278,7 @@ void HypothesisRanking::Weigh() {
     const LinearFit before = weighed_->all.Fit(base_, ranking_.noise.variance);
     ScoreEffects(before);
     const int best = ScoreNuisances(before);
-    const double rival = entries_.empty() ? 0 : std::max(0.0, entries_[0].scored.score.evidence);
+    const double rival = BestEvidence();
     if (best < 0 || adopted == kMostAdopted) break;
     ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
     if (nuisance.evidence < rival + kAdopted) break;
@@ -303,26 +306,38 @@ void HypothesisRanking::ScoreDiscretisation() {
 }
 
 void HypothesisRanking::ScoreEffects(const LinearFit& before) {
+  scores_.clear();
   entries_.clear();
   for (size_t c = 0; c < candidates_.size(); ++c) {
-    const CandidateEffect& candidate = candidates_[c];
-    Score score =
-        ScoreOf(*weighed_, base_, before, of_candidate_[c], ranking_.noise.variance, misfit_);
+    scores_.push_back(
+        ScoreOf(*weighed_, base_, before, of_candidate_[c], ranking_.noise.variance, misfit_));
     auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-      return entry.scored.candidate.type == candidate.type;
+      return candidates_[entry.best].type == candidates_[c].type;
     });
-    if (same == entries_.end()) same = entries_.insert(entries_.end(), Entry{});
-    ++same->variants;
-    if (same->variants > 1 && score.evidence <= same->scored.score.evidence) continue;
-    same->scored.candidate = candidate;
-    same->scored.score = std::move(score);
-    same->own = of_candidate_[c];
+    if (same == entries_.end()) same = entries_.insert(entries_.end(), Entry{.best = c});
+    same->variants.push_back(c);
+    if (scores_[c].evidence > scores_[same->best].evidence) same->best = c;
   }
-  for (Entry& entry : entries_)
-    entry.scored.score.evidence -= Price(entry.variants) + Price(entries_.size());
-  std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return a.scored.score.evidence > b.scored.score.evidence;
+  for (const Entry& entry : entries_)
+    for (const size_t c : entry.variants)
+      scores_[c].evidence -= Price(entry.variants.size()) + Price(entries_.size());
+  std::stable_sort(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
+    return scores_[a.best].evidence > scores_[b.best].evidence;
   });
+}
+
+double HypothesisRanking::BestEvidence() const {
+  return entries_.empty() ? 0 : std::max(0.0, scores_[entries_[0].best].evidence);
+}
+
+bool HypothesisRanking::IsBetterThanNeighbours(size_t candidate) const {
+  const auto is_beaten_by = [&](size_t other) {
+    return candidates_[other].type == candidates_[candidate].type &&
+           candidates_[other].line == candidates_[candidate].line &&
+           scores_[other].evidence >= scores_[candidate].evidence;
+  };
+  return candidates_[candidate].line > 0 && (candidate == 0 || !is_beaten_by(candidate - 1)) &&
+         (candidate + 1 == candidates_.size() || !is_beaten_by(candidate + 1));
 }
 
 int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
@@ -341,22 +356,31 @@ int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
   return best;
 }
 
+ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
+  const LinearFit fit =
+      weighed_->fitted.Fit(Joined(base_, of_candidate_[candidate]), ranking_.noise.variance);
+  return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_)};
+}
+
 std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
-  const double variance = ranking_.noise.variance;
   std::vector<ScoredEffect> effects;
   for (const Entry& entry : entries_) {
-    effects.push_back(entry.scored);
-    ScoredEffect& scored = effects.back();
+    ScoredEffect& scored = effects.emplace_back(ScoredEffect{Variant(entry.best)});
     for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
       scored.parameters.push_back(amount.name);
       scored.units.push_back(amount.unit);
     }
-    const LinearFit fit = weighed_->fitted.Fit(Joined(base_, entry.own), variance);
-    scored.fitted = values_ + fit.change.head(known_);
     for (const Entry& other : entries_)
       if (&other != &entry &&
-          weighed_->all.Collinearity(base_, entry.own, other.own, variance) > kLookAlike)
-        scored.look_alikes.push_back(other.scored.candidate.type);
+          weighed_->all.Collinearity(base_, of_candidate_[entry.best], of_candidate_[other.best],
+                                     ranking_.noise.variance) > kLookAlike)
+        scored.look_alikes.push_back(candidates_[other.best].type);
+    for (const size_t c : entry.variants)
+      if (c != entry.best && IsBetterThanNeighbours(c)) scored.elsewhere.push_back(Variant(c));
+    std::stable_sort(scored.elsewhere.begin(), scored.elsewhere.end(),
+                     [](const ScoredVariant& a, const ScoredVariant& b) {
+                       return a.score.evidence > b.score.evidence;
+                     });
   }
   return effects;
 }
@@ -369,8 +393,7 @@ EffectRanking HypothesisRanking::Result() {
   ranking_.adopted.always = always_;
   for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
   std::vector<int> best_fit = base_;
-  if (!entries_.empty() && entries_[0].scored.score.evidence > 0)
-    best_fit = Joined(base_, entries_[0].own);
+  if (BestEvidence() > 0) best_fit = Joined(base_, of_candidate_[entries_[0].best]);
   ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
                      Price(candidates_.size());
   ranking_.effects = ScoredEntries();
@@ -385,6 +408,14 @@ double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_
 
 AdoptedNuisances AdoptedNuisances::Always() const {
   return {by.leftCols(always), {priors.begin(), priors.begin() + always}, always};
+}
+
+AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const {
+  AdoptedNuisances with = *this;
+  with.by.conservativeResize(Eigen::NoChange, by.cols() + nuisance.by.cols());
+  with.by.rightCols(nuisance.by.cols()) = nuisance.by;
+  with.priors.insert(with.priors.end(), nuisance.priors.begin(), nuisance.priors.end());
+  return with;
 }
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,

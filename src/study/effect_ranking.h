@@ -4,6 +4,7 @@
 #define LACUNA_STUDY_EFFECT_RANKING_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,18 +38,26 @@ struct Score {
   double held_out_in_noise = 0;  // expected error of the held-out frames, in σ; of all without any
 };
 
-// One effect, in the best of its variants.
-struct ScoredEffect {
+// An effect in one of its variants.
+struct ScoredVariant {
   CandidateEffect candidate;
   Score score;
+  Eigen::VectorXd fitted;  // what the problem's parameters would become with it
+};
+
+// An effect in the best of its variants.
+struct ScoredEffect : ScoredVariant {
   std::vector<std::string> parameters, units;  // of score.size
   std::vector<std::string> look_alikes;        // effects that first order cannot tell from this one
-  Eigen::VectorXd fitted;                      // what the problem's parameters would become with it
+  // Other variants that are better than their neighbours along their line, the best first: softer
+  // here may look like stiffer there.
+  std::vector<ScoredVariant> elsewhere;
 };
 
 struct ScoredNuisance {
   NuisanceCandidate candidate;
-  double evidence = 0;
+  double evidence = 0;             // to first order
+  std::optional<double> refitted;  // once the model with it has been fitted again
   double explained = 0;
   bool adopted = false;  // it is so certain that the model is taken with it from here on
   // Evidence that what is unknown of its change (NuisanceCandidate::unknown) could lend to an
@@ -63,6 +72,7 @@ struct AdoptedNuisances {
   Eigen::Index always = 0;  // the first columns, which every model has
 
   AdoptedNuisances Always() const;
+  AdoptedNuisances And(const NuisanceCandidate& nuisance) const;
   bool HasMore() const { return by.cols() > always; }
 };
 

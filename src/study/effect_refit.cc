@@ -49,7 +49,7 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
 }
 
 // Where a parameter that makes the effect's size has no effect; of other parameters, nothing.
-std::optional<double> NullOf(const ScoredEffect& scored, const ModelParameter& parameter) {
+std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& parameter) {
   const auto [effect, index] = parameter.places.front();
   const std::vector<int>& amplitude = scored.candidate.amplitude;
   if (std::count(amplitude.begin(), amplitude.end(), index) == 0) return std::nullopt;
@@ -131,11 +131,13 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
 
 }  // namespace
 
-HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise) {
+HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
+                              bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  const Eigen::MatrixXd columns = WhitenedRows(misfit.by, misfit, noise.correlation_time, false);
+  const Eigen::MatrixXd columns =
+      WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only);
   const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
   // What was adopted is linear, hence at its best; the parameters are where they are.
   const LinearFit adopted =
@@ -158,6 +160,14 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   evidence.log_evidence =
       nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
   return evidence;
+}
+
+RelativeEvidence Compare(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise) {
+  const double fitted = EvidenceOf(a.at_fit, noise, /*fitted_only=*/true).log_evidence -
+                        EvidenceOf(b.at_fit, noise, /*fitted_only=*/true).log_evidence;
+  const double all =
+      EvidenceOf(a.hypothesis, noise).log_evidence - EvidenceOf(b.hypothesis, noise).log_evidence;
+  return {all, all - fitted};
 }
 
 namespace {
@@ -200,7 +210,7 @@ class ExtendedProblem {
  public:
   // As Refit().
   ExtendedProblem(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
+                  const ScoredVariant* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit)
       : values_(values),
         effect_(effect),
@@ -302,7 +312,7 @@ class ExtendedProblem {
   }
 
   const Eigen::VectorXd& values_;
-  const ScoredEffect* effect_;
+  const ScoredVariant* effect_;
   PredictionStudy study_;
   CalibrationProblem with_;
   // How many of the parameters are the model's, then the effect's, and, with those of recordings,
@@ -316,7 +326,7 @@ class ExtendedProblem {
 }  // namespace
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
+                  const ScoredVariant* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, bool is_far_off, Progress* progress) {
   const ExtendedProblem extended(problem, values, effect, adopted, misfit);
   const CalibrationProblem& with = extended.with();
@@ -351,6 +361,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
       refit.errors.without_nuisances = HeldOutInNoise(
           WhitenedRows(refit.hypothesis.misfit.residual + adopted.by * amounts, misfit, 0, false),
           misfit);
+      refit.at_fit = refit.hypothesis;
       refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
                                            std::move(refit.hypothesis));
     }

@@ -37,14 +37,25 @@ struct HypothesisEvidence {
   double log_evidence = 0;
   double misfit = 0;  // ‖whitened left‖²
 };
-HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise);
+// `fitted_only`: of the frames that were fitted.
+HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
+                              bool fitted_only = false);
 
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
   Calibration calibration;
   ModelErrors errors;
-  FittedHypothesis hypothesis;
+  // At the parameters that are best for the fitted frames, and for all.
+  FittedHypothesis at_fit, hypothesis;
 };
+
+// ln of the odds for one refitted model against another: of all frames, and what the held-out ones
+// alone add once the fitted ones are known. That weighs how well each predicts by how well it
+// claims to: a parameter that the fitted frames leave open costs no more than it must.
+struct RelativeEvidence {
+  double all = 0, held_out = 0;
+};
+RelativeEvidence Compare(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise);
 
 // From where first order expects the best parameters, or from `values` where that is nearer, or
 // part of the way where neither predicts as well as the model without the effect. Null `effect`:
@@ -53,7 +64,7 @@ struct EffectRefit {
 // is, and a refit from there that leaves more than noise is made again from where the model
 // with the effect ends when it is fitted afresh. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredEffect* effect, const AdoptedNuisances& adopted,
+                  const ScoredVariant* effect, const AdoptedNuisances& adopted,
                   const LinearisedMisfit& misfit, bool is_far_off, Progress* progress);
 
 }  // namespace lacuna

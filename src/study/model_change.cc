@@ -28,7 +28,7 @@ void ReplaceMaterial(const std::shared_ptr<Effect>& law, PredictionStudy* study)
 }
 
 // The values that a fit of the effect starts from.
-Eigen::VectorXd StartOf(const ScoredEffect& scored) {
+Eigen::VectorXd StartOf(const ScoredVariant& scored) {
   const CandidateEffect& candidate = scored.candidate;
   Eigen::VectorXd values = candidate.effect->Parameters();
   for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
@@ -74,7 +74,7 @@ PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffec
   return with;
 }
 
-PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored) {
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored) {
   CandidateEffect own = scored.candidate;
   own.effect = FindEntry(own.type)->make(StartOf(scored));
   PredictionStudy with = WithCandidate(study, own);

@@ -15,7 +15,7 @@ PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffec
 
 // With the effect at the size that first order expects (a pilot: at its pilot setting), all of its
 // parameters fitted, within what its card calls plausible. Shares no effect with `scored`.
-PredictionStudy WithEffect(const PredictionStudy& study, const ScoredEffect& scored);
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored);
 
 }  // namespace lacuna
 

@@ -25,9 +25,9 @@ constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 15;
 constexpr double kDoubtful = 2;
 // What is left is noise below so many standard deviations.
 constexpr double kAtNoise = 1.2;
-// An effect that is named first may make the held-out error larger by this factor at most, which is
-// chance.
-constexpr double kNoWorse = 1.03;
+// The held-out frames may speak against an effect that is named first with these odds, as a
+// logarithm: chance.
+constexpr double kNoWorse = 3;
 // Recordings that were not fitted are no part of the evidence: which effect predicts them better by
 // this factor cannot be ruled out by those that were.
 constexpr double kPredictsBetter = 0.97;
@@ -37,10 +37,7 @@ constexpr double kPredictsBetter = 0.97;
 // with this part of the effect's evidence. The others are rigid motions and times, which it follows
 // well.
 constexpr double kFirstOrderDoubt = 0.1;
-constexpr double kGripRival = 0.5, kOtherRival = 0.98;
-// A nuisance is compared with the effect to first order too, from where both were scored, if the
-// refit bears out this part of that: the model without either, refitted, is another one.
-constexpr double kBornOut = 0.9;
+constexpr double kGripRival = 0.5;
 // Where the best effect leaves more than noise, it must have explained this share of what is more
 // than noise to be named.
 constexpr double kMostOfIt = 0.85;
@@ -157,9 +154,8 @@ void Decide(Diagnosis* diagnosis) {
   }
   const bool is_noise = diagnosis->left_in_noise <= kAtNoise;
   const std::vector<const RankedEffect*> refitted =
-      ByEvidence(diagnosis->ranking, [&](const RankedEffect& effect) {
-        return effect.errors.without_nuisances <= kNoWorse * diagnosis->errors.without_nuisances;
-      });
+      ByEvidence(diagnosis->ranking,
+                 [&](const RankedEffect& effect) { return effect.held_out_evidence > -kNoWorse; });
   const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
   double in_the_model = 0;
   bool corrected = false;
@@ -196,7 +192,7 @@ void Decide(Diagnosis* diagnosis) {
   diagnosis->effects = {best.scored.candidate.type};
   // Why those that explain less are not ruled out.
   std::string doubts;
-  // Evidence counts held-out frames too: rivals may make their error larger.
+  // Those that the held-out frames speak against are rivals still: evidence counts these too.
   for (const RankedEffect* other :
        ByEvidence(diagnosis->ranking, [](const RankedEffect&) { return true; })) {
     const RankedEffect& rival = *other;
@@ -227,20 +223,17 @@ void Decide(Diagnosis* diagnosis) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
-  const double to_first_order = best.scored.score.evidence;
-  const double same_footing =
-      evidence > kBornOut * to_first_order ? std::max(evidence, to_first_order) : evidence;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
-    const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : kOtherRival;
+    const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : 1;
     if (kDoubtful * nuisance.doubt + kLeastLead > evidence) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
-    } else if (!nuisance.adopted &&
-               nuisance.evidence > std::min(same_footing - lead, part * same_footing))
+    } else if (!nuisance.adopted && nuisance.refitted.value_or(nuisance.evidence) >
+                                        std::min(evidence - lead, part * evidence))
       diagnosis->effects.push_back(nuisance.candidate.name);
   }
   const std::string drop =
-      fmt::format("the {} error{} falls from {:.1f} σ to {:.1f} σ, the odds for it are e^{:.0f}",
+      fmt::format("the {} error{} goes from {:.1f} σ to {:.1f} σ, the odds for it are e^{:.0f}",
                   diagnosis->errors.has_held_out ? "held-out" : "fitted",
                   corrected ? ", less what mesh, step and other nuisances in the model do," : "",
                   diagnosis->errors.without_nuisances, best.errors.without_nuisances, evidence);

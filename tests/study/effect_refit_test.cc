@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -70,6 +71,84 @@ TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   EXPECT_LT(of_far.misfit, 1.05 * of_usual.misfit);
   // (0.8 / 0.2)² / 2 = 8, if the column fixes it.
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
+}
+
+// With its parameter where it is best for all frames, or for the fitted ones.
+FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise, bool fitted_only) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::VectorXd change =
+      LinearModel(WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
+                  WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only),
+                  hypothesis.priors)
+          .FitAll(noise.variance)
+          .change;
+  hypothesis.misfit.residual += change[0] * hypothesis.misfit.by.col(0);
+  hypothesis.priors[0].mean -= change[0];
+  return hypothesis;
+}
+
+// What held-out frames add is how dense they are where the fitted ones predict them: a Gaussian
+// about what the parameter's best value expects, as wide as the noise and what is open of it.
+TEST(RelativeEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
+  const NoiseLevel white{0, 1.3};
+  FittedHypothesis with = MakeHypothesis(0.8), without;
+  std::fill(with.misfit.parts[0].fitted.begin() + kFrames / 2, with.misfit.parts[0].fitted.end(),
+            0);
+  with.misfit.by = with.misfit.by.col(1).eval();
+  with.priors = {{0, 2, false}};
+  without = with;
+  without.misfit.by.setZero();
+  EffectRefit a, b;
+  a.at_fit = AtItsBest(with, white, true);
+  a.hypothesis = AtItsBest(with, white, false);
+  b.at_fit = b.hypothesis = without;
+  const RelativeEvidence gained = Compare(a, b, white);
+
+  const Eigen::Index half = kSeries * kFrames / 2;
+  const double variance = 1.3 * kSigma * kSigma;
+  const Eigen::VectorXd by = with.misfit.by.col(0), residual = with.misfit.residual;
+  const double precision = by.head(half).squaredNorm() / variance + 0.25;
+  const double best = -by.head(half).dot(residual.head(half)) / variance / precision;
+  const Eigen::VectorXd to_come = by.tail(half);
+  const Eigen::MatrixXd covariance =
+      variance * Eigen::MatrixXd::Identity(half, half) + to_come * to_come.transpose() / precision;
+  const Eigen::VectorXd missed = residual.tail(half) + best * to_come;
+  const double log_density = -0.5 * missed.dot(covariance.llt().solve(missed)) -
+                             0.5 * std::log((covariance / variance).determinant());
+  const double log_without = -0.5 * residual.tail(half).squaredNorm() / variance;
+  EXPECT_NEAR(gained.held_out, log_density - log_without, 1e-6 * std::abs(gained.held_out));
+  EXPECT_GT(gained.held_out, 100);
+  EXPECT_GT(gained.all, gained.held_out);
+}
+
+// Softer near one end may look like stiffer near the other: a refit begins from both.
+TEST(EffectRanking, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 1));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRanking ranking = RankEffects(problem, problem.Start(), &progress);
+  int places = 0;
+  for (const ScoredEffect& effect : ranking.effects) {
+    double at_most = effect.score.evidence;
+    for (const ScoredVariant& other : effect.elsewhere) {
+      EXPECT_EQ(other.candidate.type, effect.candidate.type);
+      EXPECT_NE(other.candidate.variant, effect.candidate.variant);
+      EXPECT_GT(other.candidate.line, 0);
+      EXPECT_LE(other.score.evidence, at_most);
+      at_most = other.score.evidence;
+    }
+    // Half of the places along the length cannot be better than both of their neighbours.
+    EXPECT_LE(effect.elsewhere.size(), 4u) << effect.candidate.type;
+    places += static_cast<int>(effect.elsewhere.size());
+    if (effect.candidate.type == "fibre_stiffness") {
+      EXPECT_TRUE(effect.elsewhere.empty());
+    }
+  }
+  EXPECT_GT(places, 0);
 }
 
 // First order may expect a size at which everything is another motion, from where no fit finds

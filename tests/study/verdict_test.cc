@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "effects/catalogue.h"
 
 namespace lacuna {
@@ -69,11 +71,11 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
-// What is not named for the held-out frames may still be a rival: its evidence counts them too.
-TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutErrorAlone) {
+// What the held-out frames speak against is not named first, and may still be a rival.
+TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutFramesAlone) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   diagnosis.ranking[1].evidence = 290;
-  diagnosis.ranking[1].errors.without_nuisances = 6;
+  diagnosis.ranking[1].held_out_evidence = -10;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
@@ -122,24 +124,23 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
 }
 
-// The refit of the present model has taken 5 % of the effect's evidence; the drift's would have
-// lost as much.
-TEST(Verdict, ComparesANuisanceWithTheEffectOnTheSameFooting) {
-  const auto effects_with = [](double to_first_order) {
+// Both are judged after a refit where there was one: first order promised both too much.
+TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
+  const auto effects_with = [](std::optional<double> refitted) {
     Diagnosis diagnosis = SaggingBeam(1, 1);
     RankedEffect& force = diagnosis.ranking.front();
     force.evidence = 1900;
-    force.scored.score.evidence = to_first_order;
+    force.scored.score.evidence = 2000;
     ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
     drift.candidate.name = "registration_drift";
-    drift.evidence = 1880;
+    drift.evidence = 1980;
+    drift.refitted = refitted;
     Decide(&diagnosis);
     return diagnosis.effects;
   };
-  EXPECT_THAT(effects_with(2000), ElementsAre("point_force"));
-  EXPECT_THAT(effects_with(1850), ElementsAre("point_force", "registration_drift"));
-  // First order has promised what the refit does not bear out.
-  EXPECT_THAT(effects_with(4000), ElementsAre("point_force", "registration_drift"));
+  EXPECT_THAT(effects_with(1850), ElementsAre("point_force"));
+  EXPECT_THAT(effects_with(1899), ElementsAre("point_force", "registration_drift"));
+  EXPECT_THAT(effects_with(std::nullopt), ElementsAre("point_force", "registration_drift"));
 }
 
 // A grip that is certainly misplaced, by a twentieth of a millimetre.
