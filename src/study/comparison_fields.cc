@@ -12,20 +12,23 @@
 namespace lacuna {
 namespace {
 
-void WriteBody(const Body& body, const TrajectoryState& state, const UnexplainedForce* force,
+void WriteBody(const Body& body, const TrajectoryState& state,
+               const Eigen::Isometry3d& registration, const UnexplainedForce* force,
                double recorded_time, const std::filesystem::path& file) {
+  const Eigen::Matrix3Xd position = state.position.reshaped(3, body.NodeCount());
+  const Eigen::Matrix3d& turn = registration.linear();
   TetMesh deformed = body.mesh;
-  deformed.nodes = state.position.reshaped(3, body.NodeCount());
+  deformed.nodes = registration * position;
   Eigen::RowVectorXd strain(body.ElementCount());
   for (int element = 0; element < body.ElementCount(); ++element)
     strain[element] =
         LargestPrincipal(MeanStrain(body, element, state.position, state.velocity).strain);
-  FieldSet fields{{{"displacement_m", deformed.nodes - body.mesh.nodes},
-                   {"velocity_m_per_s", state.velocity.reshaped(3, body.NodeCount())}},
+  FieldSet fields{{{"displacement_m", turn * (position - body.mesh.nodes)},
+                   {"velocity_m_per_s", turn * state.velocity.reshaped(3, body.NodeCount())}},
                   {{"strain", strain}}};
   if (force != nullptr)
-    fields.nodes.push_back(
-        {"unexplained_force_N_per_m3", force->field.DensityAt(recorded_time - force->delay)});
+    fields.nodes.push_back({"unexplained_force_N_per_m3",
+                            turn * force->field.DensityAt(recorded_time - force->delay)});
   WriteVtu(file, deformed, fields);
 }
 
@@ -69,7 +72,8 @@ int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& 
     const int frame = motion.state_frame[k];
     if (frame < 0) continue;
     const double time = recording.times[frame];
-    WriteBody(*model.model().body, motion.states[k], force, time, file("body", frame, "vtu"));
+    WriteBody(*model.model().body, motion.states[k], motion.registration, force, time,
+              file("body", frame, "vtu"));
     bodies.push_back({time, file("body", frame, "vtu")});
     WriteMarkers(recording, frame, noise, file("markers", frame, "vtp"));
     markers.push_back({time, file("markers", frame, "vtp")});

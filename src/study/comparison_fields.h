@@ -18,7 +18,7 @@ inline constexpr int kMostFieldFrames = 60;
 // unexplained_force_N_per_m3 at the nodes; strain, the largest principal Green–Lagrange strain of
 // each tetrahedron) and <folder>/markers.pvd with the measured markers that were seen (predicted_m,
 // difference_m, difference_in_noise, fitted, marker), files under <folder>/fields, of the frames in
-// motion. Returns how many.
+// motion; both in the recording's measuring frame. Returns how many.
 int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& recording,
                           const ReplayedMotion& motion, double noise,
                           const std::filesystem::path& folder);

@@ -25,7 +25,7 @@ constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
 // A nuisance that has this part of the best effect's evidence, both to first order, is fitted with
 // the model too: neither is judged by a promise. The most that are.
-constexpr double kRivalNuisance = 0.7;
+constexpr double kRivalNuisance = 0.5;
 constexpr int kMostRivalNuisances = 3;
 // What has less than this part of the nuisances' evidence to first order is not tried in their
 // place.

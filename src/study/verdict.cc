@@ -19,7 +19,7 @@ constexpr double kNamed = 5;
 // And to be preferred to a rival: the model that both are added to is not perfect, and what it is
 // off by makes the better of two that explain about the same by chance. So the lead must be a part
 // of the evidence itself, and never needs to be more than the last of these.
-constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 15;
+constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 10;
 // The unknown part of what mesh and step change may lie along an effect, or tilt two rivals by
 // twice its evidence.
 constexpr double kDoubtful = 2;
