@@ -74,12 +74,12 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
 // What the held-out frames speak against is not named first, and may still be a rival.
 TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutFramesAlone) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
-  diagnosis.ranking[1].evidence = 290;
+  diagnosis.ranking[1].evidence = 295;
   diagnosis.ranking[1].held_out_evidence = -10;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
-  diagnosis.ranking[1].evidence = 310;
+  diagnosis.ranking[1].evidence = 305;
   diagnosis.effects.clear();
   Decide(&diagnosis);
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
