@@ -2,11 +2,11 @@
 //
 //   f_i = −k w_i A_i e_i,  e_i = u_i − s_i,  ‖e_i‖ ≤ d,  s_i flows along e_i at the limit only,
 // with the displacement u_i = x_i − X_i and the slip s_i of each boundary node: a Jenkin element in
-// the plane of forces, in any direction. It stands for a clamp, a glued pad or a sleeve in which the
-// body begins to slide: under a clamping pressure p with the coefficient of friction μ, k d = μ p.
-// The limit is stated as a distance so that the slip does not depend on k: a support of size zero
-// slips as one of any size would, and can be tried to first order. Nodes that a grip holds do not
-// feel it. What is at rest in a plane that the body may leave is a contact.
+// the plane of forces, in any direction. It stands for a clamp, a glued pad or a sleeve in which
+// the body begins to slide: under a clamping pressure p with the coefficient of friction μ, k d = μ
+// p. The limit is stated as a distance so that the slip does not depend on k: a support of size
+// zero slips as one of any size would, and can be tried to first order. Nodes that a grip holds do
+// not feel it. What is at rest in a plane that the body may leave is a contact.
 //
 // The nearest point at the end of the step (radial return, M. L. Wilkins 1964): its incremental
 // potential is quadratic up to the limit and linear beyond, convex.
@@ -41,7 +41,7 @@ class SlippingSupportEffect final : public Effect {
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
-      force->segment<3>(3 * node) -= Modulus() * area * Held(stretch);
+      force->segment<3>(3 * node) -= Modulus() * area * Held(stretch, SlipDistance());
     });
   }
 
@@ -64,7 +64,7 @@ class SlippingSupportEffect final : public Effect {
     CHECK(parameter == kModulus || parameter == kSlipDistance) << "the others are settings";
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
       if (parameter == kModulus)
-        derivative->segment<3>(3 * node) -= area * Held(stretch);
+        derivative->segment<3>(3 * node) -= area * Held(stretch, SlipDistance());
       else if (stretch.norm() > SlipDistance())
         derivative->segment<3>(3 * node) -= Modulus() * area * stretch.normalized();
     });
@@ -86,11 +86,12 @@ class SlippingSupportEffect final : public Effect {
   void InitialState(const Body& body, Eigen::VectorXd* state) const override {
     *state = Eigen::VectorXd::Zero(StateSize(body));
   }
-  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, const Eigen::VectorXd& parameters,
+                    Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
     *state_at_end = at.state;
     ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
-      state_at_end->segment<3>(3 * node) += stretch - Held(stretch);
+      state_at_end->segment<3>(3 * node) += stretch - Held(stretch, parameters[kSlipDistance]);
     });
   }
 
@@ -138,9 +139,9 @@ class SlippingSupportEffect final : public Effect {
   double SlipDistance() const { return parameters_[kSlipDistance]; }
 
   // The nearest stretch within the limit.
-  Eigen::Vector3d Held(const Eigen::Vector3d& stretch) const {
+  static Eigen::Vector3d Held(const Eigen::Vector3d& stretch, double limit) {
     const double length = stretch.norm();
-    return length <= SlipDistance() ? stretch : Eigen::Vector3d(SlipDistance() / length * stretch);
+    return length <= limit ? stretch : Eigen::Vector3d(limit / length * stretch);
   }
 
   // Calls visit(node, w_i A_i, x_i − X_i − s_i) with the slip at the start of the step.
@@ -151,8 +152,7 @@ class SlippingSupportEffect final : public Effect {
     for (const int node : at.body.boundary.node) {
       if ((*areas)[node] == 0) continue;
       const Eigen::Vector3d stretch = at.position.segment<3>(3 * node) -
-                                      at.body.mesh.nodes.col(node) -
-                                      at.state.segment<3>(3 * node);
+                                      at.body.mesh.nodes.col(node) - at.state.segment<3>(3 * node);
       visit(node, (*areas)[node], stretch);
     }
   }

@@ -66,10 +66,13 @@ class Effect {
   // Stored energy E with f = −∂E/∂x, J; nothing where the force has no potential.
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
 
-  // Memory: its length for a body, its value at rest, and its value at the end of a step.
+  // Memory: its length for a body, its value at rest, and its value at the end of a step, with
+  // `parameters` in place of the effect's own: its derivatives by them are differences, and effects
+  // are shared by recordings that are predicted side by side.
   virtual Eigen::Index StateSize(const Body&) const { return 0; }
   virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
-  virtual void AdvanceState(const Kinematics&, Eigen::VectorXd* /*state_at_end*/) const {}
+  virtual void AdvanceState(const Kinematics&, const Eigen::VectorXd& /*parameters*/,
+                            Eigen::VectorXd* /*state_at_end*/) const {}
 };
 
 }  // namespace lacuna

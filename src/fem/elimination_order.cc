@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 #include <metis.h>
 
+#include <mutex>
 #include <numeric>
 
 namespace lacuna {
@@ -32,6 +33,9 @@ EliminationOrder NestedDissection(const BlockPattern& pattern, const std::vector
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
+    // METIS catches signals and draws random numbers for the whole process.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
     const int status = METIS_NodeND(&count, begin.data(), neighbour.data(), nullptr, options,
                                     order.data(), place.data());
     CHECK_EQ(status, METIS_OK) << "METIS could not order the nodes";

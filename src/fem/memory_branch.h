@@ -105,10 +105,12 @@ class MemoryBranch final : public Effect {
   void InitialState(const Body& body, Eigen::VectorXd* state) const override {
     *state = Eigen::VectorXd::Zero(StateSize(body));
   }
-  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const override {
+  void AdvanceState(const Kinematics& at, const Eigen::VectorXd& parameters,
+                    Eigen::VectorXd* state_at_end) const override {
     CHECK_EQ(state_at_end->size(), StateSize(at.body));
+    const Law law(parameters, at.time_step);
     WithNodesPerElement(
-        at.body, [&](auto nodes) { AdvanceState<decltype(nodes)::value>(at, state_at_end); });
+        at.body, [&](auto nodes) { AdvanceState<decltype(nodes)::value>(at, law, state_at_end); });
   }
 
  private:
@@ -196,9 +198,8 @@ class MemoryBranch final : public Effect {
   }
 
   template <int kNodes>
-  void AdvanceState(const Kinematics& at, Eigen::VectorXd* state_at_end) const {
+  void AdvanceState(const Kinematics& at, const Law& law, Eigen::VectorXd* state_at_end) const {
     CHECK_EQ(at.state.size(), StateSize(at.body));
-    const Law law(parameters_, at.time_step);
     ForEachElement(*at.body.schedule, [&](int element) {
       ForEachPoint<kNodes>(at, element, [&](int q, const Eigen::Matrix3d& F) {
         state_at_end->template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q) =

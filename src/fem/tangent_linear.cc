@@ -147,10 +147,11 @@ struct TangentLinear::Implementation {
       if (memory.sensitivity.rows() == 0) continue;
       const Kinematics at = equation.At(end, j);
       Eigen::VectorXd now = at.state;
-      memory.effect->AdvanceState(at, &now);
+      const Eigen::VectorXd parameters = memory.effect->Parameters();
+      memory.effect->AdvanceState(at, parameters, &now);
       for (Eigen::Index k = 0; k < Count(); ++k) {
         const bool own = perturbations[k].effect == memory.effect;
-        const double own_value = own ? memory.effect->Parameters()[perturbations[k].parameter] : 1;
+        const double own_value = own ? parameters[perturbations[k].parameter] : 1;
         const double largest = std::max({s.col(k).lpNorm<Eigen::Infinity>() / element_size,
                                          memory.sensitivity.col(k).lpNorm<Eigen::Infinity>(),
                                          own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
@@ -160,16 +161,10 @@ struct TangentLinear::Implementation {
           const Eigen::VectorXd x = at.position + shift * s.col(k);
           const Eigen::VectorXd v = at.velocity + shift * w.col(k);
           const Eigen::VectorXd z = at.state + shift * memory.sensitivity.col(k);
-          Eigen::VectorXd result = z;
-          const auto advance = [&](const Effect& effect) {
-            effect.AdvanceState({at.body, x, v, at.acceleration, at.time, at.time_step, z},
-                                &result);
-          };
-          if (own) {
-            WithParameter(k, shift, advance);
-          } else {
-            advance(*memory.effect);
-          }
+          Eigen::VectorXd result = z, shifted = parameters;
+          if (own) shifted[perturbations[k].parameter] += shift;
+          memory.effect->AdvanceState({at.body, x, v, at.acceleration, at.time, at.time_step, z},
+                                      shifted, &result);
           return result;
         };
         memory.sensitivity.col(k) = (state_at(h) - now) / h;
@@ -179,20 +174,9 @@ struct TangentLinear::Implementation {
       if (outside[k].value.size() == 0) continue;
       const Eigen::VectorXd before = outside[k].value;
       const Kinematics at = AtOutside(equation, end, k);
-      outside[k].effect->AdvanceState(WithState(at, before), &outside[k].value);
+      outside[k].effect->AdvanceState(WithState(at, before), outside[k].effect->Parameters(),
+                                      &outside[k].value);
     }
-  }
-
-  // Calls `use` with the perturbed effect while its parameter is shifted.
-  template <typename Use>
-  void WithParameter(Eigen::Index k, double shift, const Use& use) const {
-    Effect& effect = *model.effects[IndexInModel(*perturbations[k].effect)];
-    const Eigen::VectorXd values = effect.Parameters();
-    Eigen::VectorXd shifted = values;
-    shifted[perturbations[k].parameter] += shift;
-    effect.SetParameters(shifted);
-    use(effect);
-    effect.SetParameters(values);
   }
 
   // right −= (weighted tangents of the model's effects) change; most effects have none but by

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/parallel.h"
 #include "study/own_nuisance.h"
 
 namespace lacuna {
@@ -184,51 +185,109 @@ Eigen::MatrixXd CalibrationProblem::ColumnsOf(size_t recording,
   return columns;
 }
 
+std::vector<size_t> CalibrationProblem::FittedRecordings() const {
+  std::vector<size_t> fitted;
+  for (size_t r = 0; r < models_.size(); ++r)
+    if (first_nuisance_[r] >= 0) fitted.push_back(r);
+  return fitted;
+}
+
+Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd& values,
+                                                bool with_jacobian, double horizon,
+                                                const std::vector<Observed>* compared_with,
+                                                std::vector<Observed>* observed) const {
+  const RecordingModel& model = models_[r];
+  std::vector<int> frames = model.FittedFrames();
+  const std::vector<double>& times = model.item().recording.times;
+  const double start = model.item().StartTime();
+  std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
+  std::vector<MisfitDirection> directions;
+  if (with_jacobian) directions = DirectionsFor(r, {});
+  Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions, compared_with);
+  Prediction part;
+  part.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
+  part.usable = part.message.empty();
+  if (!part.usable) {
+    part.message = model.item().name + ": " + part.message;
+    return part;
+  }
+  const auto whitened = [&](const Eigen::MatrixXd& what) {
+    return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
+  };
+  part.residual = whitened(misfit.residual);
+  if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.by, 0));
+  *observed = std::move(misfit.observed);
+  return part;
+}
+
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
                                        double horizon, Correspondences* correspondences) const {
   ThrowIfInterrupted();
   SetModel(values);
-  Prediction all;
-  all.usable = true;
-  std::vector<Eigen::VectorXd> residuals;
-  std::vector<Eigen::MatrixXd> jacobians;
-  Eigen::Index rows = 0;
   const bool seek = correspondences->empty();
   if (seek) correspondences->resize(models_.size());
-  for (size_t r = 0; r < models_.size(); ++r) {
-    const RecordingModel& model = models_[r];
-    if (first_nuisance_[r] < 0) continue;
-    std::vector<int> frames = model.FittedFrames();
-    const std::vector<double>& times = model.item().recording.times;
-    const double start = model.item().StartTime();
-    std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
-    std::vector<MisfitDirection> directions;
-    if (with_jacobian) directions = DirectionsFor(r, {});
-    Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions,
-                                  seek ? nullptr : &(*correspondences)[r]);
-    all.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
-    if (!all.message.empty()) {
-      all.usable = false;
-      all.message = model.item().name + ": " + all.message;
-      return all;
-    }
-    if (seek) (*correspondences)[r] = std::move(misfit.observed);
-    const auto whitened = [&](const Eigen::MatrixXd& what) {
-      return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
-    };
-    residuals.emplace_back(whitened(misfit.residual));
-    rows += misfit.residual.size();
-    if (with_jacobian) jacobians.push_back(whitened(ColumnsOf(r, misfit.by, 0)));
+  const std::vector<size_t> fitted = FittedRecordings();
+  std::vector<Prediction> parts(fitted.size());
+  ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
+    const size_t r = fitted[static_cast<size_t>(k)];
+    std::vector<Observed> observed;
+    parts[static_cast<size_t>(k)] = PredictRecording(
+        r, values, with_jacobian, horizon, seek ? nullptr : &(*correspondences)[r], &observed);
+    if (seek) (*correspondences)[r] = std::move(observed);
+  });
+  Prediction all;
+  Eigen::Index rows = 0;
+  for (const Prediction& part : parts) {
+    if (!part.usable) return {.usable = false, .message = part.message};
+    rows += part.residual.size();
   }
+  all.usable = true;
   all.residual.resize(rows);
   if (with_jacobian) all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size()));
   Eigen::Index row = 0;
-  for (size_t k = 0; k < residuals.size(); ++k) {
-    all.residual.segment(row, residuals[k].size()) = residuals[k];
-    if (with_jacobian) all.jacobian.middleRows(row, jacobians[k].rows()) = jacobians[k];
-    row += residuals[k].size();
+  for (const Prediction& part : parts) {
+    all.residual.segment(row, part.residual.size()) = part.residual;
+    if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
+    row += part.residual.size();
   }
   return all;
+}
+
+CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
+    size_t r, const Eigen::VectorXd& values, bool with_jacobian,
+    const std::vector<MisfitDirection>& directions,
+    const std::vector<Observed>* compared_with) const {
+  const RecordingModel& model = models_[r];
+  const PredictedRecording& item = model.item();
+  // The clock comes last: its derivative is the speed, with the sign turned.
+  std::vector<MisfitDirection> wanted;
+  if (with_jacobian) wanted = DirectionsFor(r, directions);
+  wanted.push_back({MisfitDirection::Of::kClock});
+  Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted, compared_with);
+  LinearisedRecording linearised;
+  if (!misfit.summary.IsUsable()) {
+    linearised.message = item.name + ": " + misfit.summary.message;
+    return linearised;
+  }
+  LinearisedMisfit::Part& part = linearised.part;
+  part.recording = r;
+  part.errors = ErrorsOf(model);
+  const Eigen::Index components = model.observer().Components();
+  part.layout.series = static_cast<int>(components) * model.PointCount();
+  for (const int frame : misfit.frames) {
+    part.layout.times.push_back(item.recording.times[frame]);
+    part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
+  }
+  for (const int count : misfit.count)
+    part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
+  part.layout.deformation = std::move(misfit.deformation);
+  part.observed = std::move(misfit.observed);
+  part.speed = -misfit.by.rightCols<1>();
+  if (with_jacobian)
+    linearised.by = ColumnsOf(r, misfit.by.leftCols(misfit.by.cols() - 1),
+                              static_cast<Eigen::Index>(directions.size()));
+  linearised.residual = std::move(misfit.residual);
+  return linearised;
 }
 
 LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bool with_jacobian,
@@ -236,47 +295,29 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
                                                const LinearisedMisfit* same) const {
   ThrowIfInterrupted();
   SetModel(values);
+  const std::vector<size_t> fitted = FittedRecordings();
+  std::vector<LinearisedRecording> recordings(fitted.size());
+  ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
+    const size_t k = static_cast<size_t>(at);
+    recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions,
+                                       same != nullptr ? &same->parts[k].observed : nullptr);
+  });
   LinearisedMisfit all;
-  const Eigen::Index extra = static_cast<Eigen::Index>(directions.size());
-  const Eigen::Index columns = static_cast<Eigen::Index>(parameters_.size()) + extra;
-  for (size_t r = 0; r < models_.size(); ++r) {
-    const RecordingModel& model = models_[r];
-    const PredictedRecording& item = model.item();
-    if (first_nuisance_[r] < 0) continue;
-    // The clock comes last: its derivative is the speed, with the sign turned.
-    std::vector<MisfitDirection> wanted;
-    if (with_jacobian) wanted = DirectionsFor(r, directions);
-    wanted.push_back({MisfitDirection::Of::kClock});
-    Misfit misfit =
-        model.Predict(item.frames, NuisanceOf(r, values), wanted,
-                      same != nullptr ? &same->parts[all.parts.size()].observed : nullptr);
-    if (!misfit.summary.IsUsable()) {
-      all.message = item.name + ": " + misfit.summary.message;
-      return all;
-    }
-    LinearisedMisfit::Part part;
-    part.recording = r;
-    part.first_row = all.residual.size();
-    part.errors = ErrorsOf(model);
-    const Eigen::Index components = model.observer().Components();
-    part.layout.series = static_cast<int>(components) * model.PointCount();
-    for (const int frame : misfit.frames) {
-      part.layout.times.push_back(item.recording.times[frame]);
-      part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
-    }
-    for (const int count : misfit.count)
-      part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
-    part.layout.deformation = std::move(misfit.deformation);
-    part.observed = std::move(misfit.observed);
-    part.speed = -misfit.by.rightCols<1>();
-    const Eigen::Index rows = misfit.residual.size();
-    all.residual.conservativeResize(part.first_row + rows);
-    all.residual.tail(rows) = misfit.residual;
-    if (with_jacobian) {
-      all.by.conservativeResizeLike(Eigen::MatrixXd::Zero(part.first_row + rows, columns));
-      all.by.bottomRows(rows) = ColumnsOf(r, misfit.by.leftCols(misfit.by.cols() - 1), extra);
-    }
-    all.parts.push_back(std::move(part));
+  Eigen::Index rows = 0;
+  for (LinearisedRecording& recording : recordings) {
+    all.message = recording.message;
+    if (!all.message.empty()) return all;
+    recording.part.first_row = rows;
+    rows += recording.residual.size();
+  }
+  all.residual.resize(rows);
+  if (with_jacobian)
+    all.by.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
+  for (LinearisedRecording& recording : recordings) {
+    const Eigen::Index first = recording.part.first_row, count = recording.residual.size();
+    all.residual.segment(first, count) = recording.residual;
+    if (with_jacobian) all.by.middleRows(first, count) = recording.by;
+    all.parts.push_back(std::move(recording.part));
   }
   all.usable = true;
   return all;

@@ -108,6 +108,24 @@ class CalibrationProblem {
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
 
+  std::vector<size_t> FittedRecordings() const;
+  // One recording's part of Predict() and of Linearise(), the model as it is set: recordings are
+  // predicted side by side. `compared_with`, where given: what its frames are; `observed` is what
+  // they were.
+  Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
+                              double horizon, const std::vector<Observed>* compared_with,
+                              std::vector<Observed>* observed) const;
+  struct LinearisedRecording {
+    std::string message;  // why it is not usable; empty: it is
+    LinearisedMisfit::Part part;
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd by;
+  };
+  LinearisedRecording LineariseRecording(size_t recording, const Eigen::VectorXd& values,
+                                         bool with_jacobian,
+                                         const std::vector<MisfitDirection>& directions,
+                                         const std::vector<Observed>* compared_with) const;
+
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;
   SurfacePatches patches_;

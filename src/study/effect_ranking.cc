@@ -174,8 +174,8 @@ class HypothesisRanking {
  private:
   // One effect.
   struct Entry {
-    std::vector<size_t> variants;  // of candidates_
-    size_t best = 0;               // of them
+    std::vector<size_t> variants = {};  // of candidates_
+    size_t best = 0;                    // of them
   };
 
   void AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots);
@@ -365,7 +365,8 @@ ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
 std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
   std::vector<ScoredEffect> effects;
   for (const Entry& entry : entries_) {
-    ScoredEffect& scored = effects.emplace_back(ScoredEffect{Variant(entry.best)});
+    ScoredEffect& scored = effects.emplace_back();
+    static_cast<ScoredVariant&>(scored) = Variant(entry.best);
     for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
       scored.parameters.push_back(amount.name);
       scored.units.push_back(amount.unit);

@@ -56,8 +56,8 @@ struct ScoredEffect : ScoredVariant {
 
 struct ScoredNuisance {
   NuisanceCandidate candidate;
-  double evidence = 0;             // to first order
-  std::optional<double> refitted;  // once the model with it has been fitted again
+  double evidence = 0;                  // to first order
+  std::optional<double> refitted = {};  // once the model with it has been fitted again
   double explained = 0;
   bool adopted = false;  // it is so certain that the model is taken with it from here on
   // Evidence that what is unknown of its change (NuisanceCandidate::unknown) could lend to an

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/parallel.h"
 #include "study/own_nuisance.h"
 
 namespace lacuna {
@@ -35,46 +36,54 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   return measure;
 }
 
+// The model as it is set. `places`: the markers' offsets, where another recording tells them.
+RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
+                         const std::optional<Eigen::MatrixXd>& places) {
+  const RecordingModel& model = problem.models()[r];
+  const PredictedRecording& item = model.item();
+  const MeasurementErrors errors = problem.ErrorsOf(model);
+  RecordingMisfit recording;
+  recording.name = item.name;
+  recording.nuisance =
+      item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, places);
+  recording.misfit = model.Predict(item.frames, recording.nuisance, {});
+  // Of a recording that is not fitted, only what it shows before it moves tells the places, where
+  // no fitted one does.
+  std::vector<char> tells_places;
+  for (const int frame : recording.misfit.frames) {
+    const double time = item.recording.times[frame];
+    recording.fitted.push_back(item.fitted && time <= item.fit_until);
+    tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
+  }
+  recording.has_own_places = !places;
+  recording.place_offset = places ? *places
+                                  : CommonError(recording.misfit.residual, recording.misfit.count,
+                                                recording.misfit.points, errors, tells_places,
+                                                recording.misfit.deformation);
+  recording.in_fit = Measure(recording, true, errors.noise);
+  recording.held_out = Measure(recording, false, errors.noise);
+  return recording;
+}
+
 }  // namespace
 
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values) {
   problem.SetModel(values);
-  const size_t count = problem.models().size();
+  std::vector<RecordingMisfit> all(problem.models().size());
   // Those first that tell the others where their markers are.
-  std::vector<size_t> order;
-  for (const bool is_told : {false, true})
-    for (size_t r = 0; r < count; ++r)
-      if (problem.PlacesToldBy(r).has_value() == is_told) order.push_back(r);
-  std::vector<RecordingMisfit> all(count);
-  for (const size_t r : order) {
-    const RecordingModel& model = problem.models()[r];
-    const PredictedRecording& item = model.item();
-    const MeasurementErrors errors = problem.ErrorsOf(model);
-    RecordingMisfit& recording = all[r];
-    recording.name = item.name;
-    std::optional<Eigen::MatrixXd> known;
-    if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
-        teller && all[*teller].misfit.summary.IsUsable())
-      known = all[*teller].place_offset;
-    recording.nuisance =
-        item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, known);
-    recording.misfit = model.Predict(item.frames, recording.nuisance, {});
-    // Of a recording that is not fitted, only what it shows before it moves tells the places, where
-    // no fitted one does.
-    std::vector<char> tells_places;
-    for (const int frame : recording.misfit.frames) {
-      const double time = item.recording.times[frame];
-      recording.fitted.push_back(item.fitted && time <= item.fit_until);
-      tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
-    }
-    recording.has_own_places = !known;
-    recording.place_offset = known ? *known
-                                   : CommonError(recording.misfit.residual, recording.misfit.count,
-                                                 recording.misfit.points, errors, tells_places,
-                                                 recording.misfit.deformation);
-    recording.in_fit = Measure(recording, true, errors.noise);
-    recording.held_out = Measure(recording, false, errors.noise);
+  for (const bool is_told : {false, true}) {
+    std::vector<size_t> some;
+    for (size_t r = 0; r < all.size(); ++r)
+      if (problem.PlacesToldBy(r).has_value() == is_told) some.push_back(r);
+    ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
+      const size_t r = some[static_cast<size_t>(k)];
+      std::optional<Eigen::MatrixXd> places;
+      if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
+          teller && all[*teller].misfit.summary.IsUsable())
+        places = all[*teller].place_offset;
+      all[r] = MisfitOf(problem, values, r, places);
+    });
   }
   return all;
 }

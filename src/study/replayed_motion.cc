@@ -39,7 +39,7 @@ class MemoryAlong {
       const Eigen::VectorXd before = state_[j];
       model_.effects[j]->AdvanceState(
           {*model_.body, at.position, at.velocity, no_acceleration, at.time, time_step, before},
-          &state_[j]);
+          model_.effects[j]->Parameters(), &state_[j]);
     }
     return state_;
   }

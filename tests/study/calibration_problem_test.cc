@@ -10,6 +10,7 @@
 #include <iterator>
 #include <random>
 
+#include "core/parallel.h"
 #include "study/calibration_fits.h"
 #include "study/effect_ranking.h"
 #include "study/held_bar.h"
@@ -197,6 +198,46 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
 }
 
 // Of a recording that is not fitted, the measuring frame may have been set up anew.
+// On two cores, with an effect that both recordings share and that remembers.
+TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  HeldBarTruth other_hold;
+  other_hold.hold_force = {0, -0.03, 0.04};
+  WriteBarRecording(folder / "other", FilmHeldBar(other_hold));
+  const PredictionStudy study = ReadBarStudy(
+      folder.Path(),
+      {{"  - {type: mass_damping, alpha: 1 1/s}\n",
+        "  - {type: mass_damping, alpha: 1 1/s}\n"
+        "  - {type: viscoelastic_branch, modulus: 20 kPa, relaxation_time: 20 ms}\n"},
+       {"{name: mass_damping.alpha}",
+        "{name: viscoelastic_branch.modulus}, {name: viscoelastic_branch.relaxation_time}"},
+       {"recordings:\n",
+        "recordings:\n  - recording: other/recording.yaml\n    name: other\n    hold:\n"
+        "      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n"
+        "      release: 0.0437 s\n"}});
+  const int threads = ThreadCount();
+  Prediction prediction[2];
+  LinearisedMisfit linearised[2];
+  std::vector<RecordingMisfit> misfits[2];
+  for (int k = 0; k < 2; ++k) {
+    SetThreadCount(k + 1);
+    // A study of its own: an equilibrium is sought from the last one that was found.
+    const CalibrationProblem own(study, BarMesh({6, 2, 2}, 1));
+    prediction[k] = own.Predict(own.Start(), true);
+    linearised[k] = own.Linearise(own.Start(), true);
+    misfits[k] = MisfitsOf(own, own.Start());
+    ASSERT_TRUE(prediction[k].usable) << prediction[k].message;
+    ASSERT_TRUE(linearised[k].usable) << linearised[k].message;
+  }
+  SetThreadCount(threads);
+  EXPECT_EQ(prediction[0].residual, prediction[1].residual);
+  EXPECT_EQ(prediction[0].jacobian, prediction[1].jacobian);
+  EXPECT_EQ(linearised[0].residual, linearised[1].residual);
+  EXPECT_EQ(linearised[0].by, linearised[1].by);
+  for (size_t r = 0; r < 2; ++r) EXPECT_EQ(misfits[0][r].in_fit.rms, misfits[1][r].in_fit.rms);
+}
+
 TEST(CalibrationProblem, KnowsTheRegistrationOfARecording) {
   const TemporaryFolder folder;
   const Eigen::Matrix3d turn =

@@ -63,7 +63,7 @@ MovingBody MakeMovingBody(const Effect& effect, int order, const std::array<int,
   const Eigen::VectorXd at_rest = moving.state;
   effect.AdvanceState({moving.body, before, motion.velocity, motion.acceleration,
                        options.time - options.time_step, options.time_step, at_rest},
-                      &moving.state);
+                      effect.Parameters(), &moving.state);
   return moving;
 }
 
