@@ -3,12 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/fit_report.h"
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "effects/catalogue.h"
+#include "study/diagnosis_run.h"
 #include "study/extended_experiment.h"
 
 namespace lacuna {
@@ -40,9 +42,12 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const FittedRun fitted = OpenRun(run);
   if (FindEntry(type) == nullptr) FindScored({}, type);  // told before the computation
   Progress progress;
-  const CalibrationProblem problem(fitted.study, fitted.mesh);
-  const EffectRanking ranking = RankEffects(problem, fitted.values, &progress);
-  const ScoredEffect& effect = FindScored(ranking, type);
+  std::optional<ScoredEffect> diagnosed = FindDiagnosed(run, type);
+  if (!diagnosed) {
+    const CalibrationProblem problem(fitted.study, fitted.mesh);
+    diagnosed = FindScored(RankEffects(problem, fitted.values, &progress), type);
+  }
+  const ScoredEffect& effect = *diagnosed;
   const std::string unseen = WhyUnseen(effect);
   if (!unseen.empty())
     throw InputError(

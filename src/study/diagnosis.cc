@@ -227,16 +227,21 @@ class Refits {
     const bool is_far_off = InNoise(without.hypothesis) > kFarOff;
     EffectRefit refit =
         Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, is_far_off, &progress_);
+    ScoredVariant best = effect->scored;
     for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
       if (elsewhere.score.evidence < kNearlyAsGood * effect->scored.score.evidence) break;
       EffectRefit other =
           Refit(problem_, values_, &elsewhere, adopted, ranking_.misfit, is_far_off, &progress_);
-      if (IsBetter(other, refit)) refit = std::move(other);
+      if (!IsBetter(other, refit)) continue;
+      refit = std::move(other);
+      best = elsewhere;
     }
+    static_cast<ScoredVariant&>(effect->scored) = std::move(best);
     effect->refitted = true;
     effect->refit_message = refit.message;
     effect->errors = refit.errors;
     effect->calibration = refit.calibration;
+    effect->values = refit.effect;
     return refit;
   }
   const FittedHypothesis& Best() const {

@@ -43,6 +43,7 @@ struct RankedEffect {
   double explained = 0;          // share of the squared misfit that went
   double left_in_noise = 0;      // over all frames, adopted nuisances at their best, in σ
   Calibration calibration;
+  Eigen::VectorXd values;  // the effect's parameters there; empty: there is no usable refit
 };
 
 struct Diagnosis {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -17,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 13;
+constexpr int kDiagnosisVersion = 14;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -38,9 +39,18 @@ json SettingsOf(const Diagnosis& diagnosis) {
   json settings = json::object();
   for (const RankedEffect& effect : diagnosis.ranking) {
     const CandidateEffect& candidate = effect.scored.candidate;
-    const Eigen::VectorXd values = candidate.effect->Parameters();
+    Eigen::VectorXd values = effect.values;
+    if (values.size() == 0) {
+      values = candidate.effect->Parameters();
+      for (size_t k = 0; k < candidate.amplitude.size(); ++k)
+        values[candidate.amplitude[k]] = effect.scored.score.size[static_cast<Eigen::Index>(k)];
+    }
+    json known = json::object();
+    for (const auto& [name, range] : candidate.known) known[name] = {range.min, range.max};
     settings[candidate.type] = {{"values", std::vector<double>(values.begin(), values.end())},
                                 {"amplitude", candidate.amplitude},
+                                {"refined", candidate.refined},
+                                {"known", known},
                                 {"replaces_material", candidate.replaces_material}};
   }
   return settings;
@@ -75,7 +85,7 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress);
   MakeFolder(ResultFile(run).parent_path());
   SaveDiagnosis(diagnosis, ResultFile(run));
-  const json origin = {{"schema_version", 1},
+  const json origin = {{"schema_version", 2},
                        {"of", OriginOf(run, options)},
                        {"diagnosis", HashFile(ResultFile(run))},
                        {"settings", SettingsOf(diagnosis)}};
@@ -95,6 +105,9 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
     candidate.type = effect.type;
     candidate.variant = effect.variant;
     candidate.amplitude = settings.at("amplitude").get<std::vector<int>>();
+    candidate.refined = settings.at("refined").get<std::map<std::string, double>>();
+    for (const auto& [name, range] : settings.at("known").items())
+      candidate.known[name] = {range.at(0), range.at(1)};
     candidate.replaces_material = settings.at("replaces_material");
     const std::string other =
         OriginFile(run).string() + ": is of another catalogue; diagnose again";
@@ -103,14 +116,35 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
     candidate.effect = entry->make(
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
     if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
-    scored.score.size.resize(static_cast<Eigen::Index>(effect.sizes.size()));
-    for (size_t k = 0; k < effect.sizes.size(); ++k)
-      scored.score.size[static_cast<Eigen::Index>(k)] = effect.sizes[k].expected;
+    Score& score = scored.score;
+    score.size.setOnes(static_cast<Eigen::Index>(effect.sizes.size()));  // of a pilot
+    score.detectable = score.size;
+    for (size_t k = 0; k < effect.sizes.size(); ++k) {
+      const Eigen::Index at = static_cast<Eigen::Index>(k);
+      if (!candidate.IsPilot())
+        score.size[at] = values[static_cast<size_t>(candidate.amplitude[k])];
+      score.detectable[at] = effect.sizes[k].detectable;
+    }
     return scored;
   } catch (const json::exception& problem) {
     throw InputError(fmt::format("{}: does not tell how {} is set up: {}", OriginFile(run).string(),
                                  effect.type, problem.what()));
   }
+}
+
+std::optional<ScoredEffect> FindDiagnosed(const std::filesystem::path& run,
+                                          const std::string& type) {
+  const json origin = Parsed(OriginFile(run));
+  if (!origin.is_object() || !std::filesystem::exists(ResultFile(run)) ||
+      origin.value("diagnosis", "") != HashFile(ResultFile(run)))
+    return std::nullopt;
+  const json of = origin.value("of", json::object());
+  const json expected = OriginOf(run, {});
+  for (const char* what : {"version", "fit", "fit_key"})
+    if (!of.contains(what) || of.at(what) != expected.at(what)) return std::nullopt;
+  for (const RecordedEffect& effect : ReadDiagnosisFile(ResultFile(run)).ranking)
+    if (effect.type == type) return DiagnosedEffect(run, effect);
+  return std::nullopt;
 }
 
 }  // namespace lacuna

@@ -4,6 +4,8 @@
 #define LACUNA_STUDY_DIAGNOSIS_RUN_H_
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "core/progress.h"
 #include "study/calibration_run.h"
@@ -21,9 +23,13 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
 // Whether RunDiagnosis would read one back.
 bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options);
 
-// An effect of the ranking that RunDiagnosis left in this folder, as its refits started from it.
-// Throws InputError when it is not there.
+// An effect of the ranking that RunDiagnosis left in this folder, where its refit ended, or as
+// first order expects it. Throws InputError when it is not there.
 ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEffect& effect);
+
+// The same of a diagnosis of this fit with whatever options; nothing where none has the effect.
+std::optional<ScoredEffect> FindDiagnosed(const std::filesystem::path& run,
+                                          const std::string& type);
 
 }  // namespace lacuna
 

@@ -233,6 +233,10 @@ class ExtendedProblem {
   }
 
   const CalibrationProblem& with() const { return with_; }
+  // The one that the problem has more; with the values of the last prediction.
+  const Effect& OwnEffect() const {
+    return effect_->candidate.replaces_material ? *study_.effects.front() : *study_.effects.back();
+  }
   Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
 
   // Where a fit is to begin.
@@ -356,6 +360,7 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     refit.calibration.estimates.resize(static_cast<size_t>(own));
     refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
+    if (effect != nullptr) refit.effect = extended.OwnEffect().Parameters();
     refit.message = refit.hypothesis.misfit.message;
     if (refit.hypothesis.misfit.usable) {
       refit.errors.without_nuisances = HeldOutInNoise(

@@ -44,6 +44,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
   Calibration calibration;
+  Eigen::VectorXd effect;  // parameters of the effect there, in the order of its card
   ModelErrors errors;
   // At the parameters that are best for the fitted frames, and for all.
   FittedHypothesis at_fit, hypothesis;

@@ -164,6 +164,20 @@ const ParameterCard& CardOf(const ModelParameter& parameter) {
   return effect->Card().parameters[index];
 }
 
+// What is known of a parameter before: `mean`, the start unless it is given, and `deviation`; of
+// one on a logarithmic scale a small one, or the scale's part of it.
+void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
+  if (!item.Has("deviation")) {
+    if (item.Has("mean")) item.Fail("mean", "needs a `deviation` beside it");
+    return;
+  }
+  prior->prior_mean = item.Quantity("mean", card.dimension, card.bounds, prior->start);
+  if (prior->log_scale && !(prior->prior_mean > 0))
+    item.Fail("mean", "must be positive: the parameter is fitted on a logarithmic scale");
+  const double deviation = item.Quantity("deviation", card.dimension, kPositive);
+  prior->prior_deviation = prior->log_scale ? deviation / prior->prior_mean : deviation;
+}
+
 // `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`; absent: the material's.
 std::vector<ModelParameter> ReadFitted(const Config& config,
                                        const std::vector<std::shared_ptr<Effect>>& effects) {
@@ -190,6 +204,7 @@ std::vector<ModelParameter> ReadFitted(const Config& config,
     if (!(prior.min <= prior.start && prior.start <= prior.max))
       item.Fail("name", fmt::format("starts at {:g} {}, outside {:g} to {:g}", prior.start,
                                     parameter.unit, prior.min, prior.max));
+    ReadPrior(item, card, &prior);
     fitted.push_back(parameter);
   }
   return fitted;

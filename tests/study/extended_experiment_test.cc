@@ -8,6 +8,7 @@
 
 #include "effects/catalogue.h"
 #include "study/held_bar.h"
+#include "study/model_change.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -59,7 +60,14 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.effects.front()->Parameters(), fitted.study.effects.front()->Parameters());
   EXPECT_EQ(extended.effects.back()->Parameters()[0], 2.5);
   ASSERT_EQ(extended.fitted.size(), 2u);
-  EXPECT_EQ(extended.fitted[1].prior.name, "mass_damping.alpha");
+  const CalibratedParameter &alpha = extended.fitted[1].prior,
+                            expected = WithEffect(fitted.study, scored).fitted[1].prior;
+  EXPECT_EQ(alpha.name, "mass_damping.alpha");
+  // Known before is what the refits of a diagnosis take for known, not where this fit starts.
+  EXPECT_EQ(expected.prior_mean, 0);
+  EXPECT_EQ(alpha.prior_mean, expected.prior_mean);
+  EXPECT_EQ(alpha.prior_deviation, expected.prior_deviation);
+  EXPECT_EQ(alpha.max, expected.max);
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
 }
 

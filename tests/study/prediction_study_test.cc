@@ -203,6 +203,26 @@ TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
               HasSubstr("starts at 150000 Pa, outside 200000 to"));
 }
 
+TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
+  const auto prior_of = [&](const std::string& alpha) {
+    WriteBarRecording(folder_.Path(), Moving(0.001));
+    return ReadBarStudy(folder_.Path(),
+                        {{"{name: mass_damping.alpha}", alpha},
+                         {"{name: young_modulus}",
+                          "{name: young_modulus, mean: 140 kPa, deviation: 7 kPa}"}})
+        .fitted;
+  };
+  const std::vector<ModelParameter> fitted =
+      prior_of("{name: mass_damping.alpha, deviation: 0.5 1/s}");
+  EXPECT_EQ(fitted[0].prior.prior_mean, 1.4e5);
+  ASSERT_TRUE(fitted[0].prior.log_scale);
+  EXPECT_NEAR(fitted[0].prior.prior_deviation, 0.05, 1e-12);
+  EXPECT_EQ(fitted[1].prior.prior_mean, 1) << "where it starts";
+  EXPECT_NEAR(fitted[1].prior.prior_deviation, 0.5, 1e-12);
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, mean: 0.2 MPa}"}}),
+              HasSubstr("parameters[0].mean: needs a `deviation` beside it"));
+}
+
 TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
   EXPECT_THAT(MessageAfter({{"    fit_until", "    fitted: false\n    fit_until"}}),
               HasSubstr("recordings: none of them is fitted"));
