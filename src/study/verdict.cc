@@ -29,8 +29,9 @@ constexpr double kAtNoise = 1.2;
 // logarithm: chance.
 constexpr double kNoWorse = 3;
 // Recordings that were not fitted are no part of the evidence: which effect predicts them better by
-// this factor cannot be ruled out by those that were.
-constexpr double kPredictsBetter = 0.97;
+// so many σ cannot be ruled out by those that were. That is what the noise of a thousand
+// measurements changes of their rms misfit, however large it is.
+constexpr double kPredictsBetter = 0.03;
 // Nuisances are known to first order: an effect may live on what that leaves out, so its evidence
 // must be more than this part of theirs that are in the model. A grip that yields or reaches
 // further changes the frequencies, which first order follows for a short time only: it is a rival
@@ -201,7 +202,7 @@ void Decide(Diagnosis* diagnosis) {
     const double error = rival.errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
     const bool is_close = rival.evidence > evidence - lead;
     const bool predicts =
-        rival.evidence > std::max(kNamed, diagnosis->control) && error < kPredictsBetter * of_best;
+        rival.evidence > std::max(kNamed, diagnosis->control) && error < of_best - kPredictsBetter;
     // An effect of size zero has the evidence 0: a refit that ends below has gone astray, and what
     // first order puts beside the best is not ruled out by it.
     const double to_first_order = rival.scored.score.evidence;

@@ -101,6 +101,9 @@ TEST(Verdict, DoesNotRuleOutWhatCouldNotBeFitted) {
 }
 
 TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
+  Diagnosis as_good = SaggingBeam(12, 11.99);
+  Decide(&as_good);
+  EXPECT_EQ(as_good.verdict, Verdict::kMissing);
   Diagnosis diagnosis = SaggingBeam(12, 11);
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
