@@ -45,8 +45,7 @@ double InNoise(const FittedHypothesis& hypothesis) {
 bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
   if (!a.message.empty() || !b.message.empty()) return a.message.empty();
   const NoiseLevel white;
-  return EvidenceOf(a.hypothesis, white).log_evidence >
-         EvidenceOf(b.hypothesis, white).log_evidence;
+  return EvidenceOf(a, white).all > EvidenceOf(b, white).all;
 }
 
 // The study until soon after the start of each fitted recording.
@@ -127,10 +126,8 @@ class Refits {
 
   // First order cannot tell the best from its look-alikes; a refit may.
   void RunLookAlikesOfBest() {
-    const auto best = std::max_element(
-        diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
-        [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
-    if (best == diagnosis_.ranking.end() || best->evidence <= 0) return;
+    const RankedEffect* best = BestRefitted();
+    if (best == nullptr || best->evidence <= 0) return;
     const std::vector<std::string> look_alikes = best->scored.look_alikes;
     for (size_t k = 0; k < diagnosis_.ranking.size(); ++k)
       if (std::count(look_alikes.begin(), look_alikes.end(),
@@ -141,10 +138,8 @@ class Refits {
   // The nuisances that first order puts near the best effect, or beyond. To be called after
   // Weigh().
   void RunRivalNuisances(std::vector<ScoredNuisance>* nuisances) const {
-    const auto best = std::max_element(
-        diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
-        [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
-    if (best == diagnosis_.ranking.end() || best->evidence < kNoEvidence) return;
+    const RankedEffect* best = BestRefitted();
+    if (best == nullptr || best->evidence < kNoEvidence) return;
     const double least = kRivalNuisance * std::min(best->evidence, best->scored.score.evidence);
     std::vector<ScoredNuisance*> rivals;
     for (ScoredNuisance& nuisance : *nuisances)
@@ -153,12 +148,13 @@ class Refits {
     std::stable_sort(rivals.begin(), rivals.end(),
                      [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
     if (rivals.size() > kMostRivalNuisances) rivals.resize(kMostRivalNuisances);
+    const double before = EvidenceOf(present_, diagnosis_.noise_level).all;
     for (ScoredNuisance* nuisance : rivals) {
       const EffectRefit with =
           Refit(problem_, values_, nullptr, ranking_.adopted.And(nuisance->candidate),
                 ranking_.misfit, false, &progress_);
       if (!with.message.empty()) continue;
-      const double evidence = Compare(with, present_, diagnosis_.noise_level).all -
+      const double evidence = EvidenceOf(with, diagnosis_.noise_level).all - before -
                               nuisance->candidate.price - Price(nuisances->size());
       if (std::isfinite(evidence)) nuisance->refitted = evidence;
     }
@@ -174,7 +170,8 @@ class Refits {
         Refit(problem_, values_, nullptr, always, ranking_.misfit, false, &progress_);
     if (!bare.message.empty()) return instead;
     instead.bare = bare.errors;
-    instead.nuisances_evidence = Compare(present_, bare, diagnosis_.noise_level).all;
+    const RefitEvidence before = EvidenceOf(bare, diagnosis_.noise_level);
+    instead.nuisances_evidence = EvidenceOf(present_, diagnosis_.noise_level).all - before.all;
     for (const ScoredEffect& scored : ranking_.instead) {
       if (static_cast<int>(instead.effects.size()) == count ||
           scored.score.evidence < kCouldDoAsMuch * instead.nuisances_evidence)
@@ -182,7 +179,7 @@ class Refits {
       RankedEffect& effect = instead.effects.emplace_back();
       effect.scored = scored;
       const EffectRefit with = Tried(always, bare, &effect);
-      if (with.message.empty()) SetEvidence(with, bare, &effect);
+      if (with.message.empty()) SetEvidence(with, before, &effect);
     }
     return instead;
   }
@@ -193,25 +190,31 @@ class Refits {
     diagnosis_.noise_level =
         LevelOf(best.left, best.misfit, best.misfit.by.cols(), problem_.LeastNoiseVariance());
     diagnosis_.left_in_noise = InNoise(best);
+    const RefitEvidence before = EvidenceOf(present_, diagnosis_.noise_level);
     for (size_t k = 0; k < refits_.size(); ++k)
-      if (IsUsable(k)) SetEvidence(refits_[k], present_, &diagnosis_.ranking[k]);
+      if (IsUsable(k)) SetEvidence(refits_[k], before, &diagnosis_.ranking[k]);
   }
 
  private:
-  void SetEvidence(const EffectRefit& with, const EffectRefit& without,
+  void SetEvidence(const EffectRefit& with, const RefitEvidence& before,
                    RankedEffect* effect) const {
-    const RelativeEvidence gained = Compare(with, without, diagnosis_.noise_level);
-    effect->evidence = gained.all - Price(diagnosis_.ranking.size());
-    effect->held_out_evidence = gained.held_out;
+    const RefitEvidence after = EvidenceOf(with, diagnosis_.noise_level);
+    effect->evidence = after.all - before.all - Price(diagnosis_.ranking.size());
+    effect->held_out_evidence = after.held_out - before.held_out;
     if (!std::isfinite(effect->evidence)) {
       effect->evidence = 0;
       effect->refit_message = "it ended where its evidence has no value";
       return;
     }
-    const double before = EvidenceOf(without.hypothesis, diagnosis_.noise_level).misfit;
-    const double after = EvidenceOf(with.hypothesis, diagnosis_.noise_level).misfit;
-    effect->explained = std::clamp(1 - after / before, 0.0, 1.0);
+    effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
     effect->left_in_noise = InNoise(with.hypothesis);
+  }
+  // By evidence after the refit; null: there are none.
+  const RankedEffect* BestRefitted() const {
+    const auto best = std::max_element(
+        diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
+        [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
+    return best != diagnosis_.ranking.end() ? &*best : nullptr;
   }
   bool IsUsable(size_t k) const {
     return diagnosis_.ranking[k].refitted && diagnosis_.ranking[k].refit_message.empty();
@@ -241,7 +244,7 @@ class Refits {
     effect->refit_message = refit.message;
     effect->errors = refit.errors;
     effect->calibration = refit.calibration;
-    effect->values = refit.effect;
+    if (refit.message.empty()) effect->values = refit.effect;
     return refit;
   }
   const FittedHypothesis& Best() const {

@@ -162,12 +162,10 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   return evidence;
 }
 
-RelativeEvidence Compare(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise) {
-  const double fitted = EvidenceOf(a.at_fit, noise, /*fitted_only=*/true).log_evidence -
-                        EvidenceOf(b.at_fit, noise, /*fitted_only=*/true).log_evidence;
-  const double all =
-      EvidenceOf(a.hypothesis, noise).log_evidence - EvidenceOf(b.hypothesis, noise).log_evidence;
-  return {all, all - fitted};
+RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
+  const HypothesisEvidence all = EvidenceOf(refit.hypothesis, noise);
+  const double fitted = EvidenceOf(refit.at_fit, noise, /*fitted_only=*/true).log_evidence;
+  return {all.log_evidence, all.log_evidence - fitted, all.misfit};
 }
 
 namespace {

@@ -50,13 +50,14 @@ struct EffectRefit {
   FittedHypothesis at_fit, hypothesis;
 };
 
-// ln of the odds for one refitted model against another: of all frames, and what the held-out ones
-// alone add once the fitted ones are known. That weighs how well each predicts by how well it
-// claims to: a parameter that the fitted frames leave open costs no more than it must.
-struct RelativeEvidence {
+// ln p of all frames, and of the held-out ones alone once the fitted ones are known. That weighs
+// how well a model predicts by how well it claims to: a parameter that the fitted frames leave open
+// costs no more than it must.
+struct RefitEvidence {
   double all = 0, held_out = 0;
+  double misfit = 0;  // as HypothesisEvidence, of all frames
 };
-RelativeEvidence Compare(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise);
+RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
 // From where first order expects the best parameters, or from `values` where that is nearer, or
 // part of the way where neither predicts as well as the model without the effect. Null `effect`:

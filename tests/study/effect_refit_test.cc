@@ -89,7 +89,7 @@ FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise,
 
 // What held-out frames add is how dense they are where the fitted ones predict them: a Gaussian
 // about what the parameter's best value expects, as wide as the noise and what is open of it.
-TEST(RelativeEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
+TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   const NoiseLevel white{0, 1.3};
   FittedHypothesis with = MakeHypothesis(0.8), without;
   std::fill(with.misfit.parts[0].fitted.begin() + kFrames / 2, with.misfit.parts[0].fitted.end(),
@@ -102,7 +102,8 @@ TEST(RelativeEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   a.at_fit = AtItsBest(with, white, true);
   a.hypothesis = AtItsBest(with, white, false);
   b.at_fit = b.hypothesis = without;
-  const RelativeEvidence gained = Compare(a, b, white);
+  const RefitEvidence of_a = EvidenceOf(a, white), of_b = EvidenceOf(b, white);
+  const double held_out = of_a.held_out - of_b.held_out;
 
   const Eigen::Index half = kSeries * kFrames / 2;
   const double variance = 1.3 * kSigma * kSigma;
@@ -116,9 +117,9 @@ TEST(RelativeEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   const double log_density = -0.5 * missed.dot(covariance.llt().solve(missed)) -
                              0.5 * std::log((covariance / variance).determinant());
   const double log_without = -0.5 * residual.tail(half).squaredNorm() / variance;
-  EXPECT_NEAR(gained.held_out, log_density - log_without, 1e-6 * std::abs(gained.held_out));
-  EXPECT_GT(gained.held_out, 100);
-  EXPECT_GT(gained.all, gained.held_out);
+  EXPECT_NEAR(held_out, log_density - log_without, 1e-6 * std::abs(held_out));
+  EXPECT_GT(held_out, 100);
+  EXPECT_GT(of_a.all - of_b.all, held_out);
 }
 
 // Softer near one end may look like stiffer near the other: a refit begins from both.
