@@ -25,9 +25,9 @@ std::string FittedEntry(const ModelParameter& parameter) {
   std::string entry = fmt::format("    - {{name: {}", prior.name);
   if (std::isfinite(prior.min)) entry += fmt::format(", min: {}{}", prior.min, unit);
   if (std::isfinite(prior.max)) entry += fmt::format(", max: {}{}", prior.max, unit);
-  if (!prior.log_scale && std::isfinite(prior.prior_mean))
+  if (std::isfinite(prior.prior_mean))
     entry += fmt::format(", mean: {}{}, deviation: {}{}", prior.prior_mean, unit,
-                         prior.prior_deviation, unit);
+                         prior.prior_deviation * (prior.log_scale ? prior.prior_mean : 1), unit);
   return entry + "}\n";
 }
 

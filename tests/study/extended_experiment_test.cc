@@ -42,7 +42,11 @@ FittedRun OpenAtItsValues(const std::filesystem::path& run) {
 TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   const TemporaryFolder folder;
   const std::filesystem::path run = FitBar(folder.Path());
-  const FittedRun fitted = OpenAtItsValues(run);
+  FittedRun fitted = OpenAtItsValues(run);
+  CalibratedParameter& modulus = fitted.study.fitted[0].prior;  // that was measured otherwise
+  ASSERT_TRUE(modulus.log_scale);
+  modulus.prior_mean = 1.4e5;
+  modulus.prior_deviation = 0.05;
 
   ScoredEffect scored;
   const Body body = MakeBody(fitted.mesh, 1000);
@@ -60,6 +64,8 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.effects.front()->Parameters(), fitted.study.effects.front()->Parameters());
   EXPECT_EQ(extended.effects.back()->Parameters()[0], 2.5);
   ASSERT_EQ(extended.fitted.size(), 2u);
+  EXPECT_EQ(extended.fitted[0].prior.prior_mean, modulus.prior_mean);
+  EXPECT_NEAR(extended.fitted[0].prior.prior_deviation, modulus.prior_deviation, 1e-12);
   const CalibratedParameter &alpha = extended.fitted[1].prior,
                             expected = WithEffect(fitted.study, scored).fitted[1].prior;
   EXPECT_EQ(alpha.name, "mass_damping.alpha");
