@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/amplitude_estimate.h"
+#include "study/calibration_problem.h"
 #include "study/measurement_errors.h"
 
 namespace lacuna {
@@ -255,8 +256,9 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   }
   const bool helps = force.in_noise_after < kWorthwhile * force.in_noise_before;
   if (!accepted || (!force.converged && !helps))
-    return Failed(force,
-                  "no small force makes the model follow better: it is too far off for that");
+    return Failed(force, force.in_noise_before > kFarOff
+                             ? "no small force makes the model follow better: it is too far off"
+                             : "no small, smooth force makes the model follow better");
   force.field.amplitudes.reshaped() = amplitudes;
   force.noise = accepted->noise;
   force.evidence = accepted->evidence;
