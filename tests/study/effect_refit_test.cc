@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "effects/catalogue.h"
 #include "study/calibration_fits.h"
@@ -122,16 +123,32 @@ TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   EXPECT_GT(of_a.all - of_b.all, held_out);
 }
 
+// The bar that was held aside and let go, with elements that are too coarse.
+class OfACoarseBar : public ::testing::Test {
+ protected:
+  OfACoarseBar() {
+    WriteBarRecording(folder_.Path(), FilmHeldBar({}));
+    study_ = ReadBarStudy(folder_.Path());
+    problem_.emplace(study_, BarMesh({6, 2, 2}, 1));
+  }
+
+  static ProgressOptions Silent() {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    return silent;
+  }
+
+  const TemporaryFolder folder_;
+  PredictionStudy study_;
+  std::optional<CalibrationProblem> problem_;
+  Progress progress_{Silent()};
+};
+using EffectRankingOfACoarseBar = OfACoarseBar;
+using EffectRefitOfACoarseBar = OfACoarseBar;
+
 // Softer near one end may look like stiffer near the other: a refit begins from both.
-TEST(EffectRanking, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
-  const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), FilmHeldBar({}));
-  const PredictionStudy study = ReadBarStudy(folder.Path());
-  const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 1));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const EffectRanking ranking = RankEffects(problem, problem.Start(), &progress);
+TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
+  const EffectRanking ranking = RankEffects(*problem_, problem_->Start(), &progress_);
   int places = 0;
   for (const ScoredEffect& effect : ranking.effects) {
     double at_most = effect.score.evidence;
@@ -154,17 +171,10 @@ TEST(EffectRanking, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
 
 // First order may expect a size at which everything is another motion, from where no fit finds
 // back.
-TEST(EffectRefit, IsNotWorseThanTheModelWithout) {
-  const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), FilmHeldBar({}));
-  const PredictionStudy study = ReadBarStudy(folder.Path());
-  const CalibrationProblem problem(study, BarMesh({6, 2, 2}, 1));
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const Calibration fit = FitFromStart(problem, &progress);
+TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
+  const Calibration fit = FitFromStart(*problem_, &progress_);
   ASSERT_FALSE(fit.estimates.empty()) << fit.message;
-  const LinearisedMisfit misfit = problem.Linearise(fit.parameters, true);
+  const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
   ASSERT_TRUE(misfit.usable) << misfit.message;
 
   ScoredEffect bed;
@@ -172,8 +182,8 @@ TEST(EffectRefit, IsNotWorseThanTheModelWithout) {
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
   bed.fitted = fit.parameters;
   const EffectRefit refit =
-      Refit(problem, fit.parameters, &bed, {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0},
-            misfit, false, &progress);
+      Refit(*problem_, fit.parameters, &bed, {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0},
+            misfit, false, &progress_);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   // A refit ends where a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
