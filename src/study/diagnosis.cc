@@ -45,7 +45,8 @@ double InNoise(const FittedHypothesis& hypothesis) {
 bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
   if (!a.message.empty() || !b.message.empty()) return a.message.empty();
   const NoiseLevel white;
-  return EvidenceOf(a, white).all > EvidenceOf(b, white).all;
+  return EvidenceOf(a.hypothesis, white).log_evidence >
+         EvidenceOf(b.hypothesis, white).log_evidence;
 }
 
 // The study until soon after the start of each fitted recording.
@@ -127,7 +128,7 @@ class Refits {
   // First order cannot tell the best from its look-alikes; a refit may.
   void RunLookAlikesOfBest() {
     const RankedEffect* best = BestRefitted();
-    if (best == nullptr || best->evidence <= 0) return;
+    if (best == nullptr) return;
     const std::vector<std::string> look_alikes = best->scored.look_alikes;
     for (size_t k = 0; k < diagnosis_.ranking.size(); ++k)
       if (std::count(look_alikes.begin(), look_alikes.end(),
@@ -148,14 +149,14 @@ class Refits {
     std::stable_sort(rivals.begin(), rivals.end(),
                      [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
     if (rivals.size() > kMostRivalNuisances) rivals.resize(kMostRivalNuisances);
-    const double before = EvidenceOf(present_, diagnosis_.noise_level).all;
+    const double before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence;
     for (ScoredNuisance* nuisance : rivals) {
       const EffectRefit with =
           Refit(problem_, values_, nullptr, ranking_.adopted.And(nuisance->candidate),
                 ranking_.misfit, false, &progress_);
       if (!with.message.empty()) continue;
-      const double evidence = EvidenceOf(with, diagnosis_.noise_level).all - before -
-                              nuisance->candidate.price - Price(nuisances->size());
+      const double evidence = EvidenceOf(with.hypothesis, diagnosis_.noise_level).log_evidence -
+                              before - nuisance->candidate.price - Price(nuisances->size());
       if (std::isfinite(evidence)) nuisance->refitted = evidence;
     }
   }
@@ -171,7 +172,8 @@ class Refits {
     if (!bare.message.empty()) return instead;
     instead.bare = bare.errors;
     const RefitEvidence before = EvidenceOf(bare, diagnosis_.noise_level);
-    instead.nuisances_evidence = EvidenceOf(present_, diagnosis_.noise_level).all - before.all;
+    instead.nuisances_evidence =
+        EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence - before.all;
     for (const ScoredEffect& scored : ranking_.instead) {
       if (static_cast<int>(instead.effects.size()) == count ||
           scored.score.evidence < kCouldDoAsMuch * instead.nuisances_evidence)
@@ -209,12 +211,12 @@ class Refits {
     effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
     effect->left_in_noise = InNoise(with.hypothesis);
   }
-  // By evidence after the refit; null: there are none.
+  // By evidence after the refit; null: none has any.
   const RankedEffect* BestRefitted() const {
     const auto best = std::max_element(
         diagnosis_.ranking.begin(), diagnosis_.ranking.end(),
         [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
-    return best != diagnosis_.ranking.end() ? &*best : nullptr;
+    return best != diagnosis_.ranking.end() && best->evidence > 0 ? &*best : nullptr;
   }
   bool IsUsable(size_t k) const {
     return diagnosis_.ranking[k].refitted && diagnosis_.ranking[k].refit_message.empty();

@@ -62,13 +62,19 @@ json Parsed(const std::filesystem::path& file) {
   return json::parse(stream, nullptr, /*allow_exceptions=*/false);
 }
 
+// OriginOf() as it was for the diagnosis that stands there; null: there is none, or it was changed.
+json OriginOfWhatStands(const std::filesystem::path& run) {
+  const json origin = Parsed(OriginFile(run));
+  if (!origin.is_object() || !std::filesystem::exists(ResultFile(run)) ||
+      origin.value("diagnosis", "") != HashFile(ResultFile(run)))
+    return {};
+  return origin.value("of", json());
+}
+
 }  // namespace
 
 bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options) {
-  const json origin = Parsed(OriginFile(run));
-  return origin.is_object() && origin.value("of", json()) == OriginOf(run, options) &&
-         std::filesystem::exists(ResultFile(run)) &&
-         origin.value("diagnosis", "") == HashFile(ResultFile(run));
+  return OriginOfWhatStands(run) == OriginOf(run, options);
 }
 
 DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::path& run,
@@ -134,14 +140,9 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
 
 std::optional<ScoredEffect> FindDiagnosed(const std::filesystem::path& run,
                                           const std::string& type) {
-  const json origin = Parsed(OriginFile(run));
-  if (!origin.is_object() || !std::filesystem::exists(ResultFile(run)) ||
-      origin.value("diagnosis", "") != HashFile(ResultFile(run)))
-    return std::nullopt;
-  const json of = origin.value("of", json::object());
-  const json expected = OriginOf(run, {});
+  const json stands = OriginOfWhatStands(run), expected = OriginOf(run, {});
   for (const char* what : {"version", "fit", "fit_key"})
-    if (!of.contains(what) || of.at(what) != expected.at(what)) return std::nullopt;
+    if (!stands.contains(what) || stands.at(what) != expected.at(what)) return std::nullopt;
   for (const RecordedEffect& effect : ReadDiagnosisFile(ResultFile(run)).ranking)
     if (effect.type == type) return DiagnosedEffect(run, effect);
   return std::nullopt;

@@ -34,9 +34,8 @@ constexpr double kNoWorse = 3;
 constexpr double kPredictsBetter = 0.03;
 // Nuisances are known to first order: an effect may live on what that leaves out, so its evidence
 // must be more than this part of theirs that are in the model. A grip that yields or reaches
-// further changes the frequencies, which first order follows for a short time only: it is a rival
-// with this part of the effect's evidence. The others are rigid motions and times, which it follows
-// well.
+// further changes the frequencies, which first order follows for a short time only, also in a model
+// that is fitted with it: it is a rival with this part of the effect's evidence.
 constexpr double kFirstOrderDoubt = 0.1;
 constexpr double kGripRival = 0.5;
 // Where the best effect leaves more than noise, it must have explained this share of what is more
@@ -194,27 +193,26 @@ void Decide(Diagnosis* diagnosis) {
   // Why those that explain less are not ruled out.
   std::string doubts;
   // Those that the held-out frames speak against are rivals still: evidence counts these too.
-  for (const RankedEffect* other :
+  for (const RankedEffect* rival :
        ByEvidence(diagnosis->ranking, [](const RankedEffect&) { return true; })) {
-    const RankedEffect& rival = *other;
-    if (&rival == &best) continue;
-    const std::string& type = rival.scored.candidate.type;
-    const double error = rival.errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
-    const bool is_close = rival.evidence > evidence - lead;
+    if (rival == &best) continue;
+    const std::string& type = rival->scored.candidate.type;
+    const double error = rival->errors.unfitted_in_noise, of_best = best.errors.unfitted_in_noise;
+    const bool is_close = rival->evidence > evidence - lead;
     const bool predicts =
-        rival.evidence > std::max(kNamed, diagnosis->control) && error < of_best - kPredictsBetter;
+        rival->evidence > std::max(kNamed, diagnosis->control) && error < of_best - kPredictsBetter;
     // An effect of size zero has the evidence 0: a refit that ends below has gone astray, and what
     // first order puts beside the best is not ruled out by it.
-    const double to_first_order = rival.scored.score.evidence;
+    const double to_first_order = rival->scored.score.evidence;
     const bool is_astray =
-        rival.evidence < 0 && to_first_order >= best.scored.score.evidence - lead;
+        rival->evidence < 0 && to_first_order >= best.scored.score.evidence - lead;
     if (!is_close && !predicts && !is_astray) continue;
     diagnosis->effects.push_back(type);
     if (is_close) continue;
     doubts += predicts ? fmt::format(
                              "; {} explains less, e^{:.0f}, but predicts the recordings that "
                              "were not fitted better, to {:.1f} σ against {:.1f} σ",
-                             type, rival.evidence, error, of_best)
+                             type, rival->evidence, error, of_best)
                        : fmt::format("; {}, e^{:.0f} to first order, could not be fitted", type,
                                      to_first_order);
   }

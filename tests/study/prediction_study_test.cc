@@ -204,16 +204,13 @@ TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
 }
 
 TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
-  const auto prior_of = [&](const std::string& alpha) {
-    WriteBarRecording(folder_.Path(), Moving(0.001));
-    return ReadBarStudy(folder_.Path(),
-                        {{"{name: mass_damping.alpha}", alpha},
-                         {"{name: young_modulus}",
-                          "{name: young_modulus, mean: 140 kPa, deviation: 7 kPa}"}})
-        .fitted;
-  };
+  WriteBarRecording(folder_.Path(), Moving(0.001));
   const std::vector<ModelParameter> fitted =
-      prior_of("{name: mass_damping.alpha, deviation: 0.5 1/s}");
+      ReadBarStudy(
+          folder_.Path(),
+          {{"{name: mass_damping.alpha}", "{name: mass_damping.alpha, deviation: 0.5 1/s}"},
+           {"{name: young_modulus}", "{name: young_modulus, mean: 140 kPa, deviation: 7 kPa}"}})
+          .fitted;
   EXPECT_EQ(fitted[0].prior.prior_mean, 1.4e5);
   ASSERT_TRUE(fitted[0].prior.log_scale);
   EXPECT_NEAR(fitted[0].prior.prior_deviation, 0.05, 1e-12);
