@@ -24,6 +24,8 @@ constexpr double kDead = 1e-6;
 constexpr double kAtBound = 1e-6, kInside = 0.02;
 // Of fits that start near: more, and the start was not.
 constexpr int kSecantRounds = 3;
+// Errors that last longer could not be told from motion.
+constexpr double kLongestMemory = 0.9;
 // Steps are in typical changes: one that overshoots is shortened at once. A round goes on from the
 // radius of the last, which was shortened a little too far.
 constexpr double kFirstRadius = 100, kWidened = 9;
@@ -166,19 +168,49 @@ Eigen::MatrixXd GeneralisedCovariance(const Eigen::MatrixXd& information) {
   return covariance;
 }
 
-// `J`: ∂r/∂φ at the solution.
-void Estimate(const std::vector<CalibratedParameter>& parameters, const Eigen::MatrixXd& J,
-              Calibration* calibration) {
+// Calibration::memory.
+double MemoryOf(const Prediction& prediction) {
+  double product = 0;
+  for (size_t row = 0; row < prediction.before.size(); ++row)
+    if (prediction.before[row] >= 0)
+      product += prediction.residual[static_cast<Eigen::Index>(row)] *
+                 prediction.residual[prediction.before[row]];
+  return product > 0 ? std::min(product / prediction.residual.squaredNorm(), kLongestMemory) : 0;
+}
+
+// Jᵀ R J less JᵀJ; a row comes after the one before it.
+Eigen::MatrixXd AddedByMemory(const Eigen::MatrixXd& J, const std::vector<Eigen::Index>& before,
+                              double memory) {
+  Eigen::MatrixXd past = Eigen::MatrixXd::Zero(J.rows(), J.cols());  // Σ_{j<i} a^(i−j) J_j
+  for (size_t row = 0; row < before.size(); ++row)
+    if (before[row] >= 0)
+      past.row(static_cast<Eigen::Index>(row)) =
+          memory * (past.row(before[row]) + J.row(before[row]));
+  const Eigen::MatrixXd half = J.transpose() * past;
+  return half + half.transpose();
+}
+
+// H⁻¹ B H⁻¹ = H⁻¹ + H⁻¹ (B − H) H⁻¹, `more` = B − H; what H leaves open stays so.
+Eigen::MatrixXd Widened(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& more) {
+  const Eigen::MatrixXd known = covariance.array().isFinite().select(
+      covariance, Eigen::MatrixXd::Zero(more.rows(), more.cols()));
+  return covariance + known * more * known;
+}
+
+// At the solution; `J`: ∂r/∂φ.
+void Estimate(const std::vector<CalibratedParameter>& parameters, const Prediction& last,
+              const Eigen::MatrixXd& J, Calibration* calibration) {
   const Eigen::Index count = J.cols();
   const double variance = calibration->inflation * calibration->inflation;
   const Eigen::MatrixXd information = J.transpose() * J;
+  const Eigen::MatrixXd more = AddedByMemory(J, last.before, calibration->memory);
   Eigen::MatrixXd with_prior = information / variance;
   for (Eigen::Index k = 0; k < count; ++k) {
     const double deviation = parameters[k].prior_deviation;
     if (std::isfinite(deviation)) with_prior(k, k) += 1 / (deviation * deviation);
   }
-  const Eigen::MatrixXd data_only = variance * GeneralisedCovariance(information);
-  calibration->covariance = GeneralisedCovariance(with_prior);
+  const Eigen::MatrixXd data_only = variance * Widened(GeneralisedCovariance(information), more);
+  calibration->covariance = Widened(GeneralisedCovariance(with_prior), more / variance);
   for (Eigen::Index k = 0; k < count; ++k) {
     const CalibratedParameter& parameter = parameters[k];
     const double value = calibration->parameters[k], free = ToFree(parameter, value);
@@ -377,11 +409,12 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
   CHECK(last.usable) << "the solution could be predicted before: " << last.message;
   calibration.rms = RootMeanSquare(last.residual);
   calibration.inflation = std::max(1.0, calibration.rms);
+  calibration.memory = MemoryOf(last);
   if (count > 0) {
     Eigen::MatrixXd J = last.jacobian;
     for (int k = 0; k < count; ++k)
       if (parameters[k].log_scale) J.col(k) *= calibration.parameters[k];
-    Estimate(parameters, J, &calibration);
+    Estimate(parameters, last, J, &calibration);
   }
   return calibration;
 }

@@ -35,6 +35,9 @@ struct Prediction {
   std::string message;
   Eigen::VectorXd residual;  // whitened
   Eigen::MatrixXd jacobian;  // ∂residual/∂θ; 0 × 0 where it was not asked for
+  // Of each row, the row of the same quantity one frame before; −1 in its first frame. Empty: rows
+  // have no order.
+  std::vector<Eigen::Index> before = {};
 };
 // Must be a function of θ alone. `with_jacobian` false: the residual will do.
 using PredictionFunction =
@@ -54,8 +57,8 @@ struct CalibrationOptions {
 // What the data says of one parameter.
 struct ParameterEstimate {
   double value = 0;  // SI
-  // Standard deviation of φ: from the data alone, with all other parameters free, scaled by
-  // Calibration::inflation; and with the prior. Infinite where the data says nothing.
+  // Standard deviation of φ: from the data alone, with all other parameters free, and with the
+  // prior; of noise as Calibration::inflation and memory say. Infinite where the data says nothing.
   double deviation = std::numeric_limits<double>::infinity();
   double posterior_deviation = std::numeric_limits<double>::infinity();
   // 95 % interval of θ, prior included.
@@ -81,11 +84,17 @@ struct Calibration {
   int predictions = 0;
   Eigen::VectorXd parameters;
   std::vector<ParameterEstimate> estimates;
-  Eigen::MatrixXd covariance;     // of φ, prior and inflation included
+  Eigen::MatrixXd covariance;     // of φ; prior, inflation and memory included
   double start_rms = 0, rms = 0;  // √(‖r‖²/n) before and after
   // Variances are multiplied by its square: max(1, rms), as a model that misses the data by more
   // than the noise knows its parameters less well than the noise alone would let it.
   double inflation = 1;
+  // a: what remains of a frame's error in the next, as the residual has it, 0 to 0.9. Errors that
+  // last make slow changes less certain than as many unrelated ones would: with R_ij = a^|i−j|
+  // between the frames of a quantity and P the priors' variances, the estimate's covariance is
+  //   H⁻¹ (Jᵀ R J/v + P⁻¹) H⁻¹,  H = JᵀJ/v + P⁻¹,  v = inflation²
+  // (least squares under correlated errors: White, Econometrica 48, 1980).
+  double memory = 0;
 };
 
 // √(‖r‖²/n); 0 for an empty residual.

@@ -215,6 +215,10 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
     return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
   };
   part.residual = whitened(misfit.residual);
+  const Eigen::Index rows = part.residual.size();
+  const Eigen::Index series = rows / static_cast<Eigen::Index>(std::max<size_t>(1, frames.size()));
+  for (Eigen::Index row = 0; row < rows; ++row)
+    part.before.push_back(row < series ? -1 : row - series);
   if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.by, 0));
   *observed = std::move(misfit.observed);
   return part;
@@ -248,6 +252,8 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   for (const Prediction& part : parts) {
     all.residual.segment(row, part.residual.size()) = part.residual;
     if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
+    for (const Eigen::Index before : part.before)
+      all.before.push_back(before < 0 ? before : row + before);
     row += part.residual.size();
   }
   return all;
