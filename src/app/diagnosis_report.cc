@@ -24,7 +24,9 @@ std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share);
 std::string SizeText(const RecordedEffect& effect) {
   std::vector<std::string> sizes;
   for (const RecordedSize& size : effect.sizes)
-    sizes.push_back(fmt::format("{:.3g} ± {:.2g}", size.expected, size.deviation));
+    sizes.push_back(size.refitted ? fmt::format("{:.3g} [{:.3g}, {:.3g}]", size.refitted->value,
+                                                size.refitted->low, size.refitted->high)
+                                  : fmt::format("{:.3g} ± {:.2g}", size.expected, size.deviation));
   const std::string all = fmt::format("{}", fmt::join(sizes, ", "));
   const std::string unit = effect.sizes.front().unit;
   return (effect.sizes.size() > 1 ? "(" + all + ")" : all) + (unit.empty() ? "" : " " + unit);
@@ -71,7 +73,7 @@ void PrintRanking(const DiagnosisRecord& diagnosis) {
              PaddedLeft("share", 10));
   // In σ less what the nuisances in the model do, which is what is judged; in mm with that.
   PrintRow({"effect", "expected", "refitted", "expected", "refitted", "raw", "absorbed",
-            "expected size"});
+            "size [95 %], or expected ±"});
   PrintRow({"(the model as it is)", "", "", "",
             fmt::format("{:.1f} σ", diagnosis.errors.without_nuisances),
             MillimetreText(diagnosis.errors), "", ""});

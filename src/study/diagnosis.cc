@@ -245,8 +245,10 @@ class Refits {
     effect->refitted = true;
     effect->refit_message = refit.message;
     effect->errors = refit.errors;
-    effect->calibration = refit.calibration;
-    if (refit.message.empty()) effect->values = refit.effect;
+    if (refit.message.empty()) {
+      effect->values = refit.effect;
+      effect->sizes = refit.sizes;
+    }
     return refit;
   }
   const FittedHypothesis& Best() const {

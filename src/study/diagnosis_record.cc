@@ -16,9 +16,9 @@ namespace {
 
 using nlohmann::json;
 
-// JSON has no infinity: null.
-double FromNumber(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+// JSON has no infinity, of either sign: null.
+double FromNumber(const json& value, double sign = 1) {
+  return value.is_null() ? sign * std::numeric_limits<double>::infinity() : value.get<double>();
 }
 
 std::optional<double> OptionalFrom(const json& entry, const std::string& field) {
@@ -53,9 +53,17 @@ RecordedEffect EffectFrom(const json& entry, bool has_held_out) {
   effect.explained = entry.at("explained_share");
   effect.absorbed = entry.at("absorbed_share");
   effect.expected_in_noise = entry.at("expected_held_out_in_noise");
-  for (const json& size : entry.at("sizes"))
-    effect.sizes.push_back({size.at("parameter"), size.at("unit"), size.at("expected"),
-                            FromNumber(size.at("deviation")), FromNumber(size.at("detectable"))});
+  for (const json& size : entry.at("sizes")) {
+    effect.sizes.push_back({size.at("parameter"),
+                            size.at("unit"),
+                            size.at("expected"),
+                            FromNumber(size.at("deviation")),
+                            FromNumber(size.at("detectable")),
+                            {}});
+    if (const json& found = size.at("refitted"); !found.is_null())
+      effect.sizes.back().refitted = {found.at("value"), FromNumber(found.at("low_95"), -1),
+                                      FromNumber(found.at("high_95"))};
+  }
   effect.look_alikes = entry.at("look_alikes").get<std::vector<std::string>>();
   effect.refitted = entry.at("refitted");
   effect.errors.has_held_out = has_held_out;
@@ -109,7 +117,13 @@ json EffectJson(const RankedEffect& effect) {
                      {"unit", effect.scored.units[k]},
                      {"expected", effect.scored.score.size[at]},
                      {"deviation", Number(effect.scored.score.deviation[at])},
-                     {"detectable", Number(effect.scored.score.detectable[at])}});
+                     {"detectable", Number(effect.scored.score.detectable[at])},
+                     {"refitted", nullptr}});
+    if (k < effect.sizes.size()) {
+      const ParameterEstimate& found = effect.sizes[k];
+      sizes.back()["refitted"] = {
+          {"value", found.value}, {"low_95", Number(found.low)}, {"high_95", Number(found.high)}};
+    }
   }
   json entry = {{"effect", effect.scored.candidate.type},
                 {"variant", effect.scored.candidate.variant},
@@ -151,7 +165,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   json untried = json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  json all = {{"schema_version", 5},
+  json all = {{"schema_version", 6},
               {"verdict", VerdictName(diagnosis.verdict)},
               {"effects", diagnosis.effects},
               {"explanation", diagnosis.explanation},

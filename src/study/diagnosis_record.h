@@ -16,6 +16,10 @@ struct RecordedSize {
   std::string parameter, unit;
   double expected = 0, deviation = 0;
   double detectable = 0;  // the smallest that these recordings could have shown
+  struct Interval {
+    double value = 0, low = 0, high = 0;  // 95 %
+  };
+  std::optional<Interval> refitted;  // after a usable refit; not of a pilot
 };
 
 // An effect in the best of its variants (Score, RankedEffect).

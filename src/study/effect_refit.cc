@@ -236,6 +236,11 @@ class ExtendedProblem {
     return effect_->candidate.replaces_material ? *study_.effects.front() : *study_.effects.back();
   }
   Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
+  // Of a calibration's estimates, those of what makes the effect's size.
+  std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const {
+    const auto first = calibration.estimates.begin() + shared_;
+    return {first, first + static_cast<Eigen::Index>(effect_->candidate.amplitude.size())};
+  }
 
   // Where a fit is to begin.
   Eigen::VectorXd Start() const {
@@ -358,7 +363,10 @@ EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& valu
     refit.calibration.estimates.resize(static_cast<size_t>(own));
     refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
-    if (effect != nullptr) refit.effect = extended.OwnEffect().Parameters();
+    if (effect != nullptr) {
+      refit.effect = extended.OwnEffect().Parameters();
+      refit.sizes = extended.SizesIn(refit.calibration);
+    }
     refit.message = refit.hypothesis.misfit.message;
     if (refit.hypothesis.misfit.usable) {
       refit.errors.without_nuisances = HeldOutInNoise(

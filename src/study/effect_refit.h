@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "study/calibration_problem.h"
@@ -44,7 +45,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 struct EffectRefit {
   std::string message;  // why it is not usable; empty: it is
   Calibration calibration;
-  Eigen::VectorXd effect;  // parameters of the effect there, in the order of its card
+  Eigen::VectorXd effect;                // parameters of the effect there, in the order of its card
+  std::vector<ParameterEstimate> sizes;  // of those that make its size; none of a pilot
   ModelErrors errors;
   // At the parameters that are best for the fitted frames, and for all.
   FittedHypothesis at_fit, hypothesis;

@@ -44,7 +44,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   const HiddenEffect& hidden = trial.hidden.front();
   const RankedEffect* effect = Find(diagnosis, hidden.type);
   if (effect == nullptr || hidden.amplitude.empty()) return;  // no size to be compared
-  Calibration calibration = effect->calibration;
+  std::vector<ParameterEstimate> sizes = effect->sizes;
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
     Progress progress(Silent());
@@ -52,17 +52,16 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
         Refit(problem, values, &effect->scored, {}, problem.Linearise(values, false),
               diagnosis.present_in_noise > kFarOff, &progress);
     if (!refit.message.empty()) return;
-    calibration = refit.calibration;
+    sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;
   } else if (!effect->refit_message.empty()) {
     return;
   }
   outcome->has_truth = true;
   outcome->error_after = in_noise * InTrueNoise(trial, problem);
-  const Eigen::Index shared = static_cast<Eigen::Index>(problem.study().fitted.size());
   double difference = 0, size = 0;
   for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
-    const ParameterEstimate& estimate = calibration.estimates[static_cast<size_t>(shared) + k];
+    const ParameterEstimate& estimate = sizes[k];
     const double truth = hidden.parameters.at(hidden.amplitude[k]);
     const double detectable = effect->scored.score.detectable[static_cast<Eigen::Index>(k)];
     difference += std::pow((estimate.value - truth) / detectable, 2);

@@ -35,8 +35,10 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
     EXPECT_TRUE(effect.refitted);
     EXPECT_LT(effect.errors.in_noise, kModelError);
     // 1/s; the interval's width is a tenth of it.
-    const double alpha = effect.calibration.parameters[1];
-    EXPECT_NEAR(alpha, truth.alpha, 0.15 * truth.alpha);
+    ASSERT_EQ(effect.sizes.size(), 1u);
+    EXPECT_NEAR(effect.sizes[0].value, truth.alpha, 0.15 * truth.alpha);
+    EXPECT_LT(effect.sizes[0].low, effect.sizes[0].value);
+    EXPECT_GT(effect.sizes[0].high, effect.sizes[0].value);
   }
 }
 
@@ -72,6 +74,12 @@ TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
   scored.units = {"kg/m^3"};
   scored.score.size = scored.score.deviation = Eigen::VectorXd::Ones(1);
   scored.score.detectable = Eigen::VectorXd::Constant(1, INFINITY);
+  diagnosis.ranking.push_back(diagnosis.ranking.back());
+  RankedEffect& refitted = diagnosis.ranking.back();
+  refitted.refitted = true;
+  refitted.sizes.resize(1);
+  refitted.sizes[0].value = 2;
+  refitted.sizes[0].low = 1;
   const TemporaryFolder folder;
   SaveDiagnosis(diagnosis, folder / "diagnosis.json");
   std::ifstream stream(folder / "diagnosis.json");
@@ -79,6 +87,13 @@ TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
   EXPECT_EQ(written["verdict"], "not in library");
   EXPECT_EQ(written["ranking"][0]["effect"], "drag");
   EXPECT_TRUE(written["ranking"][0]["sizes"][0]["detectable"].is_null());
+  const DiagnosisRecord read = ReadDiagnosisFile(folder / "diagnosis.json");
+  EXPECT_EQ(read.ranking[0].sizes[0].expected, 1);
+  EXPECT_FALSE(read.ranking[0].sizes[0].refitted.has_value());
+  ASSERT_TRUE(read.ranking[1].sizes[0].refitted.has_value());
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->value, 2);
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->low, 1);
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
 }
 
 }  // namespace
