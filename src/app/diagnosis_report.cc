@@ -73,7 +73,7 @@ void PrintRanking(const DiagnosisRecord& diagnosis) {
              PaddedLeft("share", 10));
   // In σ less what the nuisances in the model do, which is what is judged; in mm with that.
   PrintRow({"effect", "expected", "refitted", "expected", "refitted", "raw", "absorbed",
-            "size [95 %], or expected ±"});
+            "size [95 %] or ±"});
   PrintRow({"(the model as it is)", "", "", "",
             fmt::format("{:.1f} σ", diagnosis.errors.without_nuisances),
             MillimetreText(diagnosis.errors), "", ""});

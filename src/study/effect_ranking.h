@@ -12,31 +12,15 @@
 #include "core/progress.h"
 #include "study/calibration_problem.h"
 #include "study/candidates.h"
+#include "study/hypothesis_score.h"
 #include "study/linear_misfit.h"
 #include "study/nuisance_candidates.h"
 #include "study/pilot_hypotheses.h"
 
 namespace lacuna {
 
-// Standard deviations by which an effect must stand out to be noticed among some dozens in four
-// cases of five: what "detectable" means.
-inline constexpr double kStandsOut = 5;
-
 // Of having tried so many rivals, as a logarithm of odds.
 double Price(size_t rivals);
-
-// What first order says about one hypothesis.
-struct Score {
-  double evidence = 0;        // ln of the odds against the model as it is, less the price of trying
-  Eigen::VectorXd size;       // of the candidate's amounts, in their units
-  Eigen::VectorXd deviation;  // of it
-  Eigen::VectorXd detectable;  // the smallest sizes that would have been noticed; may be infinite
-  double explained = 0;        // share of the squared misfit, of all frames, that goes
-  // Share of what the effect does to the misfit that the fitted parameters can do as well: 1, it
-  // cannot be seen at all.
-  double absorbed = 1;
-  double held_out_in_noise = 0;  // expected error of the held-out frames, in σ; of all without any
-};
 
 // An effect in one of its variants.
 struct ScoredVariant {
