@@ -79,16 +79,22 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   return stage;
 }
 
+// Of the recordings' files, by their names in them.
+std::map<std::string, std::string> InputHashes(const PredictionStudy& study) {
+  std::map<std::string, std::string> hashes;
+  for (const PredictedRecording& item : study.recordings)
+    for (const std::filesystem::path& file : RecordingFiles(item.recording))
+      hashes[item.name + "/" +
+             file.lexically_proximate(item.recording.file.parent_path()).generic_string()] =
+          HashFile(file);
+  return hashes;
+}
+
 }  // namespace
 
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress) {
   RunDirectory run(study.output);
-  std::map<std::string, std::string> inputs;
-  for (const PredictedRecording& item : study.recordings)
-    for (const std::filesystem::path& file : RecordingFiles(item.recording))
-      inputs[item.name + "/" +
-             file.lexically_proximate(item.recording.file.parent_path()).generic_string()] =
-          HashFile(file);
+  const std::map<std::string, std::string> inputs = InputHashes(study);
   run.Begin(study.configuration, inputs, 0);
 
   nlohmann::json behind_mesh = study.configuration.at("mesh");
@@ -133,17 +139,27 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   }
   const std::filesystem::path experiment = (run / opened.record.experiment).lexically_normal();
   opened.study = ReadPredictionStudy(Config::Load(experiment));
+  const Manifest manifest = LoadManifest(run / "manifest.json");
+  const auto changed = [&](const std::string& what) {
+    return InputError(
+        fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(), what));
+  };
   // As text: a bound that is infinite is null in the file.
-  if (opened.study.configuration.dump() !=
-      LoadManifest(run / "manifest.json").configuration.dump()) {
-    throw InputError(fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(),
-                                 experiment.string()));
+  if (opened.study.configuration.dump() != manifest.configuration.dump())
+    throw changed(experiment.string());
+  const std::map<std::string, std::string> inputs = InputHashes(opened.study);
+  for (const auto& [file, hash] : inputs) {
+    const auto then = manifest.inputs.find(file);
+    if (then == manifest.inputs.end() || then->second != hash) throw changed(file);
   }
+  if (inputs.size() != manifest.inputs.size()) throw changed("the list of its recordings' files");
   opened.study.time_step = opened.record.time_step;
   opened.mesh = ReadReferenceBody(FinishedStage(run, "mesh")).mesh;
   opened.values.resize(static_cast<Eigen::Index>(opened.record.parameters.size()));
   for (size_t k = 0; k < opened.record.parameters.size(); ++k)
     opened.values[static_cast<Eigen::Index>(k)] = opened.record.parameters[k].estimate.value;
+  for (size_t k = 0; k < opened.study.fitted.size(); ++k)
+    SetParameter(opened.study.fitted[k], opened.values[static_cast<Eigen::Index>(k)]);
   return opened;
 }
 

@@ -19,15 +19,16 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
 // Of a finished run. Throws InputError.
 CalibrationRecord LoadCalibration(const std::filesystem::path& run);
 
-// A finished run, opened again: its experiment is read anew and must be the one that was fitted.
+// A finished run, opened again: its experiment and recordings are read anew and must be what was
+// fitted.
 struct FittedRun {
-  PredictionStudy study;
+  PredictionStudy study;  // its effects as they were fitted
   CalibrationRecord record;
   TetMesh mesh;
   Eigen::VectorXd values;  // of all parameters
 };
-// Throws InputError when the run is not finished or its fit not usable, or when the experiment has
-// changed since.
+// Throws InputError when the run is not finished or its fit not usable, or when the experiment or
+// a recording has changed since.
 FittedRun OpenRun(const std::filesystem::path& run);
 
 }  // namespace lacuna

@@ -79,8 +79,6 @@ bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& optio
 
 DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::path& run,
                              const DiagnosisOptions& options, Progress* progress) {
-  for (size_t k = 0; k < fitted.study.fitted.size(); ++k)
-    SetParameter(fitted.study.fitted[k], fitted.values[static_cast<Eigen::Index>(k)]);
   if (IsDiagnosed(run, options)) {
     progress->Begin("diagnosis of " + fitted.study.name, 0);
     DiagnosisRecord record = ReadDiagnosisFile(ResultFile(run));
