@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <string>
 
+#include "core/error.h"
 #include "study/physics.h"
 
 namespace lacuna {
@@ -30,8 +32,21 @@ Eigen::Isometry3d RigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3
 
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
     : recording_(recording), model_(*model) {
+  std::map<int, std::string> holder;  // by node: the region's name
   const auto nodes_in = [&](const Region& region) {
-    return NamingWhere(recording.file.string(), [&] { return NodesIn(region, reference.nodes); });
+    return NamingWhere(recording.file.string(), [&] {
+      const Eigen::VectorXi nodes = NodesIn(region, reference.nodes);
+      for (const int node : nodes) {
+        const auto [held, is_new] = holder.emplace(node, region.name);
+        if (!is_new)
+          throw InputError(fmt::format("regions \"{}\" and \"{}\" hold the same part of the object",
+                                       held->second, region.name));
+      }
+      if (holder.size() == static_cast<size_t>(reference.nodes.cols()))
+        throw InputError(fmt::format(
+            "region \"{}\" holds all of the object: nothing is left to move", region.name));
+      return nodes;
+    });
   };
   for (const Region& region : recording.fixed) model->grips.push_back({nodes_in(region), {}});
   for (const RecordedGrip& grip : recording.grips) {

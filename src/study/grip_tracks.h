@@ -18,7 +18,7 @@ namespace lacuna {
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
-  // when a region holds no node.
+  // when a region holds no node, two hold the same, or all are held.
   GripTracks(const Recording& recording, const TetMesh& reference, Model* model);
 
   // All grips rest at this time.

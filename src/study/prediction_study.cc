@@ -45,16 +45,23 @@ double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   return largest;
 }
 
+// Without a hold the first frame must be an equilibrium. A body that already moves is not: its
+// first step is a good part of all its motion, and more than the least step of any two frames,
+// which is noise or a turning point.
 void RequireStaticStart(const Config& config, const PredictedRecording& item) {
+  constexpr double kLarge = 0.25, kBeyondNoise = 3;
   const Recording& recording = item.recording;
-  if (item.hold || recording.kind != FrameKind::kMarkers) return;
-  // Without a hold the first frame must be an equilibrium. A body that already moves is not.
+  if (item.hold || recording.kind != FrameKind::kMarkers || item.frames.size() < 3) return;
   const auto& positions = recording.markers.positions;
-  if (item.frames.size() < 3) return;
   const Eigen::Matrix3Xd& first = positions[item.frames[0]];
   const double step = LargestMove(first, positions[item.frames[1]]);
-  const double whole = LargestMove(first, positions[item.frames.back()]);
-  if (step > 0.25 * whole && step > 0)
+  double farthest = 0, least = std::numeric_limits<double>::infinity();
+  for (size_t k = 1; k < item.frames.size(); ++k) {
+    const Eigen::Matrix3Xd& here = positions[item.frames[k]];
+    farthest = std::max(farthest, LargestMove(first, here));
+    if (k > 1) least = std::min(least, LargestMove(positions[item.frames[k - 1]], here));
+  }
+  if (step > kLarge * farthest && step > kBeyondNoise * least)
     config.Fail("recording",
                 "the object moves already between its first two frames; a prediction starts from "
                 "rest: give `from:`, or `hold:`");
@@ -281,6 +288,22 @@ double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
   return shortest;
 }
 
+// A step of the order of the recording follows no motion, and with millions of them a fit would not
+// end.
+void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
+  constexpr double kFewest = 10, kMost = 1e6;
+  double longest = 0;
+  for (const PredictedRecording& item : study.recordings)
+    longest = std::max(longest, item.recording.times[item.frames.back()] -
+                                    item.recording.times[item.frames.front()]);
+  const double steps = longest / study.time_step;
+  if (steps < kFewest || steps > kMost)
+    motion.Fail("time_step",
+                fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
+                            "sound",
+                            steps, longest, kFewest, kMost));
+}
+
 }  // namespace
 
 bool IsPredictionStudy(const Config& config) { return config.Has("recordings"); }
@@ -311,9 +334,16 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
   study.scan = ReadScanSettings(config);
-  for (const Config& item : config.Items("recordings"))
-    study.recordings.push_back(ReadRecordingEntry(item, study.effects.front().get(), study.scan,
-                                                  /*tells_the_shape=*/study.recordings.empty()));
+  for (const Config& item : config.Items("recordings")) {
+    PredictedRecording recording = ReadRecordingEntry(item, study.effects.front().get(), study.scan,
+                                                      /*tells_the_shape=*/study.recordings.empty());
+    for (const PredictedRecording& other : study.recordings)
+      if (other.name == recording.name)
+        item.Fail("name", fmt::format("\"{}\" is that of another recording already; without one, "
+                                      "an entry has its recording's",
+                                      recording.name));
+    study.recordings.push_back(std::move(recording));
+  }
   if (study.recordings.empty()) config.Fail("recordings", "is empty");
   if (std::none_of(study.recordings.begin(), study.recordings.end(),
                    [](const PredictedRecording& item) { return item.fitted; }))
@@ -321,6 +351,8 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   RequireSomethingToFit(config, study);
   if (study.chooses_time_step)
     study.time_step = std::min(kLongestStep, 0.5 * ShortestSpacing(study.recordings));
+  else
+    RequireSoundStep(*motion, study);
   const auto& density = study.recordings.front().recording.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);

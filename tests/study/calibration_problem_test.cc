@@ -289,6 +289,24 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
       MessageOf(ReadBarStudy(folder.Path(), {{"[0.078 m, 0 m, 0 m]", "[0.1 m, 0 m, 0 m]"}})),
       testing::HasSubstr("hold of bar"));
   EXPECT_EQ(MessageOf(ReadBarStudy(folder.Path())), "nothing was refused");
+  const auto message_with_clamp = [&](const std::string& regions) {
+    std::ifstream stream(folder / "recording.yaml");
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const size_t first = text.find("fixed: [") + 8;
+    text.replace(first, text.find("]\n", first) - first, regions);
+    std::ofstream(folder / "recording.yaml") << text;
+    return MessageOf(ReadBarStudy(folder.Path()));
+  };
+  const std::string clamp =
+      "{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}";
+  EXPECT_EQ(message_with_clamp(clamp), "nothing was refused");
+  EXPECT_THAT(
+      message_with_clamp(clamp +
+                         ", {name: end, box: {min: [-1 m, -1 m, -1 m], max: [0.001 m, 1 m, 1 m]}}"),
+      testing::HasSubstr("regions \"clamp\" and \"end\" hold the same part"));
+  EXPECT_THAT(message_with_clamp("{name: all, half_space: {point: [1 m, 0 m, 0 m], "
+                                 "normal: [-1, 0, 0]}}"),
+              testing::HasSubstr("region \"all\" holds all of the object"));
 }
 
 // A steady motion adds nothing, a marker that is not seen is passed over.

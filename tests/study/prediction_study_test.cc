@@ -238,6 +238,41 @@ TEST_F(ReadingAPredictionStudy, RefusesAMotionWithoutInertia) {
               HasSubstr("motion.scheme: a prediction needs inertia"));
 }
 
+TEST_F(ReadingAPredictionStudy, RefusesStepsThatFollowNoMotion) {
+  EXPECT_THAT(MessageAfter({{"time_step: 1.5 ms", "time_step: 0.1 s"}}),
+              HasSubstr("motion.time_step: makes 2.5 steps"));
+  EXPECT_THAT(MessageAfter({{"time_step: 1.5 ms", "time_step: 1e-12 s"}}),
+              HasSubstr("motion.time_step: makes 2.5e+11 steps"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesTwoRecordingsOfOneName) {
+  std::string text = BarExperiment(folder_.Path());
+  const std::string entry = text.substr(text.find("  - recording: "));
+  try {
+    ReadPredictionStudy(Config::Parse(text + entry, (folder_ / "study.yaml").string()));
+    ADD_FAILURE() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("recordings[1].name: \""));
+    EXPECT_THAT(problem.what(), HasSubstr("is that of another recording already"));
+  }
+}
+
+TEST_F(ReadingAPredictionStudy, TakesTheNoiseOfRestForNoMotion) {
+  // Moved in the middle, and at rest in the end where it was in the beginning.
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 1e-4);
+  for (const double far : {0.0, 0.01}) {
+    std::vector<Eigen::Matrix3Xd> markers;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const double away = frame > 8 && frame < 18 ? far : 0;
+      markers.emplace_back(BarMarkerPlaces().array() + away + 2e-3);
+      for (double& value : markers.back().reshaped()) value += normal(random);
+    }
+    WriteBarRecording(folder_.Path(), markers);
+    EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
+  }
+}
+
 TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
   WriteBarRecording(folder_.Path(), Moving(0.001, 0));
   EXPECT_EQ(MessageAfter({}), "nothing was refused");  // held until 0.04 s
