@@ -59,7 +59,8 @@ void PrintEffect(const RecordedEffect& effect) {
             effect.sizes.size() == 1 ? SizeText(effect) : ""});
   std::vector<std::string> more;
   if (effect.sizes.size() > 1) more.push_back(SizeText(effect));
-  if (!effect.variant.empty()) more.push_back(effect.variant);
+  if (!effect.variant.empty())
+    more.push_back((effect.HasUsableRefit() ? "refitted from " : "") + effect.variant);
   if (!effect.look_alikes.empty())
     more.push_back(fmt::format("looks like {}", fmt::join(effect.look_alikes, ", ")));
   if (!effect.refit_message.empty()) more.push_back(effect.refit_message);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "app/fit_report.h"
 #include "core/error.h"
 #include "geometry/mesh_io.h"
 #include "geometry/surface_check.h"
@@ -15,6 +16,7 @@
 #include "record/run_directory.h"
 #include "record/run_record.h"
 #include "scan/recording.h"
+#include "study/calibration_run.h"
 
 namespace lacuna {
 namespace {
@@ -58,6 +60,10 @@ void DescribeRun(const std::filesystem::path& folder) {
     fmt::print("  stage {:10} {} files\n", stage, result.files.size());
   if (!manifest.finished) return;
   for (const auto& [stage, result] : manifest.stages) FinishedStage(folder, stage);  // whole?
+  if (manifest.stages.count("calibration") > 0) {
+    PrintCalibration(LoadCalibration(folder));
+    return;
+  }
   const RunRecord record = LoadRunRecord(folder / "results");
   fmt::print("  recording {}, {} frames, {} nodes, {} tetrahedra of order {}\n", record.recording,
              record.frames.size(), record.mesh.node_count, record.mesh.tet_count,

@@ -220,4 +220,14 @@ TrialCase LoadCase(const std::filesystem::path& file) {
   }
 }
 
+std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder))
+    throw InputError(folder.string() + ": there is no such folder");
+  std::vector<std::filesystem::path> cases;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
+  std::sort(cases.begin(), cases.end());
+  return cases;
+}
+
 }  // namespace lacuna

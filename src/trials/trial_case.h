@@ -68,6 +68,9 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
 void SaveCase(const TrialCase& trial, const std::filesystem::path& file);
 TrialCase LoadCase(const std::filesystem::path& file);
 
+// The folders of a suite's cases, by name. Throws InputError where there is no such folder.
+std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_TRIALS_TRIAL_CASE_H_

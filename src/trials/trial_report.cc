@@ -71,13 +71,9 @@ std::string Share(int part, int whole) {
 
 TrialReport ReportTrials(const std::filesystem::path& folder) {
   TrialReport report;
-  std::vector<std::filesystem::path> cases;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
-  std::sort(cases.begin(), cases.end());
   std::map<std::string, TrialTally> tallies;
   std::map<std::string, std::vector<double>> before, after;
-  for (const std::filesystem::path& own : cases) {
+  for (const std::filesystem::path& own : CasesIn(folder)) {
     const TrialCase trial = LoadCase(own / "truth.json");
     if (!std::filesystem::exists(own / "outcome.json")) {
       report.unfinished.push_back(trial.name);

@@ -167,10 +167,7 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
 }
 
 int RunTrials(const std::filesystem::path& folder, int workers) {
-  std::vector<std::filesystem::path> cases;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (std::filesystem::exists(entry.path() / "truth.json")) cases.push_back(entry.path());
-  std::sort(cases.begin(), cases.end());
+  const std::vector<std::filesystem::path> cases = CasesIn(folder);
   const auto keep_failure = [&](size_t k, const std::string& reason) {
     WriteFileAtomically(cases[k] / "failed.txt", reason + "\n");
   };

@@ -185,6 +185,9 @@ TEST(CommandLine, DiagnosesTheBundledRecordingAndKeepsALedger) {
   EXPECT_THAT(first.said, HasSubstr("tried  viscoelastic_branch"));
   EXPECT_TRUE(std::filesystem::exists(folder / "run/ledger.json"));
   EXPECT_THAT(Lacuna(command).said, HasSubstr("read back"));
+  const Ending info = Lacuna("info " + (folder / "run").string());
+  EXPECT_EQ(info.status, 0) << info.said;
+  EXPECT_THAT(info.said, HasSubstr("young_modulus"));
 }
 
 // So far off that a whole step towards it overshoots.
