@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
 #include "core/npy.h"
 #include "scan/delimited_table.h"
 #include "scan/frame_list.h"
@@ -192,9 +193,16 @@ void ReadMarkerFrames(const Config& frames, Recording* recording) {
 }
 
 void ChooseMarkerFrames(const std::vector<int>& chosen, Recording* recording) {
+  constexpr double kFarthest = 1e4;  // m, from the origin: no measurement is beyond
   std::vector<Eigen::Matrix3Xd> positions;
   for (const int i : chosen) {
     positions.push_back(recording->world_from_file * recording->markers.positions[i]);
+    for (Eigen::Index m = 0; m < positions.back().cols(); ++m)
+      if (positions.back().col(m).cwiseAbs().maxCoeff() > kFarthest)
+        throw InputError({recording->marker_file.string()},
+                         fmt::format("frame {}: marker {} is {:.3g} m away", i,
+                                     recording->markers.names[static_cast<size_t>(m)],
+                                     positions.back().col(m).cwiseAbs().maxCoeff()));
   }
   recording->markers.positions = std::move(positions);
   recording->markers.times =
@@ -210,7 +218,9 @@ void ReadMarkerPlaces(const Config& frames, Recording* recording) {
     const std::string name = item.Text("name");
     const auto found = std::find(markers.names.begin(), markers.names.end(), name);
     if (found == markers.names.end()) item.Fail("name", fmt::format("there is no marker {}", name));
-    recording->marker_places.col(found - markers.names.begin()) = item.Vector("position", kLength);
+    auto place = recording->marker_places.col(found - markers.names.begin());
+    if (place.allFinite()) item.Fail("name", "is listed twice");
+    place = item.Vector("position", kLength);
   }
 }
 

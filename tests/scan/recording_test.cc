@@ -279,6 +279,13 @@ TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
   EXPECT_THAT(
       LoadError(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [d]}]\n")),
       HasSubstr("has no marker \"d\""));
+  std::string twice = frames;
+  twice.insert(twice.find("{name: a,"), "{name: a, position: [0, 0, 2 mm]}, ");
+  EXPECT_THAT(LoadError(Yaml(twice, reference)),
+              HasSubstr("marker_places[1].name: is listed twice"));
+  folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z\n0.5,0,0,0,50,0,0\n0.6,0,1e300,0,0,0,0\n");
+  EXPECT_THAT(LoadError(Yaml(frames, reference)),
+              HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
 }
 
 TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
