@@ -210,6 +210,8 @@ class Refits {
     }
     effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
     effect->left_in_noise = InNoise(with.hypothesis);
+    effect->further = FurtherEvidenceOf(with.hypothesis, ranking_.tried,
+                                        effect->scored.candidate.type, diagnosis_.noise_level);
   }
   // By evidence after the refit; null: none has any.
   const RankedEffect* BestRefitted() const {

@@ -42,6 +42,7 @@ struct RankedEffect {
   double held_out_evidence = 0;  // the part of it that held-out frames alone give
   double explained = 0;          // share of the squared misfit that went
   double left_in_noise = 0;      // over all frames, adopted nuisances at their best, in σ
+  FurtherEvidence further;       // for another effect beside it
   Eigen::VectorXd values;        // the effect's parameters there; empty: there is no usable refit
   std::vector<ParameterEstimate> sizes;  // of those that make its size (scored.score.size)
 };

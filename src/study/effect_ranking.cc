@@ -301,6 +301,9 @@ EffectRanking HypothesisRanking::Result() {
   ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
                      Price(candidates_.size());
   ranking_.effects = ScoredEntries();
+  for (size_t c = 0; c < candidates_.size(); ++c)
+    ranking_.tried.push_back({candidates_[c].type, hypotheses_.by(Eigen::all, of_candidate_[c]),
+                              PriorsOf(candidates_[c])});
   misfit_.by.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);

@@ -60,8 +60,16 @@ struct AdoptedNuisances {
   bool HasMore() const { return by.cols() > always; }
 };
 
+// What a variant of an effect would change, in rows of a LinearisedMisfit.
+struct TriedVariant {
+  std::string type;
+  Eigen::MatrixXd by;
+  std::vector<LinearPrior> priors;
+};
+
 struct EffectRanking {
   std::vector<ScoredEffect> effects;  // by evidence, the best first
+  std::vector<TriedVariant> tried;    // all variants of all effects
   // Where nuisances were adopted beyond those that every model has: the effects as they stand
   // without, by evidence.
   std::vector<ScoredEffect> instead;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -166,6 +168,41 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
   const HypothesisEvidence all = EvidenceOf(refit.hypothesis, noise);
   const double fitted = EvidenceOf(refit.at_fit, noise, /*fitted_only=*/true).log_evidence;
   return {all.log_evidence, all.log_evidence - fitted, all.misfit};
+}
+
+FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
+                                  const std::vector<TriedVariant>& tried, const std::string& type,
+                                  const NoiseLevel& noise) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  Eigen::Index width = misfit.by.cols();
+  std::map<std::string, size_t> variants;
+  for (const TriedVariant& variant : tried) {
+    width += variant.by.cols();
+    ++variants[variant.type];
+  }
+  Eigen::MatrixXd columns(misfit.by.rows(), width);
+  columns.leftCols(misfit.by.cols()) = misfit.by;
+  std::vector<LinearPrior> priors = hypothesis.priors;
+  for (const TriedVariant& variant : tried) {
+    columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.by.cols()) = variant.by;
+    priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
+  }
+  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+                          WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
+  std::vector<int> chosen(hypothesis.priors.size());
+  std::iota(chosen.begin(), chosen.end(), 0);
+  const double before = model.Fit(chosen, noise.variance).log_evidence;
+  FurtherEvidence best;
+  int column = static_cast<int>(chosen.size());
+  for (const TriedVariant& variant : tried) {
+    std::vector<int> with = chosen;
+    for (size_t k = 0; k < variant.priors.size(); ++k) with.push_back(column++);
+    if (variant.type == type) continue;
+    const double evidence = model.Fit(with, noise.variance).log_evidence - before -
+                            Price(variants[variant.type]) - Price(variants.size());
+    if (evidence > best.evidence) best = {variant.type, evidence};
+  }
+  return best;
 }
 
 namespace {

@@ -61,6 +61,17 @@ struct RefitEvidence {
 };
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
+// The best of the effects that a refit leaves evidence for, to first order: with the changes that
+// they make at the model without the refitted one, less the price of trying them all.
+struct FurtherEvidence {
+  std::string type;
+  double evidence = 0;  // 0 and no type: none
+};
+// Of all but `type`, the refitted one.
+FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
+                                  const std::vector<TriedVariant>& tried, const std::string& type,
+                                  const NoiseLevel& noise);
+
 // From where first order expects the best parameters, or from `values` where that is nearer, or
 // part of the way where neither predicts as well as the model without the effect. Null `effect`:
 // the model as it is, with what was adopted, so that it is compared at its best too. Leaves the

@@ -117,7 +117,7 @@ std::string Total(const LedgerModel& model) {
 
 // The effects that lead from the first model to this one.
 std::string AddedUpTo(const Ledger& ledger, const LedgerModel& model) {
-  if (model.parent < 0) return "nothing that could be named";
+  if (model.parent < 0) return "nothing was added";
   const LedgerModel& parent = ledger.models[static_cast<size_t>(model.parent)];
   return (parent.parent < 0 ? "" : AddedUpTo(ledger, parent) + ", ") + model.added;
 }

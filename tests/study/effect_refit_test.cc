@@ -74,6 +74,36 @@ TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
 }
 
+// The evidence of the linear model with the other effect's change over that without, less the
+// price of having tried three; the refitted effect is none of the others.
+TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
+  FittedHypothesis hypothesis = MakeHypothesis(0.1);
+  LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(misfit.residual.size(), 0, 1);
+  const Eigen::VectorXd there = 1e-3 * (4 * std::numbers::pi * t).array().sin();
+  const std::vector<TriedVariant> tried = {
+      {"refitted", there, {{0, 1, false}}},
+      {"absent", 1e-3 * (9 * std::numbers::pi * t).array().cos(), {{0, 1, false}}},
+      {"there", there, {{0, 1, false}}}};
+  EXPECT_EQ(FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise).type, "");
+  misfit.residual += 0.2 * there;
+  const FurtherEvidence further = FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise);
+  EXPECT_EQ(further.type, "there");
+  const auto evidence = [&] {
+    return LinearModel(WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
+                       WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false),
+                       hypothesis.priors)
+        .FitAll(kNoise.variance)
+        .log_evidence;
+  };
+  const double without = evidence();
+  misfit.by.conservativeResize(Eigen::NoChange, 3);
+  misfit.by.col(2) = there;
+  hypothesis.priors.push_back({0, 1, false});
+  EXPECT_NEAR(further.evidence, evidence() - without - std::log(3), 1e-9);
+  EXPECT_GT(further.evidence, 10);
+}
+
 // With its parameter where it is best for all frames, or for the fitted ones.
 FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise, bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;

@@ -71,6 +71,34 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
+// Another effect beside it has much of its evidence.
+TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
+  Diagnosis diagnosis = SaggingBeam(12, 12);
+  diagnosis.ranking[0].further = {"drag", 14};
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << "a twentieth of 300 is 15";
+  diagnosis.ranking[0].further.evidence = 16;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
+  EXPECT_THAT(diagnosis.explanation, testing::HasSubstr("beside it those for drag are e^16"));
+  // A rival that explains as much leaves nothing.
+  diagnosis.effects.clear();
+  diagnosis.ranking[1].evidence = 295;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
+  diagnosis.effects.clear();
+  diagnosis.ranking[1].further = {"drag", 40};
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
+  // What the mesh may lend is no evidence.
+  diagnosis.nuisances.emplace_back().doubt = 20;
+  diagnosis.ranking[1].evidence = 150;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+}
+
 // What the held-out frames speak against is not named first, and may still be a rival.
 TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutFramesAlone) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
