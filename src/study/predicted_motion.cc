@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -99,6 +100,25 @@ Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) con
   return rest;
 }
 
+namespace {
+
+// A place that is half of the object's size away from it is none on it.
+void RequireMarkersNear(const Recording& recording, const TetMesh& mesh) {
+  constexpr double kFar = 0.5;
+  const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
+  const double size = box.diagonal().norm();
+  for (Eigen::Index m = 0; m < recording.marker_places.cols(); ++m) {
+    const double away = box.exteriorDistance(Eigen::Vector3d(recording.marker_places.col(m)));
+    if (away > kFar * size)
+      throw InputError(fmt::format(
+          "{}: marker_places: {} sits {:.3g} mm away from the object, which measures {:.3g} mm",
+          recording.file.string(), recording.markers.names[static_cast<size_t>(m)], 1e3 * away,
+          1e3 * size));
+  }
+}
+
+}  // namespace
+
 RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
                                const TetMesh& mesh, std::shared_ptr<const Body> body,
                                const SurfacePatches& patches)
@@ -118,6 +138,7 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
     MoveGrips(item_, reach, tells_the_shape, mesh, model_.body->boundary, &grips);
   } else {
     // The body has the elements of the mesh in an order of its own.
+    RequireMarkersNear(item_.recording, mesh);
     observer_ = std::make_unique<MarkerObserver>(item_.recording, model_.body->mesh);
     MoveGrips(item_, 0, tells_the_shape, mesh, model_.body->boundary, &grips);
   }

@@ -307,6 +307,14 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
   EXPECT_THAT(message_with_clamp("{name: all, half_space: {point: [1 m, 0 m, 0 m], "
                                  "normal: [-1, 0, 0]}}"),
               testing::HasSubstr("region \"all\" holds all of the object"));
+  WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
+  std::ifstream stream(folder / "recording.yaml");
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const size_t place = text.find("[", text.find("name: m2")) + 1;
+  text.replace(place, text.find(" m", place) - place, "0.5");
+  std::ofstream(folder / "recording.yaml") << text;
+  EXPECT_THAT(MessageOf(ReadBarStudy(folder.Path())),
+              testing::HasSubstr("marker_places: m2 sits 420 mm away from the object"));
 }
 
 // A steady motion adds nothing, a marker that is not seen is passed over.
