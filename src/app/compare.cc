@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.h"
@@ -51,6 +52,9 @@ void PrintParagraph(const std::string& text) {
 
 int Compare(const std::string& run, bool replay) {
   Comparison comparison = CompareRun(run);
+  // Fields of an earlier comparison are not this one's.
+  for (size_t r = 0; r < comparison.recordings.size(); ++r)
+    std::filesystem::remove_all(std::filesystem::path(run) / "comparison" / std::to_string(r));
   Progress progress;
   if (replay) CompareMotion(run, &progress, &comparison);
   SaveComparison(comparison, run);
