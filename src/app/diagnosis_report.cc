@@ -102,7 +102,8 @@ void PrintNuisances(const DiagnosisRecord& diagnosis) {
         "  {}{}{}{}   {}", PaddedRight(nuisance.name, 22),
         PaddedLeft(fmt::format("{:.1f}", nuisance.evidence), 9),
         PaddedLeft(nuisance.refitted ? fmt::format("{:.1f}", *nuisance.refitted) : "", 9),
-        PaddedLeft(Percent(nuisance.explained), 10), nuisance.adopted ? "in the model" : ""));
+        PaddedLeft(Percent(nuisance.explained), 10),
+        nuisance.adopted ? "in the model" : nuisance.what));
     lines.back().erase(lines.back().find_last_not_of(' ') + 1);
   }
   fmt::print("\n  {}{}{}{}\n", PaddedRight("nuisance", 22), PaddedLeft("evidence", 9),

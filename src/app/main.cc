@@ -23,9 +23,9 @@ namespace {
 constexpr char kFooter[] = R"(Start here:
   lacuna validate experiments/bend.yaml        check a file without running it
   lacuna reconstruct experiments/bend.yaml     scans -> model with forces; results/bend
-  lacuna fit experiments/silicone_beam.yaml    predict, and fit the model's parameters
-  lacuna compare results/silicone_beam         where and when that model fails
-  lacuna diagnose results/silicone_beam        which physical effect it lacks
+  lacuna fit experiments/hidden_effect.yaml    predict, and fit the model's parameters
+  lacuna compare results/hidden_effect         where and when that model fails
+  lacuna diagnose results/hidden_effect        which physical effect it lacks
   lacuna sweep plan experiments/sweeps/bend_grid.yaml FOLDER   many experiments at once
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own

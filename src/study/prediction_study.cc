@@ -208,6 +208,7 @@ std::vector<ModelParameter> ReadFitted(const Config& config,
     const ParameterCard& card = CardOf(parameter);
     prior.min = item.Quantity("min", card.dimension, card.bounds, prior.min);
     prior.max = item.Quantity("max", card.dimension, card.bounds, prior.max);
+    if (prior.min > prior.max) item.Fail("min", "is above max");
     if (!(prior.min <= prior.start && prior.start <= prior.max))
       item.Fail("name", fmt::format("starts at {:g} {}, outside {:g} to {:g}", prior.start,
                                     parameter.unit, prior.min, prior.max));

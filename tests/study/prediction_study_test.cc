@@ -199,6 +199,9 @@ TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
                             "\"young_modulus\""));
   EXPECT_THAT(MessageAfter({{"{name: mass_damping.alpha}", "{name: young_modulus}"}}),
               HasSubstr("is listed twice"));
+  EXPECT_THAT(MessageAfter(
+                  {{"{name: young_modulus}", "{name: young_modulus, min: 0.2 MPa, max: 0.1 MPa}"}}),
+              HasSubstr("fit.parameters[0].min: is above max"));
   EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, min: 0.2 MPa}"}}),
               HasSubstr("starts at 150000 Pa, outside 200000 to"));
 }
