@@ -135,13 +135,15 @@ json EffectJson(const RankedEffect& effect) {
                 {"look_alikes", effect.scored.look_alikes},
                 {"refitted", effect.refitted}};
   if (effect.refitted) {
-    entry["refit"] = {
-        {"message", effect.refit_message},
-        {"evidence", effect.evidence},
-        {"held_out_evidence", effect.held_out_evidence},
-        {"explained_share", effect.explained},
-        {"left_in_noise", effect.left_in_noise},
-        {"further", {{"effect", effect.further.type}, {"evidence", effect.further.evidence}}}};
+    entry["refit"] = {{"message", effect.refit_message},
+                      {"evidence", effect.evidence},
+                      {"held_out_evidence", effect.held_out_evidence},
+                      {"explained_share", effect.explained},
+                      {"left_in_noise", effect.left_in_noise},
+                      {"further",
+                       {{"effect", effect.further.type},
+                        {"evidence", effect.further.evidence},
+                        {"of_nuisance", effect.further.of_nuisance}}}};
     entry["refit"].update(ErrorsJson(effect.errors));
   }
   return entry;

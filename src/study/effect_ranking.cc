@@ -301,9 +301,18 @@ EffectRanking HypothesisRanking::Result() {
   ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
                      Price(candidates_.size());
   ranking_.effects = ScoredEntries();
-  for (size_t c = 0; c < candidates_.size(); ++c)
-    ranking_.tried.push_back({candidates_[c].type, hypotheses_.by(Eigen::all, of_candidate_[c]),
-                              PriorsOf(candidates_[c])});
+  for (const Entry& entry : entries_)
+    for (const size_t c : entry.variants)
+      ranking_.tried.push_back({candidates_[c].type, hypotheses_.by(Eigen::all, of_candidate_[c]),
+                                PriorsOf(candidates_[c]),
+                                Price(entry.variants.size()) + Price(entries_.size()), false});
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    const ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (!nuisance.adopted)
+      ranking_.tried.push_back({nuisance.candidate.name, nuisance.candidate.by,
+                                nuisance.candidate.priors,
+                                nuisance.candidate.price + Price(ranking_.nuisances.size()), true});
+  }
   misfit_.by.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);

@@ -60,16 +60,19 @@ struct AdoptedNuisances {
   bool HasMore() const { return by.cols() > always; }
 };
 
-// What a variant of an effect would change, in rows of a LinearisedMisfit.
+// What a variant of an effect, or a nuisance, would change, in rows of a LinearisedMisfit.
 struct TriedVariant {
   std::string type;
   Eigen::MatrixXd by;
   std::vector<LinearPrior> priors;
+  double price = 0;  // of having tried its rivals too
+  bool is_nuisance = false;
 };
 
 struct EffectRanking {
   std::vector<ScoredEffect> effects;  // by evidence, the best first
-  std::vector<TriedVariant> tried;    // all variants of all effects
+  // All variants of all effects, and the nuisances that are not in the model.
+  std::vector<TriedVariant> tried;
   // Where nuisances were adopted beyond those that every model has: the effects as they stand
   // without, by evidence.
   std::vector<ScoredEffect> instead;

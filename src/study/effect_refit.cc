@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -175,11 +174,7 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   Eigen::Index width = misfit.by.cols();
-  std::map<std::string, size_t> variants;
-  for (const TriedVariant& variant : tried) {
-    width += variant.by.cols();
-    ++variants[variant.type];
-  }
+  for (const TriedVariant& variant : tried) width += variant.by.cols();
   Eigen::MatrixXd columns(misfit.by.rows(), width);
   columns.leftCols(misfit.by.cols()) = misfit.by;
   std::vector<LinearPrior> priors = hypothesis.priors;
@@ -198,9 +193,13 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
     std::vector<int> with = chosen;
     for (size_t k = 0; k < variant.priors.size(); ++k) with.push_back(column++);
     if (variant.type == type) continue;
-    const double evidence = model.Fit(with, noise.variance).log_evidence - before -
-                            Price(variants[variant.type]) - Price(variants.size());
-    if (evidence > best.evidence) best = {variant.type, evidence};
+    const double evidence = model.Fit(with, noise.variance).log_evidence - before - variant.price;
+    if (variant.is_nuisance) {
+      best.of_nuisance = std::max(best.of_nuisance, evidence);
+    } else if (evidence > best.evidence) {
+      best.type = variant.type;
+      best.evidence = evidence;
+    }
   }
   return best;
 }

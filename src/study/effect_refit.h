@@ -62,10 +62,12 @@ struct RefitEvidence {
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
 // The best of the effects that a refit leaves evidence for, to first order: with the changes that
-// they make at the model without the refitted one, less the price of trying them all.
+// they make at the model without the refitted one, less the price of trying them all. And what it
+// leaves for the best of the nuisances.
 struct FurtherEvidence {
   std::string type;
   double evidence = 0;  // 0 and no type: none
+  double of_nuisance = 0;
 };
 // Of all but `type`, the refitted one.
 FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,

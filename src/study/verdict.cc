@@ -195,7 +195,7 @@ void Decide(Diagnosis* diagnosis) {
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
   const double chance = std::max({kNamed, diagnosis->control, lent, kLeavesMore * evidence});
   const auto leaves_more = [&](const RankedEffect* effect) {
-    return effect->further.evidence > chance;
+    return effect->further.evidence > std::max(chance, effect->further.of_nuisance + kLeastLead);
   };
   const std::vector<const RankedEffect*> close =
       ByEvidence(diagnosis->ranking,

@@ -74,8 +74,8 @@ TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
 }
 
-// The evidence of the linear model with the other effect's change over that without, less the
-// price of having tried three; the refitted effect is none of the others.
+// The evidence of the linear model with the other effect's change over that without, less its
+// price; the refitted effect is none of the others.
 TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
   FittedHypothesis hypothesis = MakeHypothesis(0.1);
   LinearisedMisfit& misfit = hypothesis.misfit;
@@ -84,7 +84,8 @@ TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
   const std::vector<TriedVariant> tried = {
       {"refitted", there, {{0, 1, false}}},
       {"absent", 1e-3 * (9 * std::numbers::pi * t).array().cos(), {{0, 1, false}}},
-      {"there", there, {{0, 1, false}}}};
+      {"there", there, {{0, 1, false}}, std::log(3)},
+      {"a nuisance", there, {{0, 1, false}}, 1, true}};
   EXPECT_EQ(FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise).type, "");
   misfit.residual += 0.2 * there;
   const FurtherEvidence further = FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise);
@@ -102,6 +103,7 @@ TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
   hypothesis.priors.push_back({0, 1, false});
   EXPECT_NEAR(further.evidence, evidence() - without - std::log(3), 1e-9);
   EXPECT_GT(further.evidence, 10);
+  EXPECT_NEAR(further.of_nuisance, further.evidence + std::log(3) - 1, 1e-9);
 }
 
 // With its parameter where it is best for all frames, or for the fitted ones.

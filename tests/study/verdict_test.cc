@@ -91,6 +91,13 @@ TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   diagnosis.ranking[1].further = {"drag", 40};
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
+  // Nor is it another effect where a nuisance explains as much.
+  diagnosis.effects.clear();
+  diagnosis.ranking[1].evidence = 150;
+  diagnosis.ranking[0].further.of_nuisance = 15;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  diagnosis.ranking[0].further.of_nuisance = 0;
   // What the mesh may lend is no evidence.
   diagnosis.nuisances.emplace_back().doubt = 20;
   diagnosis.ranking[1].evidence = 150;
