@@ -23,8 +23,9 @@ constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 10;
 // The unknown part of what mesh and step change may lie along an effect, or tilt two rivals by
 // twice its evidence.
 constexpr double kDoubtful = 2;
-// What is left is noise below so many standard deviations.
-constexpr double kAtNoise = 1.2;
+// What is left is noise below so many standard deviations; of held-out frames alone, which feel
+// what the fitted ones leave open of the parameters, below these.
+constexpr double kAtNoise = 1.2, kHeldOutAtNoise = 1.3;
 // The held-out frames may speak against an effect that is named first with these odds, as a
 // logarithm: chance.
 constexpr double kNoWorse = 3;
@@ -200,6 +201,20 @@ void Decide(Diagnosis* diagnosis) {
   const std::vector<const RankedEffect*> close =
       ByEvidence(diagnosis->ranking,
                  [&](const RankedEffect& effect) { return effect.evidence > evidence - lead; });
+  const auto predicts_poorly = [&](const RankedEffect* effect) {
+    return diagnosis->errors.has_held_out && effect->errors.without_nuisances > kHeldOutAtNoise &&
+           ExcessExplained(diagnosis->errors.without_nuisances, effect->errors.without_nuisances) <
+               kMostOfIt;
+  };
+  if (std::all_of(close.begin(), close.end(), predicts_poorly)) {
+    diagnosis->verdict = Verdict::kNotInLibrary;
+    diagnosis->explanation = fmt::format(
+        "{} explains most, the odds for it are e^{:.0f}, but with it the held-out error goes from "
+        "{:.1f} σ to {:.1f} σ only, which is not noise: it may be doing another effect's work",
+        Titles({best.scored.candidate.type}), evidence, diagnosis->errors.without_nuisances,
+        best.errors.without_nuisances);
+    return;
+  }
   if (std::all_of(close.begin(), close.end(), leaves_more)) {
     diagnosis->verdict = Verdict::kNotInLibrary;
     diagnosis->explanation = fmt::format(

@@ -71,6 +71,29 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
+// Held-out frames that it leaves far from the noise are not predicted.
+TEST(Verdict, DoesNotNameAnEffectThatPredictsPoorly) {
+  Diagnosis diagnosis = SaggingBeam(12, 12);
+  diagnosis.errors.without_nuisances = 2;
+  diagnosis.ranking[0].errors.without_nuisances = 1.25;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  diagnosis.ranking[0].errors.without_nuisances = 1.6;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
+  // It took away nearly all of a much larger error.
+  diagnosis.errors.without_nuisances = 6;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  // A rival that explains as much predicts.
+  diagnosis.errors.without_nuisances = 2;
+  diagnosis.ranking[1].evidence = 295;
+  diagnosis.effects.clear();
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
+}
+
 // Another effect beside it has much of its evidence.
 TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
