@@ -112,7 +112,8 @@ GripNuisances::GripNuisances(const CalibrationProblem& problem) {
     GripShape grip{model.grips[g].nodes, Eigen::Vector3d::Zero()};
     if (grip.nodes.size() == 0) continue;
     grip.centre = rest(Eigen::all, grip.nodes).rowwise().mean();
-    const std::string of = model.grips.size() > 1 ? fmt::format(" of grip {}", g + 1) : " of the grip";
+    const std::string of =
+        model.grips.size() > 1 ? fmt::format(" of grip {}", g + 1) : " of the grip";
 
     Kind placement{"grip_placement",
                    "the placement" + of,

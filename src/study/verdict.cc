@@ -219,8 +219,7 @@ void Decide(Diagnosis* diagnosis) {
     diagnosis->verdict = Verdict::kNotInLibrary;
     diagnosis->explanation = fmt::format(
         "{} explains most, the odds for it are e^{:.0f}, but beside it those for {} are e^{:.0f}: "
-        "both "
-        "are missing, or one that is not in the catalogue, whose work they share",
+        "both are missing, or one that is not in the catalogue, whose work they share",
         Titles({best.scored.candidate.type}), evidence, best.further.type, best.further.evidence);
     diagnosis->experiment = fmt::format(
         "add {0} and diagnose again: if both are missing, {1} is named next, and what "
