@@ -197,12 +197,13 @@ void ChooseMarkerFrames(const std::vector<int>& chosen, Recording* recording) {
   std::vector<Eigen::Matrix3Xd> positions;
   for (const int i : chosen) {
     positions.push_back(recording->world_from_file * recording->markers.positions[i]);
-    for (Eigen::Index m = 0; m < positions.back().cols(); ++m)
-      if (positions.back().col(m).cwiseAbs().maxCoeff() > kFarthest)
+    for (Eigen::Index m = 0; m < positions.back().cols(); ++m) {
+      const double away = positions.back().col(m).cwiseAbs().maxCoeff();
+      if (away > kFarthest)
         throw InputError({recording->marker_file.string()},
                          fmt::format("frame {}: marker {} is {:.3g} m away", i,
-                                     recording->markers.names[static_cast<size_t>(m)],
-                                     positions.back().col(m).cwiseAbs().maxCoeff()));
+                                     recording->markers.names[static_cast<size_t>(m)], away));
+    }
   }
   recording->markers.positions = std::move(positions);
   recording->markers.times =

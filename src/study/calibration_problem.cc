@@ -242,7 +242,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   Prediction all;
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) {
-    if (!part.usable) return {.usable = false, .message = part.message};
+    if (!part.usable) return part;
     rows += part.residual.size();
   }
   all.usable = true;

@@ -53,14 +53,6 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
   return directions;
 }
 
-double Duration(const PredictionStudy& study) {
-  double duration = 0;
-  for (const PredictedRecording& item : study.recordings)
-    duration = std::max(duration, item.recording.times[item.frames.back()] -
-                                      item.recording.times[item.frames.front()]);
-  return duration;
-}
-
 // All hypotheses along one trajectory, as columns: the model's own parameters, the effects in their
 // variants, the nuisances.
 class HypothesisRanking {

@@ -273,6 +273,14 @@ void SetParameter(const ModelParameter& parameter, double value) {
   }
 }
 
+double Duration(const PredictionStudy& study) {
+  double duration = 0;
+  for (const PredictedRecording& item : study.recordings)
+    duration = std::max(duration, item.recording.times[item.frames.back()] -
+                                      item.recording.times[item.frames.front()]);
+  return duration;
+}
+
 namespace {
 
 constexpr double kLongestStep = 0.005;  // s, to begin with
@@ -293,16 +301,12 @@ double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
 // end.
 void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
   constexpr double kFewest = 10, kMost = 1e6;
-  double longest = 0;
-  for (const PredictedRecording& item : study.recordings)
-    longest = std::max(longest, item.recording.times[item.frames.back()] -
-                                    item.recording.times[item.frames.front()]);
-  const double steps = longest / study.time_step;
+  const double duration = Duration(study), steps = duration / study.time_step;
   if (steps < kFewest || steps > kMost)
     motion.Fail("time_step",
                 fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
                             "sound",
-                            steps, longest, kFewest, kMost));
+                            steps, duration, kFewest, kMost));
 }
 
 }  // namespace

@@ -88,6 +88,9 @@ struct PredictionStudy {
 // Reads and checks everything that can be checked before the computation. Throws InputError.
 PredictionStudy ReadPredictionStudy(const Config& config);
 
+// Of the frames that are used, s, of the recording where it is longest.
+double Duration(const PredictionStudy& study);
+
 // Whether an experiment's YAML is one of these rather than a reconstruction.
 bool IsPredictionStudy(const Config& config);
 

@@ -147,6 +147,47 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
   }
 }
 
+// Where the best effect, or it and all that are as good, do only a part of what is to be done: not
+// in the library. `chance`: the evidence that they may leave for another.
+bool DecideThatNoneOfThemIsIt(const RankedEffect& best,
+                              const std::vector<const RankedEffect*>& close, double chance,
+                              Diagnosis* diagnosis) {
+  const auto predicts_poorly = [&](const RankedEffect* effect) {
+    return diagnosis->errors.has_held_out && effect->errors.without_nuisances > kHeldOutAtNoise &&
+           ExcessExplained(diagnosis->errors.without_nuisances, effect->errors.without_nuisances) <
+               kMostOfIt;
+  };
+  const auto leaves_more = [&](const RankedEffect* effect) {
+    return effect->further.evidence > std::max(chance, effect->further.of_nuisance + kLeastLead);
+  };
+  const std::string title = Titles({best.scored.candidate.type});
+  const double excess = ExcessExplained(diagnosis->present_in_noise, best.left_in_noise);
+  if (best.left_in_noise > kAtNoise && excess < kMostOfIt) {
+    diagnosis->explanation = fmt::format(
+        "{} explains most, {:.0f} % of what is more than noise, but what it leaves, {:.1f} σ, is "
+        "not noise: it may be doing another effect's work",
+        title, 100 * excess, best.left_in_noise);
+  } else if (std::all_of(close.begin(), close.end(), predicts_poorly)) {
+    diagnosis->explanation = fmt::format(
+        "{} explains most, the odds for it are e^{:.0f}, but with it the held-out error goes from "
+        "{:.1f} σ to {:.1f} σ only, which is not noise: it may be doing another effect's work",
+        title, best.evidence, diagnosis->errors.without_nuisances, best.errors.without_nuisances);
+  } else if (std::all_of(close.begin(), close.end(), leaves_more)) {
+    diagnosis->explanation = fmt::format(
+        "{} explains most, the odds for it are e^{:.0f}, but beside it those for {} are e^{:.0f}: "
+        "both are missing, or one that is not in the catalogue, whose work they share",
+        title, best.evidence, best.further.type, best.further.evidence);
+    diagnosis->experiment = fmt::format(
+        "add {0} and diagnose again: if both are missing, {1} is named next, and what "
+        "is left then is noise",
+        best.scored.candidate.type, best.further.type);
+  } else {
+    return false;
+  }
+  diagnosis->verdict = Verdict::kNotInLibrary;
+  return true;
+}
+
 }  // namespace
 
 void Decide(Diagnosis* diagnosis) {
@@ -181,52 +222,17 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const RankedEffect& best = *refitted.front();
-  const double excess = ExcessExplained(diagnosis->present_in_noise, best.left_in_noise);
-  if (best.left_in_noise > kAtNoise && excess < kMostOfIt) {
-    diagnosis->verdict = Verdict::kNotInLibrary;
-    diagnosis->explanation = fmt::format(
-        "{} explains most, {:.0f} % of what is more than noise, but what it leaves, {:.1f} σ, is "
-        "not noise: it may be doing another effect's work",
-        Titles({best.scored.candidate.type}), 100 * excess, best.left_in_noise);
-    return;
-  }
   double doubt = 0;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) doubt += nuisance.doubt;
   const double lead =
       std::max(std::clamp(kLeadShare * evidence, kLeastLead, kMostLead), kDoubtful * doubt);
-  const double chance = std::max({kNamed, diagnosis->control, lent, kLeavesMore * evidence});
-  const auto leaves_more = [&](const RankedEffect* effect) {
-    return effect->further.evidence > std::max(chance, effect->further.of_nuisance + kLeastLead);
-  };
   const std::vector<const RankedEffect*> close =
       ByEvidence(diagnosis->ranking,
                  [&](const RankedEffect& effect) { return effect.evidence > evidence - lead; });
-  const auto predicts_poorly = [&](const RankedEffect* effect) {
-    return diagnosis->errors.has_held_out && effect->errors.without_nuisances > kHeldOutAtNoise &&
-           ExcessExplained(diagnosis->errors.without_nuisances, effect->errors.without_nuisances) <
-               kMostOfIt;
-  };
-  if (std::all_of(close.begin(), close.end(), predicts_poorly)) {
-    diagnosis->verdict = Verdict::kNotInLibrary;
-    diagnosis->explanation = fmt::format(
-        "{} explains most, the odds for it are e^{:.0f}, but with it the held-out error goes from "
-        "{:.1f} σ to {:.1f} σ only, which is not noise: it may be doing another effect's work",
-        Titles({best.scored.candidate.type}), evidence, diagnosis->errors.without_nuisances,
-        best.errors.without_nuisances);
+  if (DecideThatNoneOfThemIsIt(best, close,
+                               std::max({kNamed, diagnosis->control, lent, kLeavesMore * evidence}),
+                               diagnosis))
     return;
-  }
-  if (std::all_of(close.begin(), close.end(), leaves_more)) {
-    diagnosis->verdict = Verdict::kNotInLibrary;
-    diagnosis->explanation = fmt::format(
-        "{} explains most, the odds for it are e^{:.0f}, but beside it those for {} are e^{:.0f}: "
-        "both are missing, or one that is not in the catalogue, whose work they share",
-        Titles({best.scored.candidate.type}), evidence, best.further.type, best.further.evidence);
-    diagnosis->experiment = fmt::format(
-        "add {0} and diagnose again: if both are missing, {1} is named next, and what "
-        "is left then is noise",
-        best.scored.candidate.type, best.further.type);
-    return;
-  }
   diagnosis->effects = {best.scored.candidate.type};
   // Why those that explain less are not ruled out.
   std::string doubts;
