@@ -18,8 +18,8 @@ int Fit(const std::string& file) {
   for (const PredictedRecording& item : study.recordings)
     for (const std::string& warning : item.recording.warnings)
       fmt::print(stderr, "warning: {}: {}\n", item.name, warning);
-  const std::string warning = RestWarning(study);
-  if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : {RestWarning(study), SlownessWarning(study)})
+    if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
   Progress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   PrintCalibration(record);

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/hermite.h"
 
@@ -31,7 +32,23 @@ StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHisto
   return stepper->Equilibrium(options.held_force, history, kHoldTolerance);
 }
 
+constexpr double kFirstStep = 0.1;
+// By how much longer than asked for a quasi-static step may be, in parts of it.
+constexpr double kRounding = 1e-9;
+
 }  // namespace
+
+PredictionStep NextStep(TimeScheme scheme, double time_step, int steps_before, double time,
+                        double wanted) {
+  if (scheme != TimeScheme::kQuasiStatic) {
+    const double length = (steps_before == 0 ? kFirstStep : 1) * time_step;
+    return {length, time + length};
+  }
+  const double whole = wanted - time;
+  const double parts = std::ceil(whole / time_step - kRounding);
+  if (parts <= 1) return {whole, wanted};
+  return {whole / parts, time + whole / parts};
+}
 
 PredictionSummary Predict(
     const Model& model, const PredictionOptions& options, const std::vector<double>& times,
@@ -68,11 +85,13 @@ PredictionSummary Predict(
 
   while (next < wanted) {
     before = history;
-    const double length = (summary.steps == 0 ? kFirstStep : 1) * options.time_step;
+    const auto [length, end] =
+        NextStep(options.step.scheme, options.time_step, summary.steps, history.time, times[next]);
     const StepSummary step = stepper.Step(length, {}, &history);
     if (!step.IsUsable()) return Stopped(summary, step.message);
     linearised = linear.Advance(before, options.step.scheme, length, history.position);
     if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
+    history.time = end;
     ++summary.steps;
     const Knot<Eigen::VectorXd> now{history.position, history.velocity};
     const Knot<Eigen::MatrixXd> now_by{linear.position(), linear.velocity()};

@@ -12,9 +12,16 @@
 
 namespace lacuna {
 
-// The first step, of implicit Euler, as a part of the others: letting go is a shock, and what that
-// step gets wrong of it goes with the square of its length.
-constexpr double kFirstStep = 0.1;
+// A prediction's next step after `steps_before`, from `time`, s; `wanted`: the next of the times
+// asked for, after it. The first step, of implicit Euler, is a tenth of the others:
+// letting go is a shock, and what that step gets wrong of it goes with the square of its length.
+// Quasi-static steps are as even as they can be and end at the times asked for: between two
+// equilibria nothing tells a velocity.
+struct PredictionStep {
+  double length = 0, end = 0;  // s
+};
+PredictionStep NextStep(TimeScheme scheme, double time_step, int steps_before, double time,
+                        double wanted);
 
 struct PredictionOptions {
   // The body is in equilibrium until then, under its effects, its grips where they are then, and
@@ -24,7 +31,7 @@ struct PredictionOptions {
   // 3n, m: where the equilibrium is sought, near it a tenth of the work; empty, or where it is not
   // found from there: from the rest shape.
   Eigen::VectorXd held_guess = {};
-  double time_step = 0.005;  // s; smaller: slower, more accurate by its square
+  double time_step = 0.005;  // s, at most; smaller: slower, more accurate (OrderOf)
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
 };
 
@@ -50,7 +57,8 @@ struct PredictionSummary {
 
 // Visits the motion at `times` (s, ascending), between the ends of steps by cubic Hermite
 // interpolation, whose error is of higher order than the step's. A step that fails ends the
-// prediction; the states visited before are good.
+// prediction; the states visited before are good. Quasi-static: the body is in equilibrium
+// throughout, and its velocity is the step's mean.
 PredictionSummary Predict(const Model& model, const PredictionOptions& options,
                           const std::vector<double>& times,
                           const std::vector<Perturbation>& perturbations,

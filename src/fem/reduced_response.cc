@@ -164,22 +164,25 @@ void ReducedResponse::Respond(
   size_t next = 0;
   for (; next < times.size() && times[next] <= time; ++next) visit(static_cast<int>(next), q, w);
   double last = 0;
+  const double inertia = options_.scheme == TimeScheme::kQuasiStatic ? 0 : 1;
   for (int step = 0; next < times.size(); ++step) {
-    const double h = (step == 0 ? kFirstStep : 1) * options_.time_step;
+    const auto [h, end] = NextStep(options_.scheme, options_.time_step, step, time, times[next]);
     const SchemeWeights weights = WeightsOf(options_.scheme, h, step, last);
     const double rate = weights.rate;
     const Eigen::MatrixXd q_history = weights.Combine(q, q_before, w, w_before);
     const Eigen::MatrixXd w_history = weights.Combine(w, w_before, a, a_before);
-    time += h;
+    time = end;
     last = h;
     const Tangents at = At(time);
     const Eigen::MatrixXd right = load_ * histories(time) +
-                                  at.mass * (rate * rate * q_history + rate * w_history) +
+                                  inertia * at.mass * (rate * rate * q_history + rate * w_history) +
                                   at.damping * (rate * q_history);
     q_before = std::move(q);
     w_before = std::move(w);
     a_before = std::move(a);
-    q = (rate * rate * at.mass + rate * at.damping + at.stiffness).partialPivLu().solve(right);
+    q = (inertia * rate * rate * at.mass + rate * at.damping + at.stiffness)
+            .partialPivLu()
+            .solve(right);
     w = rate * (q - q_history);
     a = rate * (w - w_history);
     for (; next < times.size() && times[next] <= time; ++next) {

@@ -33,7 +33,7 @@ struct TrajectoryState {
 
 struct ReducedResponseOptions {
   TimeScheme scheme = TimeScheme::kTwoStep;
-  double time_step = 0.005;  // s; the first step is shorter, as a prediction's is
+  double time_step = 0.005;  // s; steps are those of a prediction (NextStep)
   int most_shapes = 40;      // in Φ; more: finer, slower by the square
   int basis_states = 6;      // of the trajectory, evenly spread, that Φ is made at
 };

@@ -82,6 +82,9 @@ struct Stepper::Implementation {
                                   const Eigen::VectorXd& target, double tolerance, int* increments,
                                   Eigen::VectorXd* position) {
     constexpr double kSmallestIncrement = 1.0 / 512;
+    // Newton's iterations in all, in those that one solution may take: what is found at all is
+    // found with far fewer, and a fit that tries what has no equilibrium would spend its time here.
+    constexpr int kMostSolutions = 4;
     const Eigen::VectorXd start = *position;
     Eigen::VectorXd imbalance;
     equation.Residual(start, &imbalance);
@@ -103,7 +106,8 @@ struct Stepper::Implementation {
         if (summary.iterations <= 6) increment *= 1.5;
       } else {
         increment *= 0.5;
-        if (increment < kSmallestIncrement) {
+        if (increment < kSmallestIncrement ||
+            iterations >= kMostSolutions * options.max_iterations) {
           summary.message += fmt::format("; {:.1f} % of the load could be applied", 100 * reached);
           break;
         }

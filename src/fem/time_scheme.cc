@@ -14,6 +14,10 @@ constexpr double kSameLength = 1e-6;
 
 }  // namespace
 
+int OrderOf(TimeScheme scheme) {
+  return scheme == TimeScheme::kQuasiStatic || scheme == TimeScheme::kImplicitEuler ? 1 : 2;
+}
+
 SchemeWeights WeightsOf(TimeScheme scheme, double h, int steps_before, double last) {
   const double ratio = last > 0 ? h / last : 1;
   SchemeWeights weights;

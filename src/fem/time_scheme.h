@@ -24,6 +24,10 @@ namespace lacuna {
 
 enum class TimeScheme { kQuasiStatic, kImplicitEuler, kBdf2, kTwoStep };
 
+// The power of the step that its error goes with at least; a quasi-static motion has one only where
+// effects depend on rates (to first order) or remember.
+int OrderOf(TimeScheme scheme);
+
 struct SchemeWeights {
   double rate = 0;  // γ, 1/s
   // x̃ = now·xₙ + before·xₙ₋₁ + rate_now·vₙ + rate_before·vₙ₋₁, and ṽ likewise of v and a.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "geometry/surface_tracks.h"
 #include "registration/surface_alignment.h"
@@ -92,7 +93,11 @@ class Follower {
     const Eigen::Matrix3Xd before = AsPoints(history_.position);
     const Eigen::Matrix3Xd shift = RegisteredShift(k, before);
     frame.pseudo_force = PseudoForce(shift, time_step);
-    grips_->Extend(state.time, before, before + shift, state.tracked);
+    const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, state.tracked);
+    if (lost != nullptr)
+      throw InputError(
+          fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen",
+                      study_.recording.file.string(), state.time, lost->region.name));
 
     Eigen::VectorXd start = Stacked(before + shift);
     grips_->Place(state.time, &start);

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
 
 #include "core/error.h"
+#include "geometry/rigid_fit.h"
 #include "study/physics.h"
 
 namespace lacuna {
@@ -19,13 +19,6 @@ Eigen::Matrix3Xd Interpolated(const std::map<double, Eigen::Matrix3Xd>& places, 
   const auto before = std::prev(after);
   const double share = (time - before->first) / (after->first - before->first);
   return (1 - share) * before->second + share * after->second;
-}
-
-// The rigid motion that carries `from` nearest to `to` (Umeyama 1991, without scale).
-Eigen::Isometry3d RigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  Eigen::Isometry3d motion;
-  motion.matrix() = Eigen::umeyama(from, to, /*with_scaling=*/false);
-  return motion;
 }
 
 }  // namespace
@@ -59,6 +52,10 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
       track->markers.push_back(
           static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
     }
+    if (!track->markers.empty()) {
+      const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, track->markers);
+      track->span = FitRigidMotion(places, places).span;
+    }
     tracks_.push_back(track);
     model->grips.push_back({track->nodes, [track](double time) -> Eigen::Matrix3Xd {
                               if (track->grip.motion == GripMotion::kGiven)
@@ -73,8 +70,10 @@ void GripTracks::Begin(double time) {
   for (const auto& track : tracks_) track->places = {{time, track->rest}};
 }
 
-void GripTracks::Extend(double time, const Eigen::Matrix3Xd& before, const Eigen::Matrix3Xd& moved,
-                        const Eigen::Matrix3Xd& markers) {
+const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& before,
+                                       const Eigen::Matrix3Xd& moved,
+                                       const Eigen::Matrix3Xd& markers) {
+  const RecordedGrip* lost = nullptr;
   for (const auto& track : tracks_) {
     Eigen::Matrix3Xd place;
     switch (track->grip.motion) {
@@ -82,17 +81,23 @@ void GripTracks::Extend(double time, const Eigen::Matrix3Xd& before, const Eigen
         continue;
       case GripMotion::kFollowsScan: {
         const Eigen::Matrix3Xd here = before(Eigen::all, track->nodes);
-        place = RigidMotion(here, moved(Eigen::all, track->nodes)) * here;
+        place = FitRigidMotion(here, moved(Eigen::all, track->nodes)).motion * here;
         break;
       }
       case GripMotion::kFollowsMarkers: {
         const Eigen::Matrix3Xd at_rest = recording_.marker_places(Eigen::all, track->markers);
-        place = RigidMotion(at_rest, markers(Eigen::all, track->markers)) * track->rest;
+        const RigidFit fit = FitRigidMotion(at_rest, markers(Eigen::all, track->markers));
+        if (fit.span < std::max(track->span, 0)) {
+          lost = &track->grip;
+          continue;
+        }
+        place = fit.motion * track->rest;
         break;
       }
     }
     track->places[time] = place;
   }
+  return lost;
 }
 
 void GripTracks::Place(double time, Eigen::VectorXd* position) const {

@@ -25,8 +25,10 @@ class GripTracks {
   void Begin(double time);
   // Adds where the grips are at `time`. `before` and `moved` (3 × nodes): the model's nodes and
   // where the registered motion of the scan carries them; `markers` (3 × m): the frame's markers.
-  void Extend(double time, const Eigen::Matrix3Xd& before, const Eigen::Matrix3Xd& moved,
-              const Eigen::Matrix3Xd& markers);
+  // A grip so many of whose markers are not seen that the rest tells less of its motion is not
+  // placed, and returned (one of them).
+  const RecordedGrip* Extend(double time, const Eigen::Matrix3Xd& before,
+                             const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& markers);
   // Puts the gripped nodes of a stacked position (3n) where they are at `time`.
   void Place(double time, Eigen::VectorXd* position) const;
 
@@ -36,6 +38,7 @@ class GripTracks {
     Eigen::VectorXi nodes;
     Eigen::Matrix3Xd rest;                      // of the nodes
     std::vector<int> markers;                   // columns of the marker tracks
+    int span = 0;                               // of their places (geometry/rigid_fit.h)
     std::map<double, Eigen::Matrix3Xd> places;  // by time; of a given path none
   };
   const Recording& recording_;

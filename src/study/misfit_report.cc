@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lacuna {
 namespace {
 
+// The most markers of a recording that are told one by one.
+constexpr size_t kMostTold = 6;
 // A prior is strained where the fit is so many of its deviations away.
 constexpr double kStrained = 3;
 // A frame of a scan is worth a word where fewer of its points were compared, in parts of the
@@ -17,15 +20,23 @@ void AddMarkerStrains(const PredictionStudy& study, const RecordingMisfit& misfi
                       const Recording& recording, std::vector<std::string>* strains) {
   if (!misfit.has_own_places) return;
   const std::vector<std::string>& names = recording.markers.names;
-  for (Eigen::Index m = 0; m < misfit.place_offset.cols(); ++m) {
-    const Eigen::VectorXd offset = misfit.place_offset.col(m);
-    if (offset.norm() > kStrained * study.place_deviation)
-      strains->push_back(
-          fmt::format("{}: the model would have marker {} ({:.1f}, {:.1f}, {:.1f}) mm from where "
-                      "it is on the undeformed object; place_deviation allows {:.1f} mm",
-                      misfit.name, names[m], 1e3 * offset[0], 1e3 * offset[1], 1e3 * offset[2],
-                      1e3 * study.place_deviation));
+  const Eigen::RowVectorXd away = misfit.place_offset.colwise().norm();
+  std::vector<int> strained;
+  for (int m = 0; m < away.size(); ++m)
+    if (away[m] > kStrained * study.place_deviation) strained.push_back(m);
+  std::stable_sort(strained.begin(), strained.end(),
+                   [&](int a, int b) { return away[a] > away[b]; });
+  for (size_t k = 0; k < strained.size() && k < kMostTold; ++k) {
+    const Eigen::Vector3d offset = 1e3 * misfit.place_offset.col(strained[k]);
+    strains->push_back(
+        fmt::format("{}: the model would have marker {} ({:.2g}, {:.2g}, {:.2g}) mm from where "
+                    "it is on the undeformed object; place_deviation allows {:.2g} mm",
+                    misfit.name, names[strained[k]], offset[0], offset[1], offset[2],
+                    1e3 * study.place_deviation));
   }
+  if (strained.size() > kMostTold)
+    strains->push_back(fmt::format("{}: so it would {} of its {} markers, these the most",
+                                   misfit.name, strained.size(), away.size()));
 }
 
 void AddScanStrains(const ScanSettings& scan, const RecordingMisfit& misfit,

@@ -55,13 +55,21 @@ void MoveGrips(const PredictedRecording& item, double reach, bool tells_the_shap
   if (is_scan) moved = FollowGrips(item, reach, tells_the_shape, mesh, boundary);
   for (size_t k = 0; k < item.frames.size(); ++k) {
     const int frame = item.frames[k];
-    grips->Extend(item.recording.times[frame], mesh.nodes, is_scan ? moved[k] : mesh.nodes,
-                  is_scan ? Eigen::Matrix3Xd(3, 0) : item.recording.markers.positions[frame]);
+    const RecordedGrip* lost =
+        grips->Extend(item.recording.times[frame], mesh.nodes, is_scan ? moved[k] : mesh.nodes,
+                      is_scan ? Eigen::Matrix3Xd(3, 0) : item.recording.markers.positions[frame]);
+    // Between two frames a grip moves evenly, before the first and after the last it would stand.
+    if (lost != nullptr && (k == 0 || k + 1 == item.frames.size()))
+      throw InputError(fmt::format(
+          "{}: frame {}, the {} that is used, shows too few of the markers that \"{}\" follows: "
+          "choose `{}`",
+          item.recording.file.string(), frame, k == 0 ? "first" : "last", lost->region.name,
+          k == 0 ? "from" : "to"));
   }
 }
 
 // A scanned object that is not held must rest in its first frames.
-void RequireStaticStart(const PredictedRecording& item) {
+void RequireStartAtRest(const PredictedRecording& item) {
   if (item.hold) return;
   const ScannedPoints& first = item.scans->At(item.frames.front());
   const double step = LargestMove(first, item.scans->At(item.frames[1]));
@@ -131,7 +139,7 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
   if (item_.scans != nullptr) {
     auto observer =
         std::make_unique<SurfaceObserver>(item_.scans, model_.body, patches, study.scan);
-    RequireStaticStart(item_);
+    if (study.scheme != TimeScheme::kQuasiStatic) RequireStartAtRest(item_);
     const double reach = observer->Reach();
     observer_ = std::move(observer);
     RequireThatScansShowTheObject();

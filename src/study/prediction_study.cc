@@ -48,7 +48,7 @@ double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
 // Without a hold the first frame must be an equilibrium. A body that already moves is not: its
 // first step is a good part of all its motion, and more than the least step of any two frames,
 // which is noise or a turning point.
-void RequireStaticStart(const Config& config, const PredictedRecording& item) {
+void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
   constexpr double kLarge = 0.25, kBeyondNoise = 3;
   const Recording& recording = item.recording;
   if (item.hold || recording.kind != FrameKind::kMarkers || item.frames.size() < 3) return;
@@ -103,7 +103,8 @@ void RequireGripPaths(const Config& config, const PredictedRecording& item) {
 }
 
 PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
-                                      const ScanSettings& scan, bool tells_the_shape) {
+                                      const ScanSettings& scan, TimeScheme scheme,
+                                      bool tells_the_shape) {
   PredictedRecording item;
   item.recording = LoadRecording(config.Path("recording"));
   item.name = config.Text("name", item.recording.name);
@@ -126,16 +127,22 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   for (const Config& effect : config.Items("effects"))
     item.effects.push_back(MakeEffect(effect, material));
 
-  constexpr size_t kFewest = 3;
-  if (item.frames.size() < kFewest) {
+  // An equilibrium tells of itself; a motion does with two steps.
+  const size_t fewest = scheme == TimeScheme::kQuasiStatic ? 1 : 3;
+  if (item.frames.size() < fewest) {
     config.Fail("recording",
                 fmt::format("{} frames lie between {:g} s and {:g} s; at least {} are needed",
-                            item.frames.size(), from, to, kFewest));
+                            item.frames.size(), from, to, fewest));
   }
-  if (item.fitted && item.fit_until < item.recording.times[item.frames[kFewest - 1]])
-    config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", kFewest));
+  if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
+    config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
   CheckObserved(config, item, tells_the_shape);
-  RequireStaticStart(config, item);
+  if (scheme == TimeScheme::kQuasiStatic) {
+    if (item.hold)
+      config.Fail("hold", "what is let go of swings: motion.scheme may not be quasi_static");
+  } else {
+    RequireStartAtRest(config, item);
+  }
   RequireGripPaths(config, item);
   for (const MeasuredForce& force : item.recording.forces) {
     const double first = item.recording.times[item.frames.front()];
@@ -297,16 +304,24 @@ double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
   return shortest;
 }
 
+// What the fit begins with. Steps of quasi-static motions end at the frames in any case.
+double FirstStep(const PredictionStudy& study) {
+  const double spacing = ShortestSpacing(study.recordings);
+  if (study.scheme != TimeScheme::kQuasiStatic) return std::min(kLongestStep, 0.5 * spacing);
+  return std::isfinite(spacing) ? spacing : kLongestStep;
+}
+
 // A step of the order of the recording follows no motion, and with millions of them a fit would not
 // end.
 void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
   constexpr double kFewest = 10, kMost = 1e6;
   const double duration = Duration(study), steps = duration / study.time_step;
-  if (steps < kFewest || steps > kMost)
+  const double fewest = study.scheme == TimeScheme::kQuasiStatic ? 0 : kFewest;
+  if (steps < fewest || steps > kMost)
     motion.Fail("time_step",
                 fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
                             "sound",
-                            steps, duration, kFewest, kMost));
+                            steps, duration, fewest, kMost));
 }
 
 }  // namespace
@@ -328,11 +343,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
   study.effects = ReadEffects(config);
   const std::optional<Config> motion = config.OptionalChild("motion");
-  if (motion) {
-    study.scheme = ReadTimeScheme(*motion, "two_step");
-    if (study.scheme == TimeScheme::kQuasiStatic)
-      motion->Fail("scheme", "a prediction needs inertia: two_step, bdf2 or implicit_euler");
-  }
+  if (motion) study.scheme = ReadTimeScheme(*motion, "two_step");
   study.chooses_time_step = !motion || !motion->Has("time_step");
   if (!study.chooses_time_step) study.time_step = motion->Quantity("time_step", kTime, kPositive);
   study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
@@ -340,8 +351,9 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
   study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings")) {
-    PredictedRecording recording = ReadRecordingEntry(item, study.effects.front().get(), study.scan,
-                                                      /*tells_the_shape=*/study.recordings.empty());
+    PredictedRecording recording =
+        ReadRecordingEntry(item, study.effects.front().get(), study.scan, study.scheme,
+                           /*tells_the_shape=*/study.recordings.empty());
     for (const PredictedRecording& other : study.recordings)
       if (other.name == recording.name)
         item.Fail("name", fmt::format("\"{}\" is that of another recording already; without one, "
@@ -355,7 +367,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
     config.Fail("recordings", "none of them is fitted");
   RequireSomethingToFit(config, study);
   if (study.chooses_time_step)
-    study.time_step = std::min(kLongestStep, 0.5 * ShortestSpacing(study.recordings));
+    study.time_step = FirstStep(study);
   else
     RequireSoundStep(*motion, study);
   const auto& density = study.recordings.front().recording.density;

@@ -70,7 +70,7 @@ struct PredictionStudy {
   double density = 0;                            // kg/m³
   std::vector<std::shared_ptr<Effect>> effects;  // the material first
   TimeScheme scheme = TimeScheme::kTwoStep;
-  double time_step = 0.005;         // s
+  double time_step = 0.005;         // s; of a quasi-static one at most
   bool chooses_time_step = false;   // the fit shortens it as far as the recordings ask for
   double noise = 0;                 // m, of a marker's coordinate; 0: estimated from the recordings
   bool noise_is_estimated = false;  // it has been

@@ -1,5 +1,7 @@
 #include "study/recorded_motion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +65,22 @@ std::string RestWarning(const PredictionStudy& study) {
   if (!IsAtRest(study)) return "";
   return "nothing moves in the frames that are fitted: they tell of stiffness and of constant "
          "loads, but not of mass, damping, drag or anything else that needs motion";
+}
+
+std::string SlownessWarning(const PredictionStudy& study) {
+  constexpr double kMany = 50;  // for one frame
+  if (study.scheme == TimeScheme::kQuasiStatic) return "";
+  for (const PredictedRecording& item : study.recordings) {
+    const std::vector<double>& times = item.recording.times;
+    const double steps = (times[item.frames.back()] - times[item.frames.front()]) / study.time_step;
+    if (steps > kMany * static_cast<double>(item.frames.size()))
+      return fmt::format(
+          "{} takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in "
+          "each "
+          "of them, `motion: {{scheme: quasi_static}}` takes as many as there are frames",
+          item.name, steps, 1e3 * study.time_step, item.frames.size());
+  }
+  return "";
 }
 
 double RestDeformation(const PredictedRecording& item) {

@@ -15,6 +15,8 @@ bool IsAtRest(const PredictedRecording& item);
 bool IsAtRest(const PredictionStudy& study);
 // What a user should know of a study at rest; empty where something moves.
 std::string RestWarning(const PredictionStudy& study);
+// The same of frames between which a motion with inertia takes very many steps; else empty.
+std::string SlownessWarning(const PredictionStudy& study);
 
 // Of markers at rest: how far the farthest is on average from its place on the undeformed object,
 // m.

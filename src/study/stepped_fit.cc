@@ -14,7 +14,7 @@ namespace {
 
 // A step is short enough when its error is below this part of σ, or of what the model leaves.
 constexpr double kOfNoise = 0.2, kOfMisfit = 0.05;
-// The next step has this part of the error that is allowed, by the scheme's second order; and it is
+// The next step has this part of the error that is allowed, by the scheme's order; and it is
 // not believed to be so many times shorter before looking again.
 constexpr double kAimedAt = 0.8, kAtOnce = 4;
 constexpr int kMostSteps = 8;
@@ -23,11 +23,13 @@ constexpr int kMostSteps = 8;
 struct StepCheck {
   double error = std::numeric_limits<double>::infinity();  // σ; and what is allowed:
   double allowed = kOfNoise;
+  int order = 2;
 
   // The part of the step that would do.
   double Share() const {
     if (!std::isfinite(error)) return 0.5;
-    return error <= allowed ? 1 : std::max(std::sqrt(kAimedAt * allowed / error), 1 / kAtOnce);
+    if (error <= allowed) return 1;
+    return std::max(std::pow(kAimedAt * allowed / error, 1.0 / order), 1 / kAtOnce);
   }
 };
 
@@ -37,11 +39,13 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   PredictionStudy half = problem.AsChosen();
   half.time_step /= 2;
   const CalibrationProblem refined(half, problem.body()->mesh);
-  // Scans are compared where they lie, so patches may be other ones; of the rest the difference is
-  // that of the predictions.
-  const Prediction now = problem.Predict(values, false);
-  const Prediction then = refined.Predict(values, false);
+  // Compared with the same points of scans: the difference is that of the predictions.
+  constexpr double kWhole = std::numeric_limits<double>::infinity();
+  CalibrationProblem::Correspondences same;
+  const Prediction now = problem.Predict(values, false, kWhole, &same);
+  const Prediction then = refined.Predict(values, false, kWhole, &same);
   StepCheck check;
+  check.order = OrderOf(half.scheme);
   if (now.usable && then.usable && now.residual.size() == then.residual.size()) {
     check.error = RootMeanSquare(Eigen::VectorXd(then.residual - now.residual));
     check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now.residual));

@@ -12,7 +12,8 @@ namespace lacuna {
 struct SteppedFit {
   Calibration calibration;
   // By how much half the step would change the predicted frames that are fitted, rms of their
-  // components, in σ. Three quarters of the step's error, as that goes with its square.
+  // components, in σ. Three quarters of the step's error where that goes with its square, half of
+  // it in schemes of first order.
   double step_error = 0;
 };
 

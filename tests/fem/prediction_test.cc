@@ -88,7 +88,7 @@ TEST(Prediction, IsTheSteppersMotionWhereStepsEnd) {
   std::vector<double> times{history.time};
   std::vector<Eigen::VectorXd> position{history.position}, velocity{history.velocity};
   for (int step = 0; step < 6; ++step) {
-    const double length = step == 0 ? kFirstStep * kTimeStep : kTimeStep;
+    const double length = step == 0 ? 0.1 * kTimeStep : kTimeStep;
     ASSERT_TRUE(stepper.Step(length, {}, &history).IsUsable());
     times.push_back(history.time);
     position.push_back(history.position);
@@ -215,6 +215,76 @@ TEST(Prediction, SensitivityToTheModelAgreesWithDifferencesBetweenSteps) {
   ExpectDerivative(&bar, {.effect = bar.effects[0], .parameter = 0}, 50, [&](double by) {
     bar.effects[0]->SetParameters(values + Eigen::Vector2d(by, 0));
   });
+}
+
+// A load that grows, and a material that remembers, in equilibrium throughout.
+HeldBar LoadedBar() {
+  HeldBar bar;
+  const Eigen::VectorXd share =
+      Eigen::VectorXd::Constant(bar.body->NodeCount(), 1.0 / bar.body->NodeCount());
+  bar.effects.push_back(std::make_shared<PrescribedForce>(
+      share, [](double time) { return Eigen::Vector3d(0, 0.2 * std::pow(time - kStart, 2), 0); }));
+  bar.effects.push_back(MakeEffect(
+      "viscoelastic_branch", {{"modulus", 3e4}, {"relaxation_time", 0.3}, {"poisson_ratio", 0.4}}));
+  bar.options.held_force.setZero();
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  return bar;
+}
+
+TEST(Prediction, QuasiStaticStepsEndAtTheTimesAskedFor) {
+  HeldBar bar = LoadedBar();
+  bar.options.time_step = 0.1;
+  const std::vector<double> times{kStart, kStart + 0.1, kStart + 0.15, kStart + 0.5};
+  const Visited visited = bar.Run(times);
+  ASSERT_TRUE(visited.summary.IsUsable()) << visited.summary.message;
+  EXPECT_EQ(visited.summary.steps, 1 + 1 + 4);
+  const Model model = bar.MakeModel();
+  Stepper stepper(model, bar.options.step);
+  MotionHistory history = RestHistory(model);
+  history.time = kStart;
+  ASSERT_TRUE(stepper.Equilibrium({}, &history).IsUsable());
+  for (const double length : {0.1, 0.05, 0.0875, 0.0875, 0.0875, 0.0875})
+    ASSERT_TRUE(stepper.Step(length, {}, &history).IsUsable());
+  EXPECT_LT((visited.position.back() - history.position).cwiseAbs().maxCoeff(), 1e-11);
+  EXPECT_LT((visited.velocity.back() - history.velocity).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Prediction, QuasiStaticErrorGoesWithTheStepAtLeast) {
+  const auto improves = [](HeldBar bar) {
+    const auto run = [&](double time_step) {
+      bar.options.time_step = time_step;
+      return bar.Run({kStart, kStart + 0.4});
+    };
+    const Visited truth = run(0.4 / 512);
+    const double whole = HeldBar::LargestDistance(run(0.1), truth);
+    EXPECT_GT(whole, 1e-7);
+    return whole / HeldBar::LargestDistance(run(0.05), truth);
+  };
+  HeldBar bar = LoadedBar();
+  EXPECT_NEAR(improves(bar), 4, 0.4);  // a memory is followed to second order
+  bar.effects.back() = MakeEffect("mass_damping", {{"alpha", 50.0}});
+  EXPECT_NEAR(improves(bar), std::pow(2, OrderOf(TimeScheme::kQuasiStatic)), 0.2);
+}
+
+TEST(Prediction, QuasiStaticSensitivityAgreesWithDifferences) {
+  HeldBar bar = LoadedBar();
+  bar.options.time_step = 0.1;
+  const std::vector<double> times{kStart, kStart + 0.2, kStart + 0.4};
+  const auto& branch = bar.effects.back();
+  const Eigen::VectorXd values = branch->Parameters();
+  const double steps[] = {30, 1e-4};
+  for (int k = 0; k < 2; ++k) {
+    const Visited linear = bar.Run(times, {{.effect = branch, .parameter = k}});
+    ASSERT_TRUE(linear.summary.IsUsable()) << linear.summary.message;
+    const auto shifted = [&](double by) {
+      branch->SetParameters(values + by * Eigen::VectorXd::Unit(values.size(), k));
+      const Visited run = bar.Run(times);
+      branch->SetParameters(values);
+      return run.position.back();
+    };
+    const Eigen::VectorXd difference = (shifted(steps[k]) - shifted(-steps[k])) / (2 * steps[k]);
+    EXPECT_LT((linear.position_by.back() - difference).norm(), 1e-4 * difference.norm()) << k;
+  }
 }
 
 TEST(Prediction, TellsWhereItStopped) {

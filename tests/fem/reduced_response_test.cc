@@ -89,5 +89,42 @@ TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
   EXPECT_LT(std::sqrt(difference[1] / size[1]), 0.06);
 }
 
+TEST(ReducedResponse, FollowsAQuasiStaticMotion) {
+  SwingingBar bar;
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  bar.options.held_force.setZero();
+  bar.times = {kStart, kStart + 0.1, kStart + 0.13, kStart + 0.3};
+  const auto push = std::make_shared<PrescribedForce>(
+      bar.share, [](double time) { return Eigen::Vector3d(0, Push(time), 0); });
+  std::vector<TrajectoryState> states;
+  std::vector<Eigen::MatrixXd> exact;
+  const PredictionSummary summary = Predict(
+      bar.model, bar.options, bar.times, {{.effect = push}}, [&](int, const PredictedState& state) {
+        states.push_back({state.time,
+                          state.position,
+                          state.velocity,
+                          {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
+        exact.push_back(state.position_by);
+      });
+  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+  const int n = bar.model.body->NodeCount();
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * n, 1);
+  for (int i = 0; i < n; ++i) shapes(3 * i + 1, 0) = bar.share[i];
+  const ReducedResponse response(bar.model, states, shapes,
+                                 {.scheme = TimeScheme::kQuasiStatic, .time_step = kStep});
+  ASSERT_TRUE(response.IsUsable()) << response.message();
+  const auto history = [](double time) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd::Constant(1, 1, Push(time));
+  };
+  std::vector<int> visited;
+  response.Respond(history(kStart), history, bar.times,
+                   [&](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
+                     visited.push_back(index);
+                     EXPECT_LT((response.basis() * q - exact[index]).norm(),
+                               0.02 * exact[index].norm());
+                   });
+  EXPECT_EQ(visited, (std::vector<int>{0, 1, 2, 3}));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -234,9 +234,30 @@ TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
   EXPECT_THAT(MessageOf(none), HasSubstr("recordings: is empty"));
 }
 
-TEST_F(ReadingAPredictionStudy, RefusesAMotionWithoutInertia) {
-  EXPECT_THAT(MessageAfter({{"motion: {", "motion: {scheme: quasi_static, "}}),
-              HasSubstr("motion.scheme: a prediction needs inertia"));
+TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
+  const std::string statics = "motion: {scheme: quasi_static}";
+  EXPECT_THAT(MessageAfter({{"motion: {time_step: 1.5 ms}", statics}}),
+              HasSubstr("recordings[0].hold: what is let go of swings"));
+  Replacements one{{"motion: {time_step: 1.5 ms}", statics},
+                   {"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}};
+  one.insert(kNoHold.begin(), kNoHold.end());
+  EXPECT_EQ(MessageAfter(one), "nothing was refused");
+  const PredictionStudy study = ReadBarStudy(folder_.Path(), one);
+  EXPECT_EQ(study.recordings[0].frames.size(), 2u);
+  EXPECT_NEAR(study.time_step, 0.01, 1e-12);  // a step a frame
+  // Frames far from each other: no start in motion.
+  WriteBarRecording(folder_.Path(), Moving(0.001, 0));
+  EXPECT_EQ(MessageAfter(one), "nothing was refused");
+}
+
+TEST_F(ReadingAPredictionStudy, TellsOfASlowRecording) {
+  PredictionStudy study = ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""}});
+  EXPECT_EQ(SlownessWarning(study), "");
+  for (double& time : study.recordings[0].recording.times) time *= 1000;  // a frame in 10 s
+  EXPECT_THAT(SlownessWarning(study),
+              HasSubstr("50000 steps of 5 ms for 26 frames: if the object is in equilibrium"));
+  study.scheme = TimeScheme::kQuasiStatic;
+  EXPECT_EQ(SlownessWarning(study), "");
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesStepsThatFollowNoMotion) {

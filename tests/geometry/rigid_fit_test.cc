@@ -1,0 +1,75 @@
+#include "geometry/rigid_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "geometry/rotation.h"
+
+namespace lacuna {
+namespace {
+
+Eigen::Isometry3d Turned() {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(Eigen::Vector3d(0.1, -0.2, 0.3));
+  motion.rotate(RotationBy({0.3, -0.5, 0.2}));
+  return motion;
+}
+
+double Difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return (a.matrix() - b.matrix()).norm();
+}
+
+TEST(RigidFit, FindsTheMotionOfPointsOnAPlane) {
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0, 1, 0, 1, 0, 0, 1, 1, 2, 2, 2, 2;
+  const RigidFit fit = FitRigidMotion(points, Turned() * points);
+  EXPECT_EQ(fit.span, 2);
+  EXPECT_LT(Difference(fit.motion, Turned()), 1e-12);
+}
+
+TEST(RigidFit, IsARotationWhereNoiseWouldRatherMirror) {
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0, 1, 0, 1, 0, 0, 1, 1, 1e-3, -1e-3, -1e-3, 1e-3;
+  Eigen::Matrix3Xd mirrored = points;
+  mirrored.row(2) *= -1;
+  const RigidFit fit = FitRigidMotion(points, mirrored);
+  EXPECT_NEAR(fit.motion.linear().determinant(), 1, 1e-12);
+  EXPECT_LT(Difference(fit.motion, Eigen::Isometry3d::Identity()), 0.01);
+}
+
+TEST(RigidFit, LeavesOutWhatIsNotSeen) {
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1;
+  Eigen::Matrix3Xd seen = Turned() * points;
+  seen(1, 2) = std::numeric_limits<double>::quiet_NaN();
+  const RigidFit fit = FitRigidMotion(points, seen);
+  EXPECT_EQ(fit.span, 2);
+  EXPECT_LT(Difference(fit.motion, Turned()), 1e-12);
+}
+
+TEST(RigidFit, DoesNotTurnAboutALine) {
+  Eigen::Matrix3Xd points(3, 3);
+  points << 0, 1, 2, 0, 0, 0, 0, 0, 0;
+  EXPECT_LT(Difference(FitRigidMotion(points, points).motion, Eigen::Isometry3d::Identity()),
+            1e-12);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitY();
+  const Eigen::Matrix3d quarter = RotationBy({0, 0, M_PI / 2});
+  const RigidFit fit = FitRigidMotion(points, quarter * points);
+  EXPECT_EQ(fit.span, 1);
+  EXPECT_LT((fit.motion.linear() - quarter).norm(), 1e-12);
+  EXPECT_LT((fit.motion * points - quarter * points).norm(), 1e-12);
+  EXPECT_NEAR((fit.motion.linear() * up).z(), 0, 1e-12);
+}
+
+TEST(RigidFit, OnePointTellsAPlaceAndNoneNothing) {
+  const Eigen::Matrix3Xd point = Eigen::Vector3d(1, 2, 3);
+  const RigidFit fit = FitRigidMotion(point, Turned() * point);
+  EXPECT_EQ(fit.span, 0);
+  EXPECT_LT((fit.motion.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+  EXPECT_LT((fit.motion * point - Turned() * point).norm(), 1e-15);
+  EXPECT_EQ(FitRigidMotion(Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)).span, -1);
+}
+
+}  // namespace
+}  // namespace lacuna
