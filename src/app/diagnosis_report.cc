@@ -120,8 +120,13 @@ void PrintInstead(const DiagnosisRecord& diagnosis) {
 }
 
 void PrintNoise(const DiagnosisRecord& diagnosis) {
+  std::string sigma;
+  if (diagnosis.noise > 0) sigma = fmt::format("{:.3g} mm of a coordinate", 1e3 * diagnosis.noise);
+  if (diagnosis.scan_noise > 0)
+    sigma += fmt::format("{}{:.3g} mm of a scanned point", sigma.empty() ? "" : " and ",
+                         1e3 * diagnosis.scan_noise);
   std::string text =
-      fmt::format("Noise: σ = {:.3f} mm, {}", 1e3 * diagnosis.noise,
+      fmt::format("Noise: σ = {}, {}", sigma,
                   diagnosis.correlation_time > 0
                       ? fmt::format("correlated over {:.3g} s", diagnosis.correlation_time)
                       : "white in time");

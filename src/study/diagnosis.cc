@@ -301,6 +301,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
                    const DiagnosisOptions& options, Progress* progress) {
   Diagnosis diagnosis;
   diagnosis.noise = problem.noise();
+  diagnosis.scan_noise = problem.scan_noise();
   diagnosis.errors = ErrorsOf(problem, fitted);
   Eigen::VectorXd values = fitted;
   // What is far off has other troubles than its discretisation.

@@ -53,7 +53,7 @@ struct Diagnosis {
   std::vector<std::string> effects;  // named by the verdict, nuisances too
   std::string explanation;           // in words
   std::string experiment;            // that would settle it; empty: none is needed
-  double noise = 0;                  // m
+  double noise = 0, scan_noise = 0;  // m: of a marker's coordinate, of a scanned point
   NoiseLevel noise_level;
   ModelErrors errors;                     // of the present model
   std::vector<RankedEffect> ranking;      // by first order's evidence

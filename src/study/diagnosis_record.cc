@@ -83,6 +83,7 @@ DiagnosisRecord FromJson(const json& value) {
   record.explanation = value.at("explanation");
   record.experiment = value.at("experiment");
   record.noise = value.at("noise_m");
+  record.scan_noise = value.at("scan_noise_m");
   record.correlation_time = value.at("noise_correlation_time_s");
   record.variance_factor = value.at("noise_variance_factor");
   record.control = value.at("control_evidence");
@@ -169,12 +170,13 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   json untried = json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  json all = {{"schema_version", 6},
+  json all = {{"schema_version", 7},
               {"verdict", VerdictName(diagnosis.verdict)},
               {"effects", diagnosis.effects},
               {"explanation", diagnosis.explanation},
               {"experiment", diagnosis.experiment},
               {"noise_m", diagnosis.noise},
+              {"scan_noise_m", diagnosis.scan_noise},
               {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
               {"noise_variance_factor", diagnosis.noise_level.variance},
               {"has_held_out", diagnosis.errors.has_held_out},

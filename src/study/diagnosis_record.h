@@ -51,12 +51,12 @@ struct DiagnosisRecord {
   std::string verdict;               // "missing", "adequate", …
   std::vector<std::string> effects;  // that it names, the best first
   std::string explanation, experiment;
-  double noise = 0;             // m
-  double correlation_time = 0;  // s, of the noise
-  double variance_factor = 1;   // of the noise against what was given
-  double control = 0;           // the evidence that one in twenty controls finds without an effect
-  double left_in_noise = 0;     // σ, of the best hypothesis
-  ModelErrors errors;           // of the model as it is
+  double noise = 0, scan_noise = 0;  // m, of a coordinate, of a scanned point
+  double correlation_time = 0;       // s, of the noise
+  double variance_factor = 1;        // of the noise against what was given
+  double control = 0;        // the evidence that one in twenty controls finds without an effect
+  double left_in_noise = 0;  // σ, of the best hypothesis
+  ModelErrors errors;        // of the model as it is
   std::vector<RecordedNuisance> nuisances;
   std::vector<RecordedEffect> ranking;
   std::vector<UntriedEffect> untried;  // with the reason
