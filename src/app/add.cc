@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "effects/catalogue.h"
+#include "study/candidates.h"
 #include "study/diagnosis_run.h"
 #include "study/extended_experiment.h"
 
@@ -38,6 +40,20 @@ const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& 
                   type));
 }
 
+// An effect that the model has, and could not have twice, is told before the computation.
+void RequireRoomFor(const std::string& type, const CalibrationProblem& problem) {
+  const PredictionStudy& study = problem.study();
+  const bool is_there =
+      std::any_of(study.effects.begin(), study.effects.end(),
+                  [&](const auto& effect) { return effect->Card().type == type; });
+  if (!is_there) return;
+  const std::vector<CandidateEffect> candidates =
+      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), {}});
+  if (std::none_of(candidates.begin(), candidates.end(),
+                   [&](const CandidateEffect& candidate) { return candidate.type == type; }))
+    FindScored({}, type);
+}
+
 int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const FittedRun fitted = OpenRun(run);
   if (FindEntry(type) == nullptr) FindScored({}, type);  // told before the computation
@@ -45,6 +61,7 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   std::optional<ScoredEffect> diagnosed = FindDiagnosed(run, type);
   if (!diagnosed) {
     const CalibrationProblem problem(fitted.study, fitted.mesh);
+    RequireRoomFor(type, problem);
     diagnosed = FindScored(RankEffects(problem, fitted.values, &progress), type);
   }
   const ScoredEffect& effect = *diagnosed;

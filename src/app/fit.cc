@@ -15,11 +15,8 @@ namespace {
 
 int Fit(const std::string& file) {
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
-  for (const PredictedRecording& item : study.recordings)
-    for (const std::string& warning : item.recording.warnings)
-      fmt::print(stderr, "warning: {}: {}\n", item.name, warning);
-  for (const std::string& warning : {RestWarning(study), SlownessWarning(study)})
-    if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : StudyWarnings(study))
+    fmt::print(stderr, "warning: {}\n", warning);
   Progress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   PrintCalibration(record);

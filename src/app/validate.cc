@@ -9,6 +9,7 @@
 #include "scan/recording.h"
 #include "study/prediction_study.h"
 #include "study/reconstruction.h"
+#include "study/recorded_motion.h"
 #include "study/scene.h"
 
 namespace lacuna {
@@ -29,6 +30,7 @@ int Validate(const std::filesystem::path& path, bool show) {
       fmt::print("{}: a sound scene\n", path.string());
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
+      for (const std::string& warning : StudyWarnings(study)) fmt::print("warning: {}\n", warning);
       fmt::print("{}: a sound experiment for `lacuna fit` on {} recordings\n", path.string(),
                  study.recordings.size());
     } else {

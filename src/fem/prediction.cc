@@ -65,7 +65,10 @@ PredictionSummary Predict(
   MotionHistory before = history;
   const StepSummary equilibrium = Hold(options, &stepper, &history);
   if (!equilibrium.IsUsable())
-    return Stopped(summary, "no equilibrium to start from: " + equilibrium.message);
+    return Stopped(summary, (model.grips.empty()
+                                 ? "no equilibrium to start from, and no grip holds the object: "
+                                 : "no equilibrium to start from: ") +
+                                equilibrium.message);
   summary.held = history.position;
   TangentLinearSummary linearised =
       linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position);

@@ -67,20 +67,49 @@ std::string RestWarning(const PredictionStudy& study) {
          "loads, but not of mass, damping, drag or anything else that needs motion";
 }
 
-std::string SlownessWarning(const PredictionStudy& study) {
+namespace {
+
+std::string SlownessWarning(const PredictedRecording& item, const PredictionStudy& study) {
   constexpr double kMany = 50;  // for one frame
-  if (study.scheme == TimeScheme::kQuasiStatic) return "";
+  const std::vector<double>& times = item.recording.times;
+  const double steps = (times[item.frames.back()] - times[item.frames.front()]) / study.time_step;
+  if (study.scheme == TimeScheme::kQuasiStatic ||
+      steps <= kMany * static_cast<double>(item.frames.size()))
+    return "";
+  return fmt::format(
+      "{}: takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in each "
+      "of "
+      "them, `motion: {{scheme: quasi_static}}` takes as many as there are frames",
+      item.name, steps, 1e3 * study.time_step, item.frames.size());
+}
+
+std::string UnseenWarning(const PredictedRecording& item) {
+  if (item.recording.kind != FrameKind::kMarkers) return "";
+  const auto is_unseen = [&](int frame) {
+    const Eigen::Matrix3Xd& here = item.recording.markers.positions[frame];
+    return (here.array().isNaN().colwise().any()).all();
+  };
+  const auto first = std::find_if(item.frames.begin(), item.frames.end(), is_unseen);
+  if (first == item.frames.end()) return "";
+  return fmt::format(
+      "{}: {} of {} frames show no marker, the first is frame {}; they are not compared", item.name,
+      std::count_if(first, item.frames.end(), is_unseen), item.frames.size(), *first);
+}
+
+}  // namespace
+
+std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& warning) {
+    if (!warning.empty()) warnings.push_back(warning);
+  };
   for (const PredictedRecording& item : study.recordings) {
-    const std::vector<double>& times = item.recording.times;
-    const double steps = (times[item.frames.back()] - times[item.frames.front()]) / study.time_step;
-    if (steps > kMany * static_cast<double>(item.frames.size()))
-      return fmt::format(
-          "{} takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in "
-          "each "
-          "of them, `motion: {{scheme: quasi_static}}` takes as many as there are frames",
-          item.name, steps, 1e3 * study.time_step, item.frames.size());
+    for (const std::string& warning : item.recording.warnings) add(item.name + ": " + warning);
+    add(UnseenWarning(item));
+    add(SlownessWarning(item, study));
   }
-  return "";
+  add(RestWarning(study));
+  return warnings;
 }
 
 double RestDeformation(const PredictedRecording& item) {

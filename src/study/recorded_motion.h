@@ -3,6 +3,7 @@
 #define LACUNA_STUDY_RECORDED_MOTION_H_
 
 #include <string>
+#include <vector>
 
 #include "study/prediction_study.h"
 
@@ -15,8 +16,9 @@ bool IsAtRest(const PredictedRecording& item);
 bool IsAtRest(const PredictionStudy& study);
 // What a user should know of a study at rest; empty where something moves.
 std::string RestWarning(const PredictionStudy& study);
-// The same of frames between which a motion with inertia takes very many steps; else empty.
-std::string SlownessWarning(const PredictionStudy& study);
+// All that a user should know of a study before the computation: that, what its recordings warn of,
+// frames that show no marker, and frames between which a motion with inertia takes very many steps.
+std::vector<std::string> StudyWarnings(const PredictionStudy& study);
 
 // Of markers at rest: how far the farthest is on average from its place on the undeformed object,
 // m.

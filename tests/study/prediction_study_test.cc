@@ -252,12 +252,25 @@ TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
 
 TEST_F(ReadingAPredictionStudy, TellsOfASlowRecording) {
   PredictionStudy study = ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""}});
-  EXPECT_EQ(SlownessWarning(study), "");
+  EXPECT_THAT(StudyWarnings(study), ElementsAre());
   for (double& time : study.recordings[0].recording.times) time *= 1000;  // a frame in 10 s
-  EXPECT_THAT(SlownessWarning(study),
-              HasSubstr("50000 steps of 5 ms for 26 frames: if the object is in equilibrium"));
+  study.recordings[0].fit_until *= 1000;
+  EXPECT_THAT(StudyWarnings(study),
+              ElementsAre(HasSubstr("50000 steps of 5 ms for 26 frames: if the object is in "
+                                    "equilibrium")));
   study.scheme = TimeScheme::kQuasiStatic;
-  EXPECT_EQ(SlownessWarning(study), "");
+  EXPECT_THAT(StudyWarnings(study), ElementsAre());
+}
+
+TEST_F(ReadingAPredictionStudy, TellsOfFramesWithoutMarkers) {
+  std::vector<Eigen::Matrix3Xd> markers = Moving(0.001);
+  for (const int frame : {12, 13})
+    markers[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+  markers[14].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(StudyWarnings(ReadBarStudy(folder_.Path())),
+              ElementsAre("bar: 2 of 26 frames show no marker, the first is frame 12; they are not "
+                          "compared"));
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesStepsThatFollowNoMotion) {
