@@ -6,8 +6,9 @@
 namespace lacuna {
 namespace {
 
-// Points that are no wider than this part of their length lie on a line.
-constexpr double kWidth = 1e-3;
+// Points that are no wider than this part of their length lie on a line: their errors would make a
+// turn about it twenty times the one that they make across.
+constexpr double kWidth = 0.05;
 
 }  // namespace
 

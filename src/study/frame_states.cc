@@ -17,18 +17,11 @@ namespace {
 constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
 
 // Rows of the file → columns; rows that the frame lacks are NaN.
-Eigen::Matrix3Xd ByRow(const Frame& frame) {
-  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Constant(3, frame.row_count, kNotSeen);
-  for (Eigen::Index j = 0; j < frame.cloud.Size(); ++j)
-    points.col(frame.source_row[j]) = frame.cloud.points.col(j);
-  return points;
-}
-
 bool IsHeldOut(Eigen::Index row, int every) { return every > 0 && row % every == every - 1; }
 
 // Splits tracked points into those that may be used and those kept for the check.
 void SplitTracked(const Frame& frame, int hold_out_every, FrameState* state) {
-  const Eigen::Matrix3Xd points = ByRow(frame);
+  const Eigen::Matrix3Xd points = PointsByRow(frame);
   std::vector<Eigen::Index> used, held_out;
   for (Eigen::Index row = 0; row < points.cols(); ++row)
     (IsHeldOut(row, hold_out_every) ? held_out : used).push_back(row);
@@ -51,6 +44,13 @@ Eigen::Matrix3Xd ReadPoints(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+Eigen::Matrix3Xd PointsByRow(const Frame& frame) {
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Constant(3, frame.row_count, kNotSeen);
+  for (Eigen::Index j = 0; j < frame.cloud.Size(); ++j)
+    points.col(frame.source_row[j]) = frame.cloud.points.col(j);
+  return points;
+}
 
 PointCloud StatePoints(const FrameState& state) {
   if (state.surface.triangles.cols() == 0) return state.cloud;

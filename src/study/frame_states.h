@@ -23,6 +23,9 @@ struct FrameState {
   Eigen::Matrix3Xd held_out;
 };
 
+// Of a tracked frame, 3 × rows, m; NaN where a row was not seen.
+Eigen::Matrix3Xd PointsByRow(const Frame& frame);
+
 // The points that stand for the state in a registration: the surface's vertices, or the cloud.
 PointCloud StatePoints(const FrameState& state);
 

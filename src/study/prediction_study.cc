@@ -10,6 +10,7 @@
 
 #include "effects/catalogue.h"
 #include "study/recorded_motion.h"
+#include "study/tracked_points.h"
 
 namespace lacuna {
 namespace {
@@ -51,7 +52,7 @@ double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
 void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
   constexpr double kLarge = 0.25, kBeyondNoise = 3;
   const Recording& recording = item.recording;
-  if (item.hold || recording.kind != FrameKind::kMarkers || item.frames.size() < 3) return;
+  if (item.hold || item.scans != nullptr || item.frames.size() < 3) return;
   const auto& positions = recording.markers.positions;
   const Eigen::Matrix3Xd& first = positions[item.frames[0]];
   const double step = LargestMove(first, positions[item.frames[1]]);
@@ -71,11 +72,15 @@ void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
 void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
   const Recording& recording = item.recording;
   const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
-  if (recording.kind == FrameKind::kMarkers) {
+  if (recording.tracked && item.hold)
+    config.Fail("hold",
+                "tracked points sit on the object where the first frame shows them, so it may not "
+                "be held out of shape there");
+  if (item.scans == nullptr) {
     if (!recording.marker_places.allFinite())
       config.Fail("recording",
                   "lacks marker_places: where each marker sits on the undeformed object");
-    if (of_first_frame)
+    if (of_first_frame && !recording.tracked)
       config.Fail("recording", "has no reference shape: markers alone do not tell it");
     for (const RecordedGrip& grip : recording.grips)
       if (grip.motion == GripMotion::kFollowsScan)
@@ -108,8 +113,8 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   PredictedRecording item;
   item.recording = LoadRecording(config.Path("recording"));
   item.name = config.Text("name", item.recording.name);
-  if (item.recording.kind != FrameKind::kMarkers)
-    item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
+  const bool is_scan = item.recording.kind != FrameKind::kMarkers && !item.recording.tracked;
+  if (is_scan) item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
   const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
   const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
   item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
@@ -136,6 +141,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   }
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
+  if (item.recording.tracked) SeeAsMarkers(item.frames, &item.recording);
   CheckObserved(config, item, tells_the_shape);
   if (scheme == TimeScheme::kQuasiStatic) {
     if (item.hold)

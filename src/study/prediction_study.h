@@ -33,7 +33,7 @@ struct Hold {
 struct PredictedRecording {
   std::string name;
   Recording recording;
-  std::shared_ptr<const ScanFrames> scans;  // its points; null: markers
+  std::shared_ptr<const ScanFrames> scans;  // its points; null: markers, or points that are tracked
   std::vector<int> frames;                  // ascending
   bool fitted = true;                       // false: only predicted
   // Frames after this time are held out: predicted, not fitted. s

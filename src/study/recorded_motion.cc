@@ -84,7 +84,7 @@ std::string SlownessWarning(const PredictedRecording& item, const PredictionStud
 }
 
 std::string UnseenWarning(const PredictedRecording& item) {
-  if (item.recording.kind != FrameKind::kMarkers) return "";
+  if (item.scans != nullptr) return "";
   const auto is_unseen = [&](int frame) {
     const Eigen::Matrix3Xd& here = item.recording.markers.positions[frame];
     return (here.array().isNaN().colwise().any()).all();

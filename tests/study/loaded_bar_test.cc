@@ -100,6 +100,10 @@ class LoadedBar : public testing::Test {
     for (int row = -1; std::getline(lines, line); ++row)
       csv << (row < 0 ? line : fmt::format("{}{}", row, line.substr(line.find(',')))) << '\n';
     csv.close();
+    return Experiment(more);
+  }
+
+  PredictionStudy Experiment(const std::string& more) const {
     return ReadPredictionStudy(
         Config::Parse(fmt::format(R"(schema_version: 1
 name: loaded bar
@@ -129,6 +133,40 @@ TEST_F(LoadedBar, IsFittedInAStepAFrame) {
   EXPECT_NEAR(fit.calibration.parameters[0], kModulus, 0.02 * kModulus);
   EXPECT_NEAR(fit.calibration.parameters[1], kRatio, 0.05);
   EXPECT_LT(fit.calibration.rms, 1.2);
+}
+
+// Points of an image correlation are as good as markers.
+TEST_F(LoadedBar, ComesAsTrackedPointsToo) {
+  Record({});
+  for (int k = 0; k < kLoads; ++k) {
+    std::ofstream points(folder_ / fmt::format("points_{:02}.csv", k));
+    points << "x,y,z\n";
+    const Eigen::Matrix3Xd places = BarMarkerPlaces().array() + 1e-3 * k;
+    for (const auto& point : places.colwise())
+      points << fmt::format("{},{},{}\n", point.x(), point.y(), point.z());
+    points << (k == 5 ? "nan,nan,nan\n" : "0.04,0.01,0\n");  // lost in one frame
+  }
+  std::string text = FileContent(folder_ / "recording.yaml");
+  const size_t frames = text.find("frames:"), fixed = text.find("fixed:");
+  text.replace(frames, fixed - frames,
+               "frames: {kind: points, pattern: points_%02d.csv, count: 16, rate: 1 Hz, "
+               "tracked: true, columns: {x: x, y: y, z: z}}\n");
+  text.replace(text.find("fixed: [{name"), 13, "gripped: [{follows: scan, name");
+  std::ofstream(folder_ / "recording.yaml") << text;
+  EXPECT_THAT([&] { Experiment(""); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("region \"clamp\"")));
+  text.replace(text.find("point: [0.002 m"), 15, "point: [0.025 m");
+  std::ofstream(folder_ / "recording.yaml") << text;
+  const PredictionStudy study = Experiment("");
+  const PredictedRecording& item = study.recordings[0];
+  EXPECT_EQ(item.scans, nullptr);
+  ASSERT_EQ(item.recording.markers.names.size(), 9u);
+  EXPECT_EQ(item.recording.markers.names[8], "p8");
+  EXPECT_TRUE(item.recording.marker_places.leftCols(8).isApprox(BarMarkerPlaces(), 1e-9));
+  EXPECT_TRUE(item.recording.markers.positions[5].col(8).array().isNaN().all());
+  EXPECT_EQ(item.recording.markers.positions[4](0, 8), 0.04);
+  EXPECT_EQ(item.recording.grips[0].motion, GripMotion::kFollowsMarkers);
+  EXPECT_THAT(item.recording.grips[0].markers, testing::ElementsAre("p0", "p1"));
 }
 
 TEST_F(LoadedBar, TellsThatItCreeps) {
