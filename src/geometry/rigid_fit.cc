@@ -10,12 +10,17 @@ namespace {
 // turn about it twenty times the one that they make across.
 constexpr double kWidth = 0.05;
 
-}  // namespace
-
-RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+std::vector<Eigen::Index> SeenInBoth(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   std::vector<Eigen::Index> seen;
   for (Eigen::Index k = 0; k < from.cols(); ++k)
     if (from.col(k).allFinite() && to.col(k).allFinite()) seen.push_back(k);
+  return seen;
+}
+
+}  // namespace
+
+RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
   RigidFit fit;
   if (seen.empty()) return fit;
   const Eigen::Vector3d from_centre = from(Eigen::all, seen).rowwise().mean();
@@ -44,6 +49,29 @@ RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to
   fit.motion.linear() = turn;
   fit.motion.translation() = to_centre - turn * from_centre;
   return fit;
+}
+
+Eigen::Affine3d FitAffineMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                const RigidFit& rigid) {
+  const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
+  Eigen::Affine3d motion(rigid.motion);
+  if (rigid.span < 1) return motion;
+  const Eigen::Vector3d from_centre = from(Eigen::all, seen).rowwise().mean();
+  const Eigen::Vector3d to_centre = to(Eigen::all, seen).rowwise().mean();
+  const Eigen::Matrix3Xd a = from(Eigen::all, seen).colwise() - from_centre;
+  const Eigen::Matrix3Xd b = to(Eigen::all, seen).colwise() - to_centre;
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::Matrix3d linear = rigid.motion.linear();
+  for (Eigen::Index k = 0; k < shape.singularValues().size(); ++k) {
+    const double extent = shape.singularValues()[k];
+    if (extent <= kWidth * shape.singularValues()[0]) break;
+    const Eigen::Vector3d along = shape.matrixU().col(k);
+    linear +=
+        (b * shape.matrixV().col(k) / extent - rigid.motion.linear() * along) * along.transpose();
+  }
+  motion.linear() = linear;
+  motion.translation() = to_centre - linear * from_centre;
+  return motion;
 }
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// The rigid motion that carries points nearest to where they were seen.
+// The rigid motion that carries points nearest to where they were seen, and the affine one.
 #ifndef LACUNA_GEOMETRY_RIGID_FIT_H_
 #define LACUNA_GEOMETRY_RIGID_FIT_H_
 
@@ -17,6 +17,11 @@ struct RigidFit {
 // Least squares (S. Umeyama, IEEE PAMI 13, 1991, without scale). `from`, `to`: 3 × n, m; a point
 // that is not finite in either is left out.
 RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to);
+
+// The same with a stretch and shear along what the points span, least squares too; across that it
+// is `rigid`, their FitRigidMotion.
+Eigen::Affine3d FitAffineMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                const RigidFit& rigid);
 
 }  // namespace lacuna
 

@@ -166,6 +166,8 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recor
     } else {
       item.Choice<int>("follows", {{"scan", 0}}, "scan");
     }
+    grip.deforms = item.Flag("deforms", false);
+    if (grip.deforms && path) item.Fail("deforms", "the path tells a rigid motion");
     grips.push_back(std::move(grip));
   }
   return grips;

@@ -13,7 +13,8 @@ namespace lacuna {
 // `follows_markers: [..]`, or `path: {file, time, x, y, z, time_unit, length_unit}` with one row
 // per moment (columns by name or number), the first one at the undeformed place; with
 // `turn: {x, y, z, unit, about}` in the path, three more columns of the same file are a rotation
-// vector. `file_times` are those of all frames in the files, also of the ones that were not chosen.
+// vector. `deforms: true`: what follows stretches as well. `file_times` are those of all frames in
+// the files, also of the ones that were not chosen.
 std::vector<RecordedGrip> ReadGrips(const Config& config, const Recording& recording,
                                     const std::vector<double>& file_times);
 

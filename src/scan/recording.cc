@@ -174,9 +174,11 @@ std::string DescribeReference(const ReferenceShape& reference) {
 
 std::string DescribeGrip(const RecordedGrip& grip) {
   std::string text = fmt::format("{}: {}", grip.region.name, DescribeRegion(grip.region));
-  if (grip.motion == GripMotion::kFollowsScan) return text + ", follows the scan";
   if (grip.motion == GripMotion::kGiven) return text + ", moves along a given path";
-  return text + fmt::format(", follows the markers {}", fmt::join(grip.markers, ", "));
+  text += grip.motion == GripMotion::kFollowsScan
+              ? ", follows the scan"
+              : fmt::format(", follows the markers {}", fmt::join(grip.markers, ", "));
+  return text + (grip.deforms ? " and deforms with it" : "");
 }
 
 const char* KindName(FrameKind kind) {

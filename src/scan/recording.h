@@ -28,13 +28,14 @@ enum class FrameKind { kPoints, kMesh, kDepth, kMarkers };
 // A part of the object that is moved from outside.
 enum class GripMotion {
   kFollowsScan,     // as the scanned surface moves there
-  kFollowsMarkers,  // rigidly with the named markers
+  kFollowsMarkers,  // with the named markers
   kGiven            // along a given path
 };
 struct RecordedGrip {
   Region region;
   GripMotion motion = GripMotion::kFollowsScan;
   std::vector<std::string> markers;  // kFollowsMarkers
+  bool deforms = false;              // it need not move as a rigid body; not kGiven
   Eigen::VectorXd times;             // kGiven: k, s, ascending
   Eigen::Matrix3Xd displacements;    // kGiven: 3 × k, m, from the undeformed place
   Eigen::Matrix3Xd turns;  // kGiven: 3 × k, rad, rotation vectors; 3 × 0: it does not turn

@@ -81,17 +81,21 @@ const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& befo
         continue;
       case GripMotion::kFollowsScan: {
         const Eigen::Matrix3Xd here = before(Eigen::all, track->nodes);
-        place = FitRigidMotion(here, moved(Eigen::all, track->nodes)).motion * here;
+        const Eigen::Matrix3Xd there = moved(Eigen::all, track->nodes);
+        const RigidFit fit = FitRigidMotion(here, there);
+        place = track->grip.deforms ? FitAffineMotion(here, there, fit) * here : fit.motion * here;
         break;
       }
       case GripMotion::kFollowsMarkers: {
         const Eigen::Matrix3Xd at_rest = recording_.marker_places(Eigen::all, track->markers);
-        const RigidFit fit = FitRigidMotion(at_rest, markers(Eigen::all, track->markers));
+        const Eigen::Matrix3Xd seen = markers(Eigen::all, track->markers);
+        const RigidFit fit = FitRigidMotion(at_rest, seen);
         if (fit.span < std::max(track->span, 0)) {
           lost = &track->grip;
           continue;
         }
-        place = fit.motion * track->rest;
+        place = track->grip.deforms ? FitAffineMotion(at_rest, seen, fit) * track->rest
+                                    : fit.motion * track->rest;
         break;
       }
     }

@@ -12,9 +12,9 @@
 
 namespace lacuna {
 
-// Fixed regions stay where they rest. A gripped region moves as a rigid body: along its given path,
-// with its markers, or as the scanned surface moves there; of the last two, positions between two
-// frames are interpolated linearly.
+// Fixed regions stay where they rest. A gripped region moves as a rigid body, or, where it deforms,
+// affinely: along its given path, with its markers, or as the scanned surface moves there; of the
+// last two, positions between two frames are interpolated linearly.
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError

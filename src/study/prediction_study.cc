@@ -88,7 +88,15 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
                     fmt::format("{} is to follow the scan, but there are only markers: "
                                 "give `follows_markers` or a `path`",
                                 grip.region.name));
-  } else if (tells_the_shape && of_first_frame && item.hold) {
+    return;
+  }
+  for (const RecordedGrip& grip : recording.grips)
+    if (grip.deforms)
+      config.Fail("recording",
+                  fmt::format("{} is to deform with the scan, whose points are not told "
+                              "apart: only markers and tracked points tell that",
+                              grip.region.name));
+  if (tells_the_shape && of_first_frame && item.hold) {
     config.Fail("hold",
                 "the recording's reference shape is its first frame, in which the object is held "
                 "out of shape: give a `reference` mesh");

@@ -71,5 +71,30 @@ TEST(RigidFit, OnePointTellsAPlaceAndNoneNothing) {
   EXPECT_EQ(FitRigidMotion(Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)).span, -1);
 }
 
+TEST(AffineFit, StretchesAlongWhatThePointsSpan) {
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0, 1, 0, 1, 0, 0, 1, 1, 2, 2, 2, 2;
+  Eigen::Affine3d stretched = Eigen::Affine3d::Identity();
+  stretched.linear() << 1.3, 0.1, 0, 0.1, 0.9, 0, 0, 0, 1;
+  const Eigen::Affine3d motion = Turned() * stretched;
+  const Eigen::Matrix3Xd there = motion * points;
+  const Eigen::Affine3d found = FitAffineMotion(points, there, FitRigidMotion(points, there));
+  EXPECT_LT((found.matrix() - motion.matrix()).norm(), 1e-9);
+}
+
+TEST(AffineFit, StretchesALineAndMovesAPoint) {
+  Eigen::Matrix3Xd points(3, 2);
+  points << 0, 1, 0, 0, 0, 0;
+  const Eigen::Matrix3Xd longer = 2 * points;
+  Eigen::Matrix3d twice = Eigen::Vector3d(2, 1, 1).asDiagonal();
+  EXPECT_LT(
+      (FitAffineMotion(points, longer, FitRigidMotion(points, longer)).linear() - twice).norm(),
+      1e-12);
+  const Eigen::Matrix3Xd point = Eigen::Vector3d(1, 2, 3), moved = 2 * point;
+  const Eigen::Affine3d found = FitAffineMotion(point, moved, FitRigidMotion(point, moved));
+  EXPECT_LT((found.linear() - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+  EXPECT_LT((found * point - moved).norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace lacuna

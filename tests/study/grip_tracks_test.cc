@@ -35,6 +35,7 @@ class CarriedByMarkers : public testing::Test {
     grip.region = {"hand", HalfSpaceRegion{{0.002, 0, 0}, {-1, 0, 0}}};
     grip.motion = GripMotion::kFollowsMarkers;
     grip.markers = names;
+    grip.deforms = deforms_;
     recording_.grips = {grip};
     model_ = {};
     model_.body = std::make_shared<const Body>(MakeBody(mesh_, 1000));
@@ -58,6 +59,7 @@ class CarriedByMarkers : public testing::Test {
       Eigen::Translation3d(0.01, 0.02, -0.01) * Eigen::Isometry3d(RotationBy({0.1, 0.2, -0.1}));
   Eigen::Matrix3Xd rest_, at_middle_;
   std::string lost_;
+  bool deforms_ = false;
   bool first_lost_ = true;
 };
 
@@ -66,6 +68,20 @@ TEST_F(CarriedByMarkers, MovesAsTheyDo) {
   EXPECT_FALSE(first_lost_);
   EXPECT_EQ(lost_, "");
   EXPECT_LT((at_middle_ - motion_ * rest_).norm(), 1e-12);
+}
+
+TEST_F(CarriedByMarkers, DeformsWithThemWhereItMay) {
+  const Eigen::Vector3d stretch(1, 1.2, 0.9);  // the markers lie in the plane x = 0
+  const Eigen::Matrix3Xd wide = stretch.asDiagonal() * recording_.marker_places;
+  Follow({"a", "b", "c", "d"}, wide);
+  const auto inner = [](const Eigen::Matrix3Xd& places) -> Eigen::MatrixXd {
+    const Eigen::Matrix3Xd about = places.colwise() - Eigen::Vector3d(places.col(0));
+    return about.transpose() * about;
+  };
+  EXPECT_LT((inner(at_middle_) - inner(rest_)).norm(), 1e-12);  // rigid
+  deforms_ = true;
+  Follow({"a", "b", "c", "d"}, wide);
+  EXPECT_LT((at_middle_ - stretch.asDiagonal() * rest_).norm(), 1e-12);
 }
 
 TEST_F(CarriedByMarkers, DoesWithoutOneThatIsHidden) {
