@@ -13,10 +13,10 @@
 namespace lacuna {
 
 // A prediction's next step after `steps_before`, from `time`, s; `wanted`: the next of the times
-// asked for, after it. The first step, of implicit Euler, is a tenth of the others:
-// letting go is a shock, and what that step gets wrong of it goes with the square of its length.
-// Quasi-static steps are as even as they can be and end at the times asked for: between two
-// equilibria nothing tells a velocity.
+// asked for, after it. The first step, of implicit Euler, is a tenth of the others: letting go is a
+// shock, and what that step gets wrong of it goes with the square of its length. Quasi-static steps
+// are as even as they can be and end at the times asked for: between two equilibria nothing tells a
+// velocity.
 struct PredictionStep {
   double length = 0, end = 0;  // s
 };

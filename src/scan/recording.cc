@@ -178,7 +178,7 @@ std::string DescribeGrip(const RecordedGrip& grip) {
   text += grip.motion == GripMotion::kFollowsScan
               ? ", follows the scan"
               : fmt::format(", follows the markers {}", fmt::join(grip.markers, ", "));
-  return text + (grip.deforms ? " and deforms with it" : "");
+  return text + (grip.deforms ? ", which may deform" : "");
 }
 
 const char* KindName(FrameKind kind) {

@@ -20,7 +20,8 @@ using Values = std::map<std::string, double>;
 struct Variant {
   std::string name;
   Values values;
-  int line = 0;  // as in CandidateEffect
+  int line = 0;                                    // as in CandidateEffect
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // and this
 };
 
 // The object's shape in a few numbers.
@@ -115,7 +116,10 @@ std::vector<Variant> Directions(const Extent& extent) {
     const Eigen::Vector3d steps((code + 1) % 3 - 1, (code / 3 + 1) % 3 - 1, (code / 9 + 1) % 3 - 1);
     // Of two opposite ones, the one whose last step is forwards.
     const double last = steps[2] != 0 ? steps[2] : steps[1] != 0 ? steps[1] : steps[0];
-    if (last > 0) variants.push_back(AlongDirection((extent.axis * steps).normalized()));
+    if (last <= 0) continue;
+    const Eigen::Vector3d axis = (extent.axis * steps).normalized();
+    variants.push_back(AlongDirection(axis));
+    variants.back().axis = axis;
   }
   return variants;
 }
@@ -260,6 +264,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
       candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
       candidates.back().line = variant.line;
+      candidates.back().axis = variant.axis;
       candidates.back().known = PlacesOn(setting.body);
     }
   }

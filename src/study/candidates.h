@@ -27,6 +27,9 @@ struct CandidateEffect {
   std::map<std::string, double> refined = {};
   // Variants of the same line, one after another in the list, are neighbours: in place or time.
   int line = 0;  // 0: they have none
+  // Of variants that differ in direction, either way along it; near ones are neighbours. 0: of the
+  // others.
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
   struct Range {
     double min = 0, max = 0;

@@ -14,6 +14,9 @@ namespace {
 
 // First order cannot tell effects apart whose derivatives are this parallel.
 constexpr double kLookAlike = 0.95;
+// Directions less than this apart, rad, are neighbours: of the object's axes and their diagonals,
+// an axis and the diagonals beside it.
+constexpr double kNeighbourAngle = 1;
 // A nuisance is taken for granted with odds of e⁵, and where no effect explains as much.
 constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
@@ -78,7 +81,8 @@ class HypothesisRanking {
   Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
   void ScoreDiscretisation();
   void ScoreEffects(const LinearFit& before);
-  double BestEvidence() const;  // of an effect; 0: none has more
+  double BestEvidence() const;                   // of an effect; 0: none has more
+  bool AreNeighbours(size_t a, size_t b) const;  // variants
   bool IsBetterThanNeighbours(size_t candidate) const;
   // The best nuisance that is not in the model; −1: there is none.
   int ScoreNuisances(const LinearFit& before);
@@ -225,14 +229,19 @@ double HypothesisRanking::BestEvidence() const {
   return entries_.empty() ? 0 : std::max(0.0, scores_[entries_[0].best].evidence);
 }
 
+bool HypothesisRanking::AreNeighbours(size_t a, size_t b) const {
+  const CandidateEffect &one = candidates_[a], &other = candidates_[b];
+  if (a == b || one.type != other.type) return false;
+  const bool in_line = one.line > 0 && one.line == other.line && (a + 1 == b || b + 1 == a);
+  return in_line || std::abs(one.axis.dot(other.axis)) > std::cos(kNeighbourAngle);
+}
+
 bool HypothesisRanking::IsBetterThanNeighbours(size_t candidate) const {
-  const auto is_beaten_by = [&](size_t other) {
-    return candidates_[other].type == candidates_[candidate].type &&
-           candidates_[other].line == candidates_[candidate].line &&
-           scores_[other].evidence >= scores_[candidate].evidence;
-  };
-  return candidates_[candidate].line > 0 && (candidate == 0 || !is_beaten_by(candidate - 1)) &&
-         (candidate + 1 == candidates_.size() || !is_beaten_by(candidate + 1));
+  if (candidates_[candidate].line == 0 && candidates_[candidate].axis.isZero(0)) return false;
+  for (size_t other = 0; other < candidates_.size(); ++other)
+    if (AreNeighbours(candidate, other) && scores_[other].evidence >= scores_[candidate].evidence)
+      return false;
+  return true;
 }
 
 int HypothesisRanking::ScoreNuisances(const LinearFit& before) {

@@ -96,7 +96,8 @@ class Follower {
     const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, state.tracked);
     if (lost != nullptr)
       throw InputError(
-          fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen",
+          fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen, or their "
+                      "marker_places are not told",
                       study_.recording.file.string(), state.time, lost->region.name));
 
     Eigen::VectorXd start = Stacked(before + shift);

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
 
-// Rows of the file → columns; rows that the frame lacks are NaN.
 bool IsHeldOut(Eigen::Index row, int every) { return every > 0 && row % every == every - 1; }
 
 // Splits tracked points into those that may be used and those kept for the check.

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/parallel.h"
+#include "effects/catalogue.h"
 #include "study/calibration_fits.h"
 #include "study/effect_ranking.h"
 #include "study/held_bar.h"
@@ -75,6 +76,34 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
   const Eigen::MatrixXd white = WhitenedRows(here.by, here, 0, true);
   EXPECT_LT((fitted.jacobian - white.topRows(fitted.jacobian.rows())).norm(),
             1e-6 * fitted.jacobian.norm());
+}
+
+// Softer across is, to first order, much like stiffer along; a refit tries both.
+TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
+  const TemporaryFolder folder;
+  HeldBarTruth truth;
+  truth.hidden = {
+      MakeEffect("fibre_stiffness", {{"modulus", 5e4}, {"azimuth", 0.6}, {"inclination", 0}})};
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
+  const Calibration calibration = FitOf(problem);
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRanking ranking = RankEffects(problem, calibration.parameters, &progress);
+  const auto fibres = std::find_if(
+      ranking.effects.begin(), ranking.effects.end(),
+      [](const ScoredEffect& effect) { return effect.candidate.type == "fibre_stiffness"; });
+  ASSERT_NE(fibres, ranking.effects.end());
+  ASSERT_FALSE(fibres->elsewhere.empty());
+  const auto is_other = [&](const ScoredVariant& other) {
+    return std::abs(other.candidate.axis.dot(fibres->candidate.axis)) < 0.55 &&
+           other.score.evidence < fibres->score.evidence;
+  };
+  EXPECT_TRUE(std::all_of(fibres->elsewhere.begin(), fibres->elsewhere.end(), is_other));
+  EXPECT_GT(fibres->elsewhere.front().score.evidence, 0.3 * fibres->score.evidence);
+  EXPECT_LT(fibres->elsewhere.front().score.size[0] * fibres->score.size[0], 0);
 }
 
 TEST(CalibrationProblem, RecoversWhatWasFilmed) {
