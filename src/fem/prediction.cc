@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/interrupt.h"
 #include "geometry/hermite.h"
 
 namespace lacuna {
@@ -87,6 +88,7 @@ PredictionSummary Predict(
   while (next < wanted && times[next] <= options.start_time) visit_next(state, by);
 
   while (next < wanted) {
+    ThrowIfInterrupted();
     before = history;
     const auto [length, end] =
         NextStep(options.step.scheme, options.time_step, summary.steps, history.time, times[next]);

@@ -58,7 +58,7 @@ struct PredictionSummary {
 // Visits the motion at `times` (s, ascending), between the ends of steps by cubic Hermite
 // interpolation, whose error is of higher order than the step's. A step that fails ends the
 // prediction; the states visited before are good. Quasi-static: the body is in equilibrium
-// throughout, and its velocity is the step's mean.
+// throughout, and its velocity is the step's mean. Throws Interrupted.
 PredictionSummary Predict(const Model& model, const PredictionOptions& options,
                           const std::vector<double>& times,
                           const std::vector<Perturbation>& perturbations,

@@ -127,13 +127,14 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   // of which bending stiffness goes with the cube.
   for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit_))
     AddNuisance(std::move(nuisance), true);
+  const Eigen::MatrixXd by_grips = misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects);
+  if (auto jitter = grips.Jitter(problem, misfit_, by_grips)) AddNuisance(*std::move(jitter), true);
   always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
 
   // What no effect explains is taken for noise.
   const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
   ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols(), problem.LeastNoiseVariance());
-  for (NuisanceCandidate& nuisance :
-       grips.Candidates(misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects)))
+  for (NuisanceCandidate& nuisance : grips.Candidates(by_grips))
     AddNuisance(std::move(nuisance), false);
   for (NuisanceCandidate& nuisance : MeasurementNuisances(
            problem, misfit_,

@@ -55,6 +55,12 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
     if (!track->markers.empty()) {
       const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, track->markers);
       track->span = FitRigidMotion(places, places).span;
+      if (grip.deforms && track->span < 2)
+        throw InputError(fmt::format("{}: \"{}\" is to deform with its markers, which {}",
+                                     recording.file.string(), grip.region.name,
+                                     track->span < 0
+                                         ? "are placed nowhere"
+                                         : "span no plane: three or more, not on a line"));
     }
     tracks_.push_back(track);
     model->grips.push_back({track->nodes, [track](double time) -> Eigen::Matrix3Xd {

@@ -5,6 +5,7 @@
 #define LACUNA_STUDY_NUISANCE_CANDIDATES_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,15 +37,24 @@ class GripNuisances {
   const std::vector<MisfitDirection>& directions() const { return directions_; }
   // `by`: the columns of directions(), after a run.
   std::vector<NuisanceCandidate> Candidates(const Eigen::MatrixXd& by) const;
+  // What the noise of the markers that grips follow does, of quasi-static motions, where a frame's
+  // errors end with it: each grip is shifted and turned by chance in every frame. None where no
+  // grip follows markers, and of more frames than a few hundred.
+  std::optional<NuisanceCandidate> Jitter(const CalibrationProblem& problem,
+                                          const LinearisedMisfit& misfit,
+                                          const Eigen::MatrixXd& by) const;
 
  private:
   struct Kind {
     std::string name, what, advice;
+    size_t grip = 0;  // of the model
     int first = 0, count = 0;
     std::vector<std::shared_ptr<double>>
         largest;                    // motion seen, per direction; null: unit is known
     std::vector<double> deviation;  // prior, in the unit or in that motion
   };
+  Eigen::MatrixXd JitterOf(const Kind& kind, const RecordedGrip& grip,
+                           const Eigen::Matrix3Xd& places, double noise) const;
   std::vector<MisfitDirection> directions_;
   std::vector<Kind> kinds_;
 };

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "analysis/residual_statistics.h"
-#include "core/interrupt.h"
 #include "fem/prescribed_force.h"
 #include "study/grip_tracks.h"
 #include "study/outer_forces.h"
@@ -290,7 +289,6 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   misfit.by.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
-        ThrowIfInterrupted();
         const int frame = frames[index];
         const Eigen::Index begin = rows_of_frame * index;
         Observed seen =

@@ -305,6 +305,7 @@ double Duration(const PredictionStudy& study) {
 namespace {
 
 constexpr double kLongestStep = 0.005;  // s, to begin with
+constexpr double kMostSteps = 1e6;
 
 // Mean distance of the frames that are used, s, of the recording where it is least.
 double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
@@ -328,14 +329,14 @@ double FirstStep(const PredictionStudy& study) {
 // A step of the order of the recording follows no motion, and with millions of them a fit would not
 // end.
 void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
-  constexpr double kFewest = 10, kMost = 1e6;
+  constexpr double kFewest = 10;
   const double duration = Duration(study), steps = duration / study.time_step;
   const double fewest = study.scheme == TimeScheme::kQuasiStatic ? 0 : kFewest;
-  if (steps < fewest || steps > kMost)
+  if (steps < fewest || steps > kMostSteps)
     motion.Fail("time_step",
                 fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
                             "sound",
-                            steps, duration, fewest, kMost));
+                            steps, duration, fewest, kMostSteps));
 }
 
 }  // namespace
@@ -384,6 +385,12 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
     study.time_step = FirstStep(study);
   else
     RequireSoundStep(*motion, study);
+  if (study.chooses_time_step && Duration(study) > kMostSteps * study.time_step)
+    config.Fail(
+        "recordings",
+        fmt::format("last {:g} s, which a motion with inertia takes millions of steps for: give "
+                    "`motion: {{scheme: quasi_static}}`, a shorter `to`, or a time_step",
+                    Duration(study)));
   const auto& density = study.recordings.front().recording.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);

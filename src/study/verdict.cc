@@ -98,6 +98,13 @@ std::vector<const RankedEffect*> ByEvidence(
   return chosen;
 }
 
+// Its size after the refit may be none, whatever its evidence.
+bool MayBeNothing(const RankedEffect& effect) {
+  return !effect.sizes.empty() &&
+         std::all_of(effect.sizes.begin(), effect.sizes.end(),
+                     [](const ParameterEstimate& size) { return size.low <= 0 && size.high >= 0; });
+}
+
 // Share of the squared misfit beyond that of noise that went, both misfits in σ.
 double ExcessExplained(double before, double after) {
   if (before <= 1) return 1;
@@ -199,9 +206,11 @@ void Decide(Diagnosis* diagnosis) {
     return;
   }
   const bool is_noise = diagnosis->left_in_noise <= kAtNoise;
+  const bool at_noise = diagnosis->present_in_noise <= kAtNoise;
   const std::vector<const RankedEffect*> refitted =
-      ByEvidence(diagnosis->ranking,
-                 [&](const RankedEffect& effect) { return effect.held_out_evidence > -kNoWorse; });
+      ByEvidence(diagnosis->ranking, [&](const RankedEffect& effect) {
+        return effect.held_out_evidence > -kNoWorse && !(at_noise && MayBeNothing(effect));
+      });
   const double evidence = refitted.empty() ? 0 : refitted.front()->evidence;
   double in_the_model = 0;
   bool corrected = false;
@@ -215,8 +224,8 @@ void Decide(Diagnosis* diagnosis) {
   double lent = 0;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances)
     lent = std::max(lent, kDoubtful * nuisance.doubt + kLeastLead);
-  const double needed = std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model,
-                                  diagnosis->present_in_noise <= kAtNoise ? lent : 0.0});
+  const double needed = std::max(
+      {kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model, at_noise ? lent : 0.0});
   if (evidence < needed) {
     DecideWithoutEffect(diagnosis, evidence, is_noise);
     return;

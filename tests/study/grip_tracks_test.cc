@@ -84,6 +84,15 @@ TEST_F(CarriedByMarkers, DeformsWithThemWhereItMay) {
   EXPECT_LT((at_middle_ - stretch.asDiagonal() * rest_).norm(), 1e-12);
 }
 
+TEST_F(CarriedByMarkers, IsRefusedWhereTwoAreToTellHowItDeforms) {
+  deforms_ = true;
+  EXPECT_THAT(
+      [&] {
+        Follow({"a", "b"}, Moved());
+      },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("span no plane")));
+}
+
 TEST_F(CarriedByMarkers, DoesWithoutOneThatIsHidden) {
   Eigen::Matrix3Xd seen = Moved();
   seen(1, 1) = kUnseen;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -12,8 +13,10 @@
 #include "fem/prescribed_force.h"
 #include "fem/simulate.h"
 #include "geometry/embedding.h"
+#include "study/calibration_fits.h"
 #include "study/diagnosis.h"
 #include "study/held_bar.h"
+#include "study/nuisance_candidates.h"
 #include "study/stepped_fit.h"
 #include "support/temporary_folder.h"
 
@@ -181,6 +184,70 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
       Diagnose(problem, fit.calibration.parameters, {.refits = 2}, progress_.get());
   EXPECT_EQ(diagnosis.verdict, Diagnosis::Verdict::kMissing) << diagnosis.explanation;
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
+}
+
+// A bar that is stretched evenly by two grips, whose motion is known from noisy markers: the
+// nuisance is as large as what that does to the model between them.
+TEST_F(LoadedBar, ShakesAsTheNoiseOfItsGripsDoes) {
+  WriteBox(folder_ / "box.off");
+  std::vector<Eigen::Vector3d> places;
+  for (const double x : {0.0, 0.08, 0.02, 0.03, 0.04, 0.05, 0.06})
+    for (const double y : {-0.01, 0.01})
+      for (const double z : {-0.01, 0.01}) places.emplace_back(x, y, z);
+  std::ofstream yaml(folder_ / "recording.yaml");
+  yaml << "schema_version: 1\nname: stretched\nlength_unit: m\ndensity: 1000 kg/m^3\nframes:\n"
+          "  kind: markers\n  file: markers.csv\n  columns: {time: t}\n  marker_places:\n";
+  std::ofstream csv(folder_ / "markers.csv");
+  csv << "t";
+  for (size_t m = 0; m < places.size(); ++m) {
+    yaml << fmt::format("    - {{name: m{}, position: [{} m, {} m, {} m]}}\n", m, places[m].x(),
+                        places[m].y(), places[m].z());
+    csv << fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
+  }
+  yaml << R"(reference: {from: mesh, file: box.off}
+gripped:
+  - {half_space: {point: [0.1 mm, 0 m, 0 m], normal: [-1, 0, 0]}, follows_markers: [m0, m1, m2, m3], deforms: true}
+  - {half_space: {point: [79.9 mm, 0 m, 0 m], normal: [1, 0, 0]}, follows_markers: [m4, m5, m6, m7], deforms: true}
+)";
+  yaml.close();
+  std::mt19937 random(4);
+  std::normal_distribution<double> noise(0, kNoise);
+  for (int frame = 0; frame < 21; ++frame) {
+    const double stretch = 0.001 * frame;
+    csv << fmt::format("\n{}", frame);
+    for (size_t m = 0; m < places.size(); ++m) {
+      const double error = m < 8 ? 1 : 0;  // of the grips' markers alone
+      csv << fmt::format(",{},{},{}", (1 + stretch) * places[m].x() + error * noise(random),
+                         (1 - kRatio * stretch) * places[m].y() + error * noise(random),
+                         (1 - kRatio * stretch) * places[m].z() + error * noise(random));
+    }
+  }
+  csv << "\n";
+  csv.close();
+  const PredictionStudy study = ReadPredictionStudy(Config::Parse(
+      fmt::format(
+          "schema_version: 1\nname: stretched\nmesh: {{max_volume: 1000 mm^3, order: 2}}\n"
+          "material: {{law: corotational, young_modulus: 0.1 MPa, poisson_ratio: 0.42}}\n"
+          "motion: {{scheme: quasi_static}}\nnoise: {} m\nplace_deviation: 0.1 mm\n"
+          "fit: {{parameters: [{{name: poisson_ratio}}]}}\nrecordings: [{{recording: {}}}]\n",
+          kNoise, (folder_ / "recording.yaml").string()),
+      (folder_ / "study.yaml").string()));
+  const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
+  const GripNuisances grips(problem);
+  const LinearisedMisfit misfit = problem.Linearise(problem.Start(), true, grips.directions());
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  const auto jitter = grips.Jitter(
+      problem, misfit, misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
+  ASSERT_TRUE(jitter.has_value());
+  EXPECT_EQ(jitter->by.cols(), 21 * 2 * (3 + 6));
+  double seen = 0, expected = 0;
+  const Eigen::Index series = 3 * static_cast<Eigen::Index>(places.size());
+  for (Eigen::Index row = 0; row < misfit.residual.size(); ++row) {
+    if (row % series < 3 * 8) continue;
+    seen += misfit.residual[row] * misfit.residual[row];
+    expected += jitter->by.row(row).squaredNorm();
+  }
+  EXPECT_NEAR(std::sqrt(seen / expected), 1, 0.25);
 }
 
 }  // namespace

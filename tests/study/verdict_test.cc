@@ -71,6 +71,28 @@ TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
+// Where the model is at the noise as it is, an effect of no size is none.
+TEST(Verdict, NamesNoEffectWhoseSizeMayBeNone) {
+  Diagnosis diagnosis = SaggingBeam(1, 1);
+  ParameterEstimate size;
+  size.value = 3;
+  size.low = -1;
+  size.high = 7;
+  for (RankedEffect& effect : diagnosis.ranking) effect.sizes.assign(3, size);
+  Diagnosis at_noise = diagnosis;
+  at_noise.errors.in_noise = at_noise.errors.without_nuisances = at_noise.present_in_noise = 1.1;
+  Diagnosis sure = at_noise;
+  Decide(&at_noise);
+  EXPECT_EQ(at_noise.verdict, Verdict::kAdequate) << at_noise.explanation;
+  sure.ranking[0].sizes[1].low = 1;
+  Decide(&sure);
+  EXPECT_EQ(sure.verdict, Verdict::kMissing) << sure.explanation;
+  EXPECT_THAT(sure.effects, ElementsAre("point_force"));
+  // Far from the noise, evidence counts.
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+}
+
 // Held-out frames that it leaves far from the noise are not predicted.
 TEST(Verdict, DoesNotNameAnEffectThatPredictsPoorly) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
