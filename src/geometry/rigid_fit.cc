@@ -1,6 +1,7 @@
 #include "geometry/rigid_fit.h"
 
 #include <Eigen/SVD>
+#include <cmath>
 #include <vector>
 
 namespace lacuna {
@@ -17,25 +18,36 @@ std::vector<Eigen::Index> SeenInBoth(const Eigen::Matrix3Xd& from, const Eigen::
   return seen;
 }
 
+Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& centre) {
+  return points.colwise() - centre;
+}
+
 }  // namespace
+
+SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(About(points, points.rowwise().mean()),
+                                                 Eigen::ComputeThinU);
+  const Eigen::VectorXd& extent = shape.singularValues();
+  Eigen::Index count = 0;
+  while (count < extent.size() && extent[count] > kWidth * extent[0]) ++count;
+  return {shape.matrixU().leftCols(count), extent.head(count)};
+}
 
 RigidFit FitRigidMotion(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
   RigidFit fit;
   if (seen.empty()) return fit;
-  const Eigen::Vector3d from_centre = from(Eigen::all, seen).rowwise().mean();
-  const Eigen::Vector3d to_centre = to(Eigen::all, seen).rowwise().mean();
-  const Eigen::Matrix3Xd a = from(Eigen::all, seen).colwise() - from_centre;
-  const Eigen::Matrix3Xd b = to(Eigen::all, seen).colwise() - to_centre;
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(a, Eigen::ComputeThinU);
-  const Eigen::VectorXd& extent = shape.singularValues();
+  const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);
+  const Eigen::Vector3d from_centre = points.rowwise().mean(), to_centre = images.rowwise().mean();
+  const Eigen::Matrix3Xd a = About(points, from_centre), b = About(images, to_centre);
+  const SpannedAxes spanned = AxesOf(points);
   const double rounding = 1e-12 * (from_centre.norm() + to_centre.norm());
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (extent[0] <= rounding) {
+  if (spanned.extent.size() == 0 || spanned.extent[0] <= rounding) {
     fit.span = 0;
-  } else if (extent.size() == 1 || extent[1] <= kWidth * extent[0]) {
+  } else if (spanned.extent.size() == 1) {
     fit.span = 1;
-    const Eigen::Vector3d line = shape.matrixU().col(0);
+    const Eigen::Vector3d line = spanned.axis.col(0);
     const Eigen::Vector3d carried = b * (a.transpose() * line);
     turn = Eigen::Quaterniond::FromTwoVectors(line, carried).toRotationMatrix();
   } else {
@@ -56,18 +68,15 @@ Eigen::Affine3d FitAffineMotion(const Eigen::Matrix3Xd& from, const Eigen::Matri
   const std::vector<Eigen::Index> seen = SeenInBoth(from, to);
   Eigen::Affine3d motion(rigid.motion);
   if (rigid.span < 1) return motion;
-  const Eigen::Vector3d from_centre = from(Eigen::all, seen).rowwise().mean();
-  const Eigen::Vector3d to_centre = to(Eigen::all, seen).rowwise().mean();
-  const Eigen::Matrix3Xd a = from(Eigen::all, seen).colwise() - from_centre;
-  const Eigen::Matrix3Xd b = to(Eigen::all, seen).colwise() - to_centre;
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::Matrix3Xd points = from(Eigen::all, seen), images = to(Eigen::all, seen);
+  const Eigen::Vector3d from_centre = points.rowwise().mean(), to_centre = images.rowwise().mean();
+  const Eigen::Matrix3Xd a = About(points, from_centre), b = About(images, to_centre);
+  const SpannedAxes spanned = AxesOf(points);
   Eigen::Matrix3d linear = rigid.motion.linear();
-  for (Eigen::Index k = 0; k < shape.singularValues().size(); ++k) {
-    const double extent = shape.singularValues()[k];
-    if (extent <= kWidth * shape.singularValues()[0]) break;
-    const Eigen::Vector3d along = shape.matrixU().col(k);
-    linear +=
-        (b * shape.matrixV().col(k) / extent - rigid.motion.linear() * along) * along.transpose();
+  for (Eigen::Index k = 0; k < spanned.extent.size(); ++k) {
+    const Eigen::Vector3d along = spanned.axis.col(k);
+    const Eigen::Vector3d image = b * (a.transpose() * along) / std::pow(spanned.extent[k], 2);
+    linear += (image - rigid.motion.linear() * along) * along.transpose();
   }
   motion.linear() = linear;
   motion.translation() = to_centre - linear * from_centre;

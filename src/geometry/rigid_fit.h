@@ -6,6 +6,14 @@
 
 namespace lacuna {
 
+// The directions along which points have an extent, the largest first, and these extents: roots of
+// the sums of squares, m. What is less than a twentieth of the largest is none.
+struct SpannedAxes {
+  Eigen::Matrix3Xd axis;
+  Eigen::VectorXd extent;
+};
+SpannedAxes AxesOf(const Eigen::Matrix3Xd& points);
+
 struct RigidFit {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   // What the points span, which tells how much of the motion they do: 0, a place alone, no turn; 1,

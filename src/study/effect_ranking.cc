@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "study/grip_nuisances.h"
+
 namespace lacuna {
 namespace {
 

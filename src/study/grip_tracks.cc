@@ -23,6 +23,15 @@ Eigen::Matrix3Xd Interpolated(const std::map<double, Eigen::Matrix3Xd>& places, 
 
 }  // namespace
 
+std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording) {
+  const auto& names = recording.markers.names;
+  std::vector<int> markers;
+  for (const std::string& name : grip.markers)
+    markers.push_back(
+        static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
+  return markers;
+}
+
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
     : recording_(recording), model_(*model) {
   std::map<int, std::string> holder;  // by node: the region's name
@@ -47,11 +56,7 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
     track->grip = grip;
     track->nodes = nodes_in(grip.region);
     track->rest = reference.nodes(Eigen::all, track->nodes);
-    for (const std::string& name : grip.markers) {
-      const auto& names = recording.markers.names;
-      track->markers.push_back(
-          static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
-    }
+    track->markers = MarkersOf(grip, recording);
     if (!track->markers.empty()) {
       const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, track->markers);
       track->span = FitRigidMotion(places, places).span;

@@ -12,6 +12,9 @@
 
 namespace lacuna {
 
+// The markers that a grip follows, by their order in the recording.
+std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording);
+
 // Fixed regions stay where they rest. A gripped region moves as a rigid body, or, where it deforms,
 // affinely: along its given path, with its markers, or as the scanned surface moves there; of the
 // last two, positions between two frames are interpolated linearly.

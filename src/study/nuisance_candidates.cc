@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "core/error.h"
-#include "geometry/rigid_fit.h"
 #include "study/reference.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kShift = 1e-3;  // m, by how much a grip, a frame, a registration may be off
-constexpr double kTurn = 0.02;   // rad
 // How well the object's dimensions are known, in parts of them: 0.05 mm of 17 mm.
 constexpr double kShape = 0.003;
 // By how much frames may be mistimed, in parts of their distance.
@@ -41,52 +36,6 @@ constexpr double kUnknownOfMesh = 0.4;
 // of it, and by 0.6 in two that ring in modes which no step resolves.
 constexpr LinearPrior kStepLimit = {1, 0.05, false};
 constexpr double kUnknownOfStep = 0.7;
-// More frames than this, and single frames are too small a part to be looked at one by one.
-constexpr size_t kMostFrames = 400;
-
-struct GripShape {
-  Eigen::VectorXi nodes;
-  Eigen::Vector3d centre;
-};
-
-// A rigid motion of one grip's nodes.
-Eigen::VectorXd RigidMotion(const GripShape& grip, const Eigen::Matrix3Xd& rest,
-                            const Eigen::Vector3d& shift, const Eigen::Vector3d& turn) {
-  Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
-  for (const int node : grip.nodes)
-    motion.segment<3>(3 * node) = shift + turn.cross(rest.col(node) - grip.centre);
-  return motion;
-}
-
-MisfitDirection Placed(Eigen::VectorXd motion) {
-  MisfitDirection direction;
-  direction.perturbation.grip = [motion = std::move(motion)](double, const Eigen::VectorXd&) {
-    return motion;
-  };
-  return direction;
-}
-
-// Yields to the resultant of the grip's reaction (or turns with its moment); `largest` follows the
-// motion per unit of compliance.
-MisfitDirection Yielding(const GripShape& grip, const Eigen::Matrix3Xd& rest, bool turns,
-                         std::shared_ptr<double> largest) {
-  MisfitDirection direction;
-  direction.perturbation.grip = [grip, rest, turns, largest = std::move(largest)](
-                                    double, const Eigen::VectorXd& reaction) {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
-    for (const int node : grip.nodes) {
-      const Eigen::Vector3d here = reaction.segment<3>(3 * node);
-      force += here;
-      moment += (rest.col(node) - grip.centre).cross(here);
-    }
-    const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-    const Eigen::VectorXd motion =
-        turns ? RigidMotion(grip, rest, zero, -moment) : RigidMotion(grip, rest, -force, zero);
-    *largest = std::max(*largest, turns ? moment.norm() : force.norm());
-    return motion;
-  };
-  return direction;
-}
 
 // One column of rows that are marker coordinates.
 Eigen::VectorXd FrameColumn(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part,
@@ -104,191 +53,6 @@ double MeshRatio(const CalibrationProblem& problem) {
   return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
 }
 double MeshLimit(double ratio) { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
-
-}  // namespace
-
-namespace {
-
-constexpr char kCompliance[] = "grip_compliance";
-constexpr char kStrain[] = "strain";  // of what is gripped; for the jitter alone
-// Along which markers tell a strain, in parts of their largest extent (geometry/rigid_fit.cc).
-constexpr double kSpanned = 0.05;
-
-// The recorded grip that is this one of the model; null: it is fixed.
-const RecordedGrip* RecordedAs(const Recording& recording, size_t grip) {
-  const size_t fixed = recording.fixed.size();  // what is fixed comes first
-  return grip < fixed || grip - fixed >= recording.grips.size() ? nullptr
-                                                                : &recording.grips[grip - fixed];
-}
-
-bool Deforms(const CalibrationProblem& problem, size_t grip) {
-  return std::any_of(problem.models().begin(), problem.models().end(), [&](const auto& model) {
-    const RecordedGrip* recorded = RecordedAs(model.item().recording, grip);
-    return recorded != nullptr && recorded->deforms;
-  });
-}
-
-}  // namespace
-
-GripNuisances::GripNuisances(const CalibrationProblem& problem) {
-  const Model& model = problem.models().front().model();
-  const Eigen::Matrix3Xd& rest = model.body->mesh.nodes;
-  for (size_t g = 0; g < model.grips.size(); ++g) {
-    GripShape grip{model.grips[g].nodes, Eigen::Vector3d::Zero()};
-    if (grip.nodes.size() == 0) continue;
-    grip.centre = rest(Eigen::all, grip.nodes).rowwise().mean();
-    const std::string of =
-        model.grips.size() > 1 ? fmt::format(" of grip {}", g + 1) : " of the grip";
-
-    Kind placement{"grip_placement",
-                   "the placement" + of,
-                   "measure where the grip holds the object, or fit it",
-                   g,
-                   static_cast<int>(directions_.size()),
-                   6,
-                   {},
-                   {}};
-    for (int axis = 0; axis < 6; ++axis) {
-      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis % 3);
-      const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-      directions_.push_back(Placed(axis < 3 ? RigidMotion(grip, rest, unit, zero)
-                                            : RigidMotion(grip, rest, zero, unit)));
-      placement.largest.push_back(nullptr);
-      placement.deviation.push_back(axis < 3 ? kShift : kTurn);
-    }
-    kinds_.push_back(std::move(placement));
-
-    Kind compliance{kCompliance,
-                    "the compliance or the extent" + of,
-                    "check how far the clamp reaches and whether it yields or slips",
-                    g,
-                    static_cast<int>(directions_.size()),
-                    2,
-                    {},
-                    {}};
-    for (const bool turns : {false, true}) {
-      auto largest = std::make_shared<double>(0);
-      directions_.push_back(Yielding(grip, rest, turns, largest));
-      compliance.largest.push_back(largest);
-      compliance.deviation.push_back(turns ? kTurn : kShift);
-    }
-    kinds_.push_back(std::move(compliance));
-    if (!Deforms(problem, g)) continue;
-    // What is gripped is stretched and sheared: node − centre times each unit matrix.
-    kinds_.push_back({kStrain, {}, {}, g, static_cast<int>(directions_.size()), 9, {}, {}});
-    for (int entry = 0; entry < 9; ++entry) {
-      Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
-      for (const int node : grip.nodes)
-        motion[3 * node + entry % 3] = rest(entry / 3, node) - grip.centre[entry / 3];
-      directions_.push_back(Placed(std::move(motion)));
-    }
-  }
-}
-
-std::vector<NuisanceCandidate> GripNuisances::Candidates(const Eigen::MatrixXd& by) const {
-  std::vector<NuisanceCandidate> candidates;
-  for (const Kind& kind : kinds_) {
-    if (kind.name == kStrain) continue;
-    NuisanceCandidate candidate{kind.name, kind.what, kind.advice, 0, {}, {}};
-    candidate.by = by.middleCols(kind.first, kind.count);
-    for (int k = 0; k < kind.count; ++k) {
-      double deviation = kind.deviation[k];
-      if (kind.largest[k] != nullptr && *kind.largest[k] > 0) deviation /= *kind.largest[k];
-      candidate.priors.push_back({0, deviation, false});
-    }
-    candidates.push_back(std::move(candidate));
-  }
-  return candidates;
-}
-
-namespace {
-
-// Of the markers that it follows, by their order in the recording.
-std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording) {
-  const auto& names = recording.markers.names;
-  std::vector<int> markers;
-  for (const std::string& name : grip.markers)
-    markers.push_back(
-        static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin()));
-  return markers;
-}
-
-}  // namespace
-
-// In a frame, as combinations of the columns of a kind's directions, each of unit deviation.
-Eigen::MatrixXd GripNuisances::JitterOf(const Kind& kind, const RecordedGrip& grip,
-                                        const Eigen::Matrix3Xd& places, double noise) const {
-  const Eigen::Matrix3Xd about = places.colwise() - Eigen::Vector3d(places.rowwise().mean());
-  const double shift = noise / std::sqrt(static_cast<double>(places.cols()));
-  if (kind.name == kStrain) {
-    // Along what the markers span (FitAffineMotion): errors e of the images of its axes u, e uᵀ.
-    const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(about, Eigen::ComputeThinU);
-    Eigen::MatrixXd combined(9, 0);
-    for (Eigen::Index k = 0; k < shape.singularValues().size(); ++k) {
-      const double extent = shape.singularValues()[k];
-      if (extent <= kSpanned * shape.singularValues()[0]) break;
-      for (int axis = 0; axis < 3; ++axis) {
-        combined.conservativeResize(Eigen::NoChange, combined.cols() + 1);
-        combined.rightCols(1) =
-            (noise / extent * Eigen::Vector3d::Unit(axis) * shape.matrixU().col(k).transpose())
-                .reshaped();
-      }
-    }
-    return combined;
-  }
-  Eigen::MatrixXd combined = Eigen::MatrixXd::Zero(6, grip.deforms ? 3 : 6);
-  combined.topLeftCorner<3, 3>().diagonal().setConstant(shift);
-  for (int axis = 0; axis < 3 && !grip.deforms; ++axis) {
-    const double lever = std::sqrt(about.squaredNorm() - about.row(axis).squaredNorm());
-    if (FitRigidMotion(places, places).span == 2) combined(3 + axis, 3 + axis) = noise / lever;
-  }
-  return combined;
-}
-
-std::optional<NuisanceCandidate> GripNuisances::Jitter(const CalibrationProblem& problem,
-                                                       const LinearisedMisfit& misfit,
-                                                       const Eigen::MatrixXd& by) const {
-  if (problem.study().scheme != TimeScheme::kQuasiStatic) return std::nullopt;
-  NuisanceCandidate jitter{"grip_jitter", "the noise of the markers that grips follow",
-                           "measure the grips' motion more exactly, or with more markers"};
-  jitter.is_always_taken = true;
-  std::vector<Eigen::VectorXd> columns;
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    const Recording& recording = problem.models()[part.recording].item().recording;
-    const Eigen::Index series = part.layout.series;
-    if (part.layout.times.size() > kMostFrames) continue;
-    for (const Kind& kind : kinds_) {
-      const RecordedGrip* grip = RecordedAs(recording, kind.grip);
-      if (kind.name == kCompliance || grip == nullptr ||
-          grip->motion != GripMotion::kFollowsMarkers || (kind.name == kStrain && !grip->deforms))
-        continue;
-      const std::vector<int> markers = MarkersOf(*grip, recording);
-      Eigen::MatrixXd of_frame =
-          by.middleCols(kind.first, kind.count) *
-          JitterOf(kind, *grip, recording.marker_places(Eigen::all, markers), problem.noise());
-      // The grip goes with the markers' errors: by what it is shaken with, these are not off.
-      for (size_t f = 0; f < part.layout.times.size(); ++f)
-        for (const int marker : markers)
-          of_frame
-              .middleRows<3>(part.first_row + static_cast<Eigen::Index>(f) * series + 3 * marker)
-              .setZero();
-      for (size_t f = 0; f < part.layout.times.size(); ++f)
-        for (const auto& column : of_frame.colwise()) {
-          const Eigen::Index row = part.first_row + static_cast<Eigen::Index>(f) * series;
-          columns.emplace_back(Eigen::VectorXd::Zero(by.rows()));
-          columns.back().segment(row, series) = column.segment(row, series);
-        }
-    }
-  }
-  if (columns.empty()) return std::nullopt;
-  jitter.by.resize(by.rows(), static_cast<Eigen::Index>(columns.size()));
-  for (size_t k = 0; k < columns.size(); ++k)
-    jitter.by.col(static_cast<Eigen::Index>(k)) = columns[k];
-  jitter.priors.assign(columns.size(), {0, 1, false});
-  return jitter;
-}
-
-namespace {
 
 // The residual with elements that have a part of the volume; empty where it cannot be had.
 Eigen::VectorXd WithFinerMesh(const PredictionStudy& study, double ratio,
@@ -429,7 +193,7 @@ std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& pr
                               0,       FrameColumn(misfit, part, speed), {{0, spacing, false}}};
       candidates.push_back(std::move(clock));
     }
-    if (times.size() <= kMostFrames) {
+    if (times.size() <= kMostFramesEach) {
       NuisanceCandidate jitter{"time_jitter",
                                "the times of single frames of " + item.name,
                                "check the camera's clock and its exposure",
@@ -488,8 +252,8 @@ std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& pr
       drift.by.col(axis) = FrameColumn(misfit, part, [&](Eigen::Index f, int s) {
         return rigid(f, s, axis) * (times[f] - times.front()) / duration;
       });
-      bad.priors.push_back({0, axis < 3 ? kShift : kTurn, false});
-      drift.priors.push_back({0, axis < 3 ? kShift : kTurn, false});
+      bad.priors.push_back({0, axis < 3 ? kMisplaced : kMisturned, false});
+      drift.priors.push_back({0, axis < 3 ? kMisplaced : kMisturned, false});
     }
     candidates.push_back(std::move(bad));
     candidates.push_back(std::move(drift));

@@ -5,7 +5,6 @@
 #define LACUNA_STUDY_NUISANCE_CANDIDATES_H_
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,36 +27,10 @@ struct NuisanceCandidate {
   Eigen::MatrixXd unknown = {};
 };
 
-// Directions to be simulated along the fitted motion (LinearisedMisfit::by): the placement of each
-// grip (three shifts, three turns) and its compliance (it yields to its force, it turns with its
-// moment). Compliance that comes out negative means a grip that reaches further than the model's.
-class GripNuisances {
- public:
-  explicit GripNuisances(const CalibrationProblem& problem);
-  const std::vector<MisfitDirection>& directions() const { return directions_; }
-  // `by`: the columns of directions(), after a run.
-  std::vector<NuisanceCandidate> Candidates(const Eigen::MatrixXd& by) const;
-  // What the noise of the markers that grips follow does, of quasi-static motions, where a frame's
-  // errors end with it: each grip is shifted and turned by chance in every frame. None where no
-  // grip follows markers, and of more frames than a few hundred.
-  std::optional<NuisanceCandidate> Jitter(const CalibrationProblem& problem,
-                                          const LinearisedMisfit& misfit,
-                                          const Eigen::MatrixXd& by) const;
-
- private:
-  struct Kind {
-    std::string name, what, advice;
-    size_t grip = 0;  // of the model
-    int first = 0, count = 0;
-    std::vector<std::shared_ptr<double>>
-        largest;                    // motion seen, per direction; null: unit is known
-    std::vector<double> deviation;  // prior, in the unit or in that motion
-  };
-  Eigen::MatrixXd JitterOf(const Kind& kind, const RecordedGrip& grip,
-                           const Eigen::Matrix3Xd& places, double noise) const;
-  std::vector<MisfitDirection> directions_;
-  std::vector<Kind> kinds_;
-};
+// By how much a grip, a frame, a registration may be shifted, m, and turned, rad (priors).
+inline constexpr double kMisplaced = 1e-3, kMisturned = 0.02;
+// Of more frames than this, single ones are too small a part to be looked at one by one.
+inline constexpr size_t kMostFramesEach = 400;
 
 // What is part of every model: the difference that a finer mesh makes, and a shorter step, none
 // where the refined model cannot be made, their priors expecting the difference to the limit; and

@@ -70,7 +70,9 @@ void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
                                  std::numeric_limits<double>::quiet_NaN()));
   for (const int frame : frames)
     recording->markers.positions[frame] =
-        PointsByRow(LoadFrame(*recording, frame))(Eigen::all, rows);
+        frame == frames.front()
+            ? recording->marker_places
+            : Eigen::Matrix3Xd(PointsByRow(LoadFrame(*recording, frame))(Eigen::all, rows));
 }
 
 }  // namespace lacuna

@@ -17,8 +17,8 @@
 #include "scan/random_bits.h"
 #include "study/candidates.h"
 #include "study/effect_ranking.h"
+#include "study/grip_nuisances.h"
 #include "study/model_change.h"
-#include "study/nuisance_candidates.h"
 #include "study/reference.h"
 #include "trials/trial_film.h"
 

@@ -45,23 +45,31 @@ struct SwingingBar {
 
 double Push(double time) { return 0.3 + std::sin(20 * (time - kStart)); }
 
+// The bar's motion at its times, with the sensitivities of the tangent-linear model.
+struct Followed {
+  std::vector<TrajectoryState> states;
+  std::vector<Eigen::MatrixXd> exact;
+
+  Followed(const SwingingBar& bar, const std::vector<Perturbation>& perturbations) {
+    const PredictionSummary summary = Predict(
+        bar.model, bar.options, bar.times, perturbations, [&](int, const PredictedState& state) {
+          states.push_back({state.time,
+                            state.position,
+                            state.velocity,
+                            {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
+          exact.push_back(state.position_by);
+        });
+    EXPECT_TRUE(summary.IsUsable()) << summary.message;
+  }
+};
+
 TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
   const SwingingBar bar;
   const int n = bar.model.body->NodeCount();
   const auto push = std::make_shared<PrescribedForce>(
       bar.share, [](double time) { return Eigen::Vector3d(0, Push(time), 0); });
-  std::vector<TrajectoryState> states;
-  std::vector<Eigen::MatrixXd> exact;
-  const PredictionSummary summary =
-      Predict(bar.model, bar.options, bar.times, {{.effect = push}, {.held_force = bar.pull}},
-              [&](int, const PredictedState& state) {
-                states.push_back({state.time,
-                                  state.position,
-                                  state.velocity,
-                                  {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
-                exact.push_back(state.position_by);
-              });
-  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+  const auto [states, exact] = Followed(bar, {{.effect = push}, {.held_force = bar.pull}});
+  ASSERT_EQ(exact.size(), bar.times.size());
 
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * n, 2);
   for (int i = 0; i < n; ++i) shapes(3 * i + 1, 0) = bar.share[i];
@@ -96,17 +104,8 @@ TEST(ReducedResponse, FollowsAQuasiStaticMotion) {
   bar.times = {kStart, kStart + 0.1, kStart + 0.13, kStart + 0.3};
   const auto push = std::make_shared<PrescribedForce>(
       bar.share, [](double time) { return Eigen::Vector3d(0, Push(time), 0); });
-  std::vector<TrajectoryState> states;
-  std::vector<Eigen::MatrixXd> exact;
-  const PredictionSummary summary = Predict(
-      bar.model, bar.options, bar.times, {{.effect = push}}, [&](int, const PredictedState& state) {
-        states.push_back({state.time,
-                          state.position,
-                          state.velocity,
-                          {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
-        exact.push_back(state.position_by);
-      });
-  ASSERT_TRUE(summary.IsUsable()) << summary.message;
+  const auto [states, exact] = Followed(bar, {{.effect = push}});
+  ASSERT_EQ(exact.size(), bar.times.size());
   const int n = bar.model.body->NodeCount();
   Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * n, 1);
   for (int i = 0; i < n; ++i) shapes(3 * i + 1, 0) = bar.share[i];

@@ -15,8 +15,8 @@
 #include "geometry/embedding.h"
 #include "study/calibration_fits.h"
 #include "study/diagnosis.h"
+#include "study/grip_nuisances.h"
 #include "study/held_bar.h"
-#include "study/nuisance_candidates.h"
 #include "study/stepped_fit.h"
 #include "support/temporary_folder.h"
 
