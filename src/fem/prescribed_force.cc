@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -11,12 +12,24 @@ Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes) {
   const BoundarySurface& boundary = body.boundary;
   std::vector<char> chosen(body.NodeCount(), 0);
   for (const int node : nodes) chosen[node] = 1;
+  const auto all_chosen = [&](const auto& of) {
+    return std::all_of(of.begin(), of.end(), [&](int node) { return chosen[node] != 0; });
+  };
   const Eigen::VectorXd areas = TriangleAreas(boundary.surface);
+  const Eigen::Index per_face = areas.size() / boundary.faces.cols();
   Eigen::VectorXd share = Eigen::VectorXd::Zero(body.NodeCount());
-  for (Eigen::Index t = 0; t < areas.size(); ++t) {
-    const Eigen::Vector3i corner = boundary.node(boundary.surface.triangles.col(t));
-    if (chosen[corner[0]] && chosen[corner[1]] && chosen[corner[2]])
-      for (const int node : corner) share[node] += areas[t];
+  for (Eigen::Index f = 0; f < boundary.faces.cols(); ++f) {
+    const auto face = boundary.faces.col(f);
+    const Eigen::Index first = f * per_face;
+    if (all_chosen(face)) {
+      // ∫ N_a dA: the corners of a straight-sided quadratic face have none.
+      share(face.tail<3>()).array() += areas.segment(first, per_face).sum();
+      continue;
+    }
+    for (Eigen::Index t = first; t < first + per_face; ++t) {
+      const Eigen::Vector3i corner = boundary.node(boundary.surface.triangles.col(t));
+      if (all_chosen(corner)) share(corner).array() += areas[t];
+    }
   }
   if (share.sum() == 0) share(nodes) = NodeBoundaryAreas(body)(nodes);
   CHECK_GT(share.sum(), 0) << "a force on nodes without boundary area";

@@ -9,9 +9,10 @@
 
 namespace lacuna {
 
-// Share of each node (n, sum 1) in a force that acts evenly on the boundary triangles between
-// `nodes`; where they span none, in proportion to the boundary area around them. CHECKs that there
-// is any.
+// Share of each node (n, sum 1) in a force that acts evenly on the boundary between `nodes`: the
+// work-equivalent one, ∝ ∫ N_a dA, on faces whose nodes are all chosen (of quadratic ones on the
+// midpoints alone), a third of a triangle each on what else they span; where they span none, in
+// proportion to the boundary area around them. CHECKs that there is any.
 Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes);
 
 // f_i = gain · share_i · F(t), in fixed directions. The gain is 1 for a gauge that tells the truth.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "effects/catalogue.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {
@@ -28,6 +31,49 @@ TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
         body.mesh.nodes * at_nodes.row(2).transpose() / at_nodes.row(2).sum();
     EXPECT_LT((centre - Eigen::Vector3d(0.1, 0.015, 0.015)).norm(), 1e-12);
   }
+}
+
+// A bar that is stretched evenly pulls at its end with what an even traction there must balance,
+// node by node.
+TEST(BoundaryShares, AreThoseOfAnEvenTraction) {
+  constexpr double kModulus = 2e5, kStretch = 1e-3, kArea = 0.03 * 0.02;
+  for (const int order : {1, 2}) {
+    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.02}, {3, 2, 2}, order), 1000);
+    const Eigen::VectorXi end =
+        NodesWhere(body.mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.1 - 1e-9; });
+    Eigen::Matrix3Xd stretched = body.mesh.nodes;
+    stretched.row(0) *= 1 + kStretch;
+    const Eigen::VectorXd position = stretched.reshaped();
+    const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
+    Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
+    MakeEffect("linear_elasticity", {{"young_modulus", kModulus}, {"poisson_ratio", 0.0}})
+        ->AddForce({body, position, velocity, velocity, 0, 0, state}, &total);
+    const Eigen::VectorXd pull = -total.reshaped(3, body.NodeCount()).row(0).transpose();
+    const Eigen::VectorXd share = BoundaryShares(body, end);
+    EXPECT_LT((pull(end) - kModulus * kStretch * kArea * share(end)).norm(), 1e-12 * pull.norm());
+    EXPECT_NEAR(share.sum(), share(end).sum(), 1e-15);
+  }
+}
+
+// The nodes end in the middle of quadratic faces: what they span is loaded, and no more.
+TEST(BoundaryShares, CoverPartsOfFacesToo) {
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.06, 0.02, 0.02}, {3, 1, 1}, 2), 1000);
+  const auto on_top = [&](double from) {
+    return NodesWhere(body.mesh, [from](const Eigen::Vector3d& at) {
+      return at.z() > 0.02 - 1e-9 && at.x() > from - 1e-9;
+    });
+  };
+  const auto middle = [&](const Eigen::VectorXd& share) { return body.mesh.nodes.row(0) * share; };
+  EXPECT_NEAR(middle(BoundaryShares(body, on_top(0.04)))[0], 0.05, 1e-12);
+  EXPECT_NEAR(middle(BoundaryShares(body, on_top(0.03)))[0], 0.045, 1e-3);
+  // Corners without a face between them.
+  const Eigen::VectorXi corners = NodesWhere(body.mesh, [](const Eigen::Vector3d& at) {
+    return at.x() < 1e-9 && std::abs(at.y() - 0.01) > 0.009 && std::abs(at.z() - 0.01) > 0.009;
+  });
+  ASSERT_EQ(corners.size(), 4);
+  const Eigen::VectorXd share = BoundaryShares(body, corners);
+  EXPECT_NEAR(share(corners).sum(), 1, 1e-12);
+  EXPECT_GT(share(corners).minCoeff(), 0);
 }
 
 TEST(PrescribedForce, ItsEnergyAndGainAreThoseOfADeadLoad) {
