@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -46,6 +47,19 @@ std::string Describe(const MisfitMeasure& measure) {
                      1e3 * measure.largest, measure.in_noise, measure.frames);
 }
 
+void PrintTimeStep(const CalibrationRecord& record) {
+  const auto moves = [](const FittedRecording& recording) {
+    return recording.in_fit.frames + recording.held_out.frames > 1;
+  };
+  if (std::none_of(record.recordings.begin(), record.recordings.end(), moves)) return;
+  const bool in_seconds = record.time_step >= 1;
+  fmt::print("  time step {:.3g} {}{}\n", (in_seconds ? 1 : 1e3) * record.time_step,
+             in_seconds ? "s" : "ms",
+             record.step_error > 0
+                 ? fmt::format("; half of it would change {:.2g} σ", record.step_error)
+                 : "");
+}
+
 }  // namespace
 
 void PrintCalibration(const CalibrationRecord& record) {
@@ -59,10 +73,7 @@ void PrintCalibration(const CalibrationRecord& record) {
         "{}  rms distance of the predicted surface from scanned patches, along its normal;\n"
         "  σ = {:.3f} mm of one point, less of a patch\n",
         record.noise > 0 ? "" : "\n", 1e3 * record.scan_noise);
-  fmt::print("  time step {:.3g} ms{}\n", 1e3 * record.time_step,
-             record.step_error > 0
-                 ? fmt::format("; half of it would change {:.2g} σ", record.step_error)
-                 : "");
+  PrintTimeStep(record);
   for (const FittedRecording& recording : record.recordings) {
     fmt::print("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     fmt::print("  {:14} held out  {}\n", "", Describe(recording.held_out));

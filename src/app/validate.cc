@@ -7,9 +7,11 @@
 
 #include "app/commands.h"
 #include "scan/recording.h"
+#include "study/calibration_problem.h"
 #include "study/prediction_study.h"
 #include "study/reconstruction.h"
 #include "study/recorded_motion.h"
+#include "study/reference.h"
 #include "study/scene.h"
 
 namespace lacuna {
@@ -31,8 +33,12 @@ int Validate(const std::filesystem::path& path, bool show) {
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
       for (const std::string& warning : StudyWarnings(study)) fmt::print("warning: {}\n", warning);
-      fmt::print("{}: a sound experiment for `lacuna fit` on {} recordings\n", path.string(),
-                 study.recordings.size());
+      const TetMesh mesh = MakeReferenceBody(study).mesh;
+      const CalibrationProblem problem(study, mesh);  // its recordings on that mesh
+      fmt::print(
+          "{}: a sound experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
+          path.string(), study.recordings.size(), study.recordings.size() == 1 ? "" : "s",
+          mesh.NodeCount(), problem.parameters().size());
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       for (const std::string& warning : study.recording.warnings)
@@ -50,7 +56,8 @@ int Validate(const std::filesystem::path& path, bool show) {
 
 void AddValidate(CLI::App* app, std::function<int()>* command) {
   CLI::App* validate = app->add_subcommand(
-      "validate", "Check an experiment, a scene or a recording without computing anything");
+      "validate",
+      "Check an experiment, a scene or a recording: what `fit` would refuse is refused here");
   auto path = std::make_shared<std::string>();
   auto show = std::make_shared<bool>(false);
   validate->add_option("file", *path, "The YAML file, or a recording's folder")->required();

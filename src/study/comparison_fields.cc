@@ -65,12 +65,14 @@ int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& 
   const auto file = [&](const char* what, int frame, const char* extension) {
     return folder / "fields" / fmt::format("{}_{:05}.{}", what, recording.frames[frame], extension);
   };
-  const int states = static_cast<int>(motion.states.size());
-  const int every = (states + kMostFieldFrames - 1) / kMostFieldFrames;
+  // The first frame and the last, and as many between them as may be.
+  const int first = motion.state_frame.front() < 0 ? 1 : 0;
+  const int states = static_cast<int>(motion.states.size()) - first;
+  const int count = std::min(states, kMostFieldFrames);
   std::vector<TimedFile> bodies, markers;
-  for (int k = (states - 1) % every; k < states; k += every) {
+  for (int i = 0; i < count; ++i) {
+    const int k = first + (count > 1 ? i * (states - 1) / (count - 1) : 0);
     const int frame = motion.state_frame[k];
-    if (frame < 0) continue;
     const double time = recording.times[frame];
     WriteBody(*model.model().body, motion.states[k], motion.registration, force, time,
               file("body", frame, "vtu"));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/nearest.h"
+
 namespace lacuna {
 namespace {
 
@@ -37,6 +39,22 @@ void AddMarkerStrains(const PredictionStudy& study, const RecordingMisfit& misfi
   if (strained.size() > kMostTold)
     strains->push_back(fmt::format("{}: so it would {} of its {} markers, these the most",
                                    misfit.name, strained.size(), away.size()));
+}
+
+// Where tracked points sit is read off the first frame, where the object must be undeformed: points
+// that lie beside a given shape say that it is not, or that shape and points do not fit together.
+void AddTrackedStrains(const PredictionStudy& study, const PredictedRecording& item,
+                       const Body& body, std::vector<std::string>* strains) {
+  const Recording& recording = item.recording;
+  if (!recording.tracked || recording.reference.source == ReferenceSource::kFirstFrame) return;
+  const Eigen::VectorXd away =
+      SurfaceSearch(body.boundary.surface).Nearest(recording.marker_places).distance;
+  const double rms = std::sqrt(away.squaredNorm() / static_cast<double>(away.size()));
+  if (rms > kStrained * study.place_deviation)
+    strains->push_back(fmt::format(
+        "{}: in frame {}, which must show the object undeformed, tracked points lie {:.2g} mm "
+        "(rms) beside the reference shape; place_deviation allows {:.2g} mm",
+        item.name, item.frames.front(), 1e3 * rms, 1e3 * study.place_deviation));
 }
 
 void AddScanStrains(const ScanSettings& scan, const RecordingMisfit& misfit,
@@ -124,6 +142,7 @@ std::vector<std::string> Strains(const CalibrationProblem& problem,
       AddScanStrains(study.scan, misfits[r], problem.models()[r], &strains);
     } else {
       AddMarkerStrains(study, misfits[r], study.recordings[r].recording, &strains);
+      AddTrackedStrains(study, study.recordings[r], *problem.body(), &strains);
     }
   }
   return strains;

@@ -63,8 +63,15 @@ bool IsAtRest(const PredictionStudy& study) {
 
 std::string RestWarning(const PredictionStudy& study) {
   if (!IsAtRest(study)) return "";
-  return "nothing moves in the frames that are fitted: they tell of stiffness and of constant "
-         "loads, but not of mass, damping, drag or anything else that needs motion";
+  const bool is_one_frame = std::all_of(study.recordings.begin(), study.recordings.end(),
+                                        [](const PredictedRecording& item) {
+                                          return !item.fitted || FittedFrames(item).size() == 1;
+                                        });
+  return fmt::format(
+      "{} of stiffness and of constant loads, but not of mass, damping, drag or anything else that "
+      "needs motion",
+      is_one_frame ? "a single frame of each recording is fitted: it tells"
+                   : "nothing moves in the frames that are fitted: they tell");
 }
 
 namespace {

@@ -93,7 +93,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       motion.state_frame.push_back(frame);
     };
     if (index == at_start) {
-      keep(-1, memory.Advance(state, 0));
+      keep(at_start - 1, memory.Advance(state, 0));
       return;
     }
     const int frame = index < at_start ? index : index - 1;

@@ -35,7 +35,8 @@ struct ReplayedMotion {
   // one always.
   static constexpr int kMostStates = 200;
   std::vector<TrajectoryState> states;
-  std::vector<int> state_frame;  // column of each state; −1 of the first
+  // Column of each state; of the first that of the last frame before the motion, −1: there is none.
+  std::vector<int> state_frame;
 };
 
 // With the model's effects as they are, further forces that have no memory, and the recording's

@@ -40,6 +40,10 @@ void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
   std::vector<int> seen;
   for (int row = 0; row < places.cols(); ++row)
     if (places.col(row).allFinite()) seen.push_back(row);
+  if (seen.empty())
+    throw InputError(
+        fmt::format("{}: frame {}, the first that is used, shows no point: choose `from`",
+                    recording->file.string(), frames.front()));
   const std::vector<int> spread = EvenlySpread(places, seen, kMostPoints);
   std::set<int> chosen(spread.begin(), spread.end());
   for (RecordedGrip& grip : recording->grips) {

@@ -94,6 +94,25 @@ TEST(CommandLine, ValidatesTheBundledExperimentsAndScenes) {
               HasSubstr("young_modulus"));
 }
 
+TEST(CommandLine, ValidateRefusesWhatAFitWould) {
+  const TemporaryFolder folder;
+  std::ifstream stream(Experiment("hidden_effect.yaml"));
+  std::string text(std::istreambuf_iterator<char>(stream), {});
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("recording: recordings", "recording: " + Experiment("recordings"));
+  const std::string file = folder / "experiment.yaml";
+  std::ofstream(file) << text;
+  EXPECT_EQ(Lacuna("validate " + file).status, 0);
+  replace("71.4274 mm", "714 mm");  // beside the bar
+  std::ofstream(file) << text;
+  const Ending ending = Lacuna("validate " + file);
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("hold of "));
+}
+
 TEST(CommandLine, ListsTheEffects) {
   const Ending list = Lacuna("effects");
   EXPECT_EQ(list.status, 0);

@@ -46,7 +46,7 @@ TEST(BoundaryShares, AreThoseOfAnEvenTraction) {
     const Eigen::VectorXd position = stretched.reshaped();
     const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
     Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
-    MakeEffect("linear_elasticity", {{"young_modulus", kModulus}, {"poisson_ratio", 0.0}})
+    MakeEffect("linear", {{"young_modulus", kModulus}, {"poisson_ratio", 0.0}})
         ->AddForce({body, position, velocity, velocity, 0, 0, state}, &total);
     const Eigen::VectorXd pull = -total.reshaped(3, body.NodeCount()).row(0).transpose();
     const Eigen::VectorXd share = BoundaryShares(body, end);

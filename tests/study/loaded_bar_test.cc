@@ -180,8 +180,10 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
   const SteppedFit fit = FitWithItsStep(mesh, &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
+  DiagnosisOptions options;
+  options.refits = 2;
   const Diagnosis diagnosis =
-      Diagnose(problem, fit.calibration.parameters, {.refits = 2}, progress_.get());
+      Diagnose(problem, fit.calibration.parameters, options, progress_.get());
   EXPECT_EQ(diagnosis.verdict, Diagnosis::Verdict::kMissing) << diagnosis.explanation;
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
 }
