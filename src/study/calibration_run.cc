@@ -71,7 +71,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   progress->End();
   if (calibration.rms <= kFarOff) {
     progress->Begin("finer elements", 0);
-    if (const auto limit = AtMeshLimit(problem, calibration.parameters, /*fitted_only=*/true))
+    if (const auto limit = AtMeshLimit(problem, calibration.parameters))
       for (size_t k = 0; k < record.parameters.size(); ++k)
         record.parameters[k].with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
     progress->End();

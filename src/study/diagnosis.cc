@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "study/calibration_fits.h"
-#include "study/mesh_limit.h"
 #include "study/verdict.h"
 
 namespace lacuna {
@@ -30,6 +29,10 @@ constexpr int kMostRivalNuisances = 3;
 // What has less than this part of the nuisances' evidence to first order is not tried in their
 // place.
 constexpr double kCouldDoAsMuch = 0.5;
+
+// What the best refits leave is looked at again in so many, no farther than this behind the best.
+constexpr int kMostLooks = 3;
+constexpr double kMayBeAsGood = 10;
 
 // A model that is far off is looked at early, too, before it has gone astray, over this part of the
 // fitted time.
@@ -186,6 +189,25 @@ class Refits {
     return instead;
   }
 
+  // What the best leaves for another effect, by the changes that it makes along the model without,
+  // is looked at again where the best is. To be called after Weigh().
+  void LookAgain(const std::vector<std::string>& without) {
+    const RankedEffect* best = BestRefitted();
+    if (best == nullptr) return;
+    const double least = best->evidence - kMayBeAsGood;
+    int looked = 0;
+    for (size_t k = 0; k < refits_.size() && looked < kMostLooks; ++k) {
+      RankedEffect& effect = diagnosis_.ranking[k];
+      const double others = effect.further.evidence;
+      if (!IsUsable(k) || effect.evidence < least ||
+          others < std::max(kNoEvidence, kLeavesMore * effect.evidence))
+        continue;
+      ++looked;
+      effect.further =
+          FurtherEvidenceAlong(problem_, values_, effect.scored, refits_[k], without, &progress_);
+    }
+  }
+
   // The noise is what the best of them leaves; evidence is weighed with that.
   void Weigh() {
     const FittedHypothesis& best = Best();
@@ -303,14 +325,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
   diagnosis.noise = problem.noise();
   diagnosis.scan_noise = problem.scan_noise();
   diagnosis.errors = ErrorsOf(problem, fitted);
-  Eigen::VectorXd values = fitted;
-  // What is far off has other troubles than its discretisation.
-  if (diagnosis.errors.in_noise <= kFarOff) {
-    progress->Begin("discretise", 0);
-    values = AtMeshLimit(problem, fitted, /*fitted_only=*/false).value_or(fitted);
-    progress->End();
-  }
-  EffectRanking ranking = RankEffects(problem, values, progress, options.without);
+  EffectRanking ranking = RankEffects(problem, fitted, progress, options.without);
   diagnosis.scored = ranking.variants;
   diagnosis.control = ranking.control;
   diagnosis.untried = std::move(ranking.untried);
@@ -319,14 +334,15 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
     diagnosis.ranking.back().scored = std::move(effect);
   }
 
-  Refits refits(problem, values, ranking, progress, &diagnosis);
+  Refits refits(problem, fitted, ranking, progress, &diagnosis);
   refits.RunBest(options.refits);
   if (diagnosis.present_in_noise > kFarOff)
-    refits.RunEarly(RankEarly(problem, values, options.without, progress), options.refits);
+    refits.RunEarly(RankEarly(problem, fitted, options.without, progress), options.refits);
   refits.Weigh();
   refits.RunLookAlikesOfBest();
   refits.Weigh();
   refits.RunRivalNuisances(&ranking.nuisances);
+  refits.LookAgain(options.without);
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   if (diagnosis.verdict == Verdict::kNuisance) {

@@ -204,6 +204,26 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
   return best;
 }
 
+FurtherEvidence FurtherEvidenceAlong(const CalibrationProblem& problem,
+                                     const Eigen::VectorXd& values, const ScoredVariant& effect,
+                                     const EffectRefit& refit,
+                                     const std::vector<std::string>& without, Progress* progress) {
+  const PredictionStudy study = WithEffect(problem.AsChosen(), effect);
+  const CalibrationProblem with(study, problem.body()->mesh);
+  const EffectRanking ranking = RankEffects(with, refit.calibration.parameters, progress, without);
+  problem.SetModel(values);
+  FurtherEvidence best;
+  for (const ScoredEffect& other : ranking.effects) {
+    if (other.candidate.type == effect.candidate.type || other.score.evidence <= best.evidence)
+      continue;
+    best.type = other.candidate.type;
+    best.evidence = other.score.evidence;
+  }
+  for (const ScoredNuisance& nuisance : ranking.nuisances)
+    if (!nuisance.adopted) best.of_nuisance = std::max(best.of_nuisance, nuisance.evidence);
+  return best;
+}
+
 namespace {
 
 // To first order, at the parameters that are best for all frames.

@@ -74,6 +74,14 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const std::vector<TriedVariant>& tried, const std::string& type,
                                   const NoiseLevel& noise);
 
+// The same along the refitted model's own motion, with its own mesh and step: what a diagnosis of
+// it would find, at the price of its ranking. `values`: of the model without the effect, where it
+// leaves the study's effects. Throws Interrupted.
+FurtherEvidence FurtherEvidenceAlong(const CalibrationProblem& problem,
+                                     const Eigen::VectorXd& values, const ScoredVariant& effect,
+                                     const EffectRefit& refit,
+                                     const std::vector<std::string>& without, Progress* progress);
+
 // From where first order expects the best parameters, or from `values` where that is nearer, or
 // part of the way where neither predicts as well as the model without the effect. Null `effect`:
 // the model as it is, with what was adopted, so that it is compared at its best too. Leaves the

@@ -1,61 +1,141 @@
 #include "study/mesh_limit.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "analysis/linear_evidence.h"
+#include "core/error.h"
 #include "study/linear_misfit.h"
-#include "study/nuisance_candidates.h"
+#include "study/reference.h"
 
 namespace lacuna {
 namespace {
 
-// What the mesh changes is taken from time steps so many times as long, to find where its limit
-// would be fitted; a diagnosis simulates it again from there with the right ones.
+// How much smaller elements are looked at, and how their error, of quadratic ones, goes beside a
+// clamped edge: with their volume to the power of about this.
+constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+constexpr double kVolumePower = 0.7;
+// Parameters are sought with time steps so many times as long on both meshes.
 constexpr double kLongSteps = 3;
-constexpr int kMostStepsToLimit = 8;
-constexpr double kAtLimit = 1;              // of ‖r‖², that a step no longer gains
-constexpr double kShortestStep = 1.0 / 16;  // of a whole one
+constexpr int kMostSteps = 4;
+constexpr double kSettled = 1;             // of ‖difference‖², σ²: a step gains no more
+constexpr double kShortestStep = 1.0 / 4;  // of a whole one
+
+// As few times as a study of the mesh needs.
+double RatioFor(const CalibrationProblem& problem) {
+  const double elements = static_cast<double>(problem.body()->ElementCount());
+  return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
+}
+
+// What a mesh may change of the parameters: about a part of each, or of what is known of it before,
+// as directions that the motion leaves open would go astray; and no farther than `most`, part of
+// the way to its bounds, beside which a body that cannot be compressed moves in no bearable time.
+struct ChangePrior {
+  std::vector<LinearPrior> priors;
+  std::vector<double> most;
+};
+ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  constexpr double kOfValue = 0.1, kOfPrior = 0.03, kMostOfValue = 0.5, kMostOfRoom = 0.5;
+  ChangePrior prior{PriorsAbout(problem.parameters(), values), {}};
+  for (size_t k = 0; k < prior.priors.size(); ++k) {
+    const CalibratedParameter& parameter = problem.parameters()[k];
+    const double value = values[static_cast<Eigen::Index>(k)];
+    const double known = prior.priors[k].deviation;
+    double about = kOfValue * std::abs(value), most = kMostOfValue * std::abs(value);
+    if (!parameter.log_scale) {
+      if (std::isfinite(known)) about += kOfPrior * known;
+      most = kMostOfRoom * std::min(value - parameter.min, parameter.max - value);
+    }
+    prior.priors[k] = {0, std::min(known, about), false};
+    prior.most.push_back(most);
+  }
+  return prior;
+}
+
+// With the least ‖left + by (change − at)‖² and prior; what would go too far stays there.
+Eigen::VectorXd BestChange(const Eigen::VectorXd& left, const Eigen::MatrixXd& by,
+                           const Eigen::VectorXd& at, ChangePrior prior) {
+  constexpr double kFixed = 1e-6;  // of how far it may go
+  for (;;) {
+    const Eigen::VectorXd change = LinearModel(left - by * at, by, prior.priors).FitAll(1).change;
+    bool is_too_far = false;
+    for (size_t k = 0; k < prior.most.size(); ++k) {
+      const double here = change[static_cast<Eigen::Index>(k)], most = prior.most[k];
+      if (std::abs(here) <= 1.01 * most || !std::isfinite(most)) continue;
+      is_too_far = true;
+      prior.priors[k] = {std::copysign(most, here), std::max(kFixed * most, 1e-300), false};
+    }
+    if (!is_too_far) return change;
+  }
+}
 
 }  // namespace
 
+double FinerMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
+double FinerMesh::ToRatio(double other) const {
+  return (1 - std::pow(other, -kVolumePower)) * ToLimit();
+}
+
+Eigen::VectorXd ResidualOnMesh(const PredictionStudy& study, double ratio,
+                               const Eigen::VectorXd& values) {
+  PredictionStudy fine = study;
+  fine.mesh.tets.max_volume /= ratio;
+  try {
+    const ReferenceBody reference = MakeReferenceBody(fine);
+    return CalibrationProblem(fine, reference.mesh).Linearise(values, false).residual;
+  } catch (const InputError&) {
+    return {};  // a shape that cannot be meshed more finely says nothing about its mesh
+  }
+}
+
+std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values,
+                                       const LinearisedMisfit& misfit, bool fitted_only) {
+  PredictionStudy study = problem.AsChosen();
+  study.time_step *= kLongSteps;
+  FinerMesh finer{RatioFor(problem), Eigen::VectorXd::Zero(values.size())};
+  const Eigen::VectorXd coarse =
+      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
+  // Whitened; empty where it cannot be had.
+  const auto difference = [&](const Eigen::VectorXd& change) -> Eigen::VectorXd {
+    const Eigen::VectorXd fine =
+        ResidualOnMesh(study, finer.ratio, MovedBy(problem.parameters(), values, change));
+    if (fine.size() != misfit.residual.size() || coarse.size() != fine.size() || fine == coarse)
+      return {};
+    return WhitenedRows(fine - coarse, misfit, 0, fitted_only);
+  };
+  const Eigen::MatrixXd by =
+      WhitenedRows(misfit.by.leftCols(values.size()), misfit, 0, fitted_only);
+  const ChangePrior prior = PriorOfChange(problem, values);
+  Eigen::VectorXd left = difference(finer.change);
+  const bool is_finer = left.size() > 0;
+  double length = 1;
+  for (int step = 0; step < kMostSteps && left.size() > 0 && length >= kShortestStep; ++step) {
+    const Eigen::VectorXd way = BestChange(left, by, finer.change, prior) - finer.change;
+    const double promised = left.squaredNorm() - (left + by * way).squaredNorm();
+    if (!(promised > kSettled)) break;
+    const Eigen::VectorXd there = difference(finer.change + length * way);
+    if (there.size() > 0 && there.squaredNorm() < left.squaredNorm()) {
+      finer.change += length * way;
+      left = there;
+      length = 1;
+    } else {
+      length /= 2;
+    }
+  }
+  problem.SetModel(values);  // other models share its effects
+  if (!is_finer) return std::nullopt;
+  return finer;
+}
+
 std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
-                                           const Eigen::VectorXd& values, bool fitted_only) {
+                                           const Eigen::VectorXd& values) {
   const LinearisedMisfit misfit = problem.Linearise(values, true);
   if (!misfit.usable) return std::nullopt;
-  const Eigen::VectorXd change = ChangeByMesh(problem, values, kLongSteps);
-  if (change.size() != misfit.residual.size()) return std::nullopt;
-  Eigen::MatrixXd by = WhitenedRows(misfit.by, misfit, 0, fitted_only);
-  const auto left = [&](const LinearisedMisfit& there) -> Eigen::VectorXd {
-    return WhitenedRows(there.residual + change, misfit, 0, fitted_only);
-  };
-  std::optional<Eigen::VectorXd> limit = values;
-  Eigen::VectorXd here = left(misfit);
-  for (int step = 0; step < kMostStepsToLimit; ++step) {
-    const LinearFit fit =
-        LinearModel(here, by, PriorsAbout(problem.parameters(), *limit)).FitAll(1);
-    double gain = 0, length = 1;
-    for (; length >= kShortestStep; length /= 2) {
-      const Eigen::VectorXd moved = MovedBy(problem.parameters(), *limit, length * fit.change);
-      const LinearisedMisfit there = problem.Linearise(moved, false, {}, &misfit);
-      if (!there.usable) continue;
-      const Eigen::VectorXd next = left(there);
-      gain = here.squaredNorm() - next.squaredNorm();
-      if (!(gain > 0)) continue;
-      limit = moved;
-      here = next;
-      break;
-    }
-    if (!(gain > kAtLimit)) {
-      const double promised = here.squaredNorm() - (here + by * fit.change).squaredNorm();
-      if (step == 0 && !(gain > 0) && promised > kAtLimit) limit.reset();
-      break;
-    }
-    // The derivatives hardly change on a short way; where a step had to be cut, they do.
-    if (length == 1) continue;
-    const LinearisedMisfit there = problem.Linearise(*limit, true, {}, &misfit);
-    if (!there.usable) break;
-    by = WhitenedRows(there.by, misfit, 0, fitted_only);
-  }
-  problem.SetModel(values);
-  return limit;
+  const std::optional<FinerMesh> finer =
+      MakeFinerMesh(problem, values, misfit, /*fitted_only=*/true);
+  if (!finer) return std::nullopt;
+  return MovedBy(problem.parameters(), values, finer->ToLimit() * finer->change);
 }
 
 }  // namespace lacuna

@@ -7,22 +7,20 @@
 #include <cmath>
 #include <optional>
 
-#include "core/error.h"
-#include "study/reference.h"
+#include "study/linear_misfit.h"
+#include "study/mesh_limit.h"
 
 namespace lacuna {
 namespace {
 
 // How well the object's dimensions are known, in parts of them: 0.05 mm of 17 mm.
 constexpr double kShape = 0.003;
+// By a tenth of which they are changed to see what that does: a longer motion parts in phase.
+constexpr double kShapeProbe = 0.1;
 // By how much frames may be mistimed, in parts of their distance.
 constexpr double kJitter = 0.1;
-// How much smaller elements are looked at; and what refining them without end would change, in
-// parts of the change that this makes. The error of quadratic ones goes with their volume to the
-// power of about 0.7 beside a clamped edge: 1/(1 − ratio^−0.7), known to what it exceeds 1 by, and
-// no better than 0.4.
-constexpr double kVolumePower = 0.7;
-constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+// What refining elements without end changes, in parts of what a finer mesh does, is known to what
+// it exceeds 1 by, and no better than this.
 constexpr double kLimitDeviation = 0.4;
 // A mesh between the two tells how well that is known. Of a bar of 160 to 190 elements, whose error
 // stands at 70 to 95 σ over all rows, a sixth of the volume leaves 8 to 14 σ in other directions
@@ -47,56 +45,24 @@ Eigen::VectorXd FrameColumn(const LinearisedMisfit& misfit, const LinearisedMisf
   return column;
 }
 
-// How many times smaller elements are looked at: as few as a study of the mesh needs.
-double MeshRatio(const CalibrationProblem& problem) {
-  const double elements = static_cast<double>(problem.body()->ElementCount());
-  return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
-}
-double MeshLimit(double ratio) { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
-
-// The residual with elements that have a part of the volume; empty where it cannot be had.
-Eigen::VectorXd WithFinerMesh(const PredictionStudy& study, double ratio,
-                              const Eigen::VectorXd& values) {
-  PredictionStudy fine = study;
-  fine.mesh.tets.max_volume /= ratio;
-  try {
-    const ReferenceBody reference = MakeReferenceBody(fine);
-    return CalibrationProblem(fine, reference.mesh).Linearise(values, false).residual;
-  } catch (const InputError&) {
-    return {};  // a shape that cannot be meshed more finely says nothing about its mesh
-  }
-}
-
-}  // namespace
-
-Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                             double steps) {
-  PredictionStudy study = problem.AsChosen();
-  study.time_step *= steps;
-  const double ratio = MeshRatio(problem);
-  const Eigen::VectorXd coarse =
-      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
-  const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
-  problem.SetModel(values);  // the refined model shares its effects
-  if (fine.size() != coarse.size() || fine == coarse) return {};
-  return MeshLimit(ratio) * (fine - coarse);
-}
-
-namespace {
-
 std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& values,
                                               const LinearisedMisfit& misfit) {
+  const std::optional<FinerMesh> finer =
+      MakeFinerMesh(problem, values, misfit, /*fitted_only=*/false);
+  if (!finer) return std::nullopt;
   const PredictionStudy study = problem.AsChosen();
-  const double ratio = MeshRatio(problem);
-  const Eigen::VectorXd fine = WithFinerMesh(study, ratio, values);
-  const Eigen::VectorXd between = WithFinerMesh(study, ratio / 2, values);
+  const auto with_part = [&](double ratio) {
+    return ResidualOnMesh(
+        study, ratio, MovedBy(problem.parameters(), values, finer->ToRatio(ratio) * finer->change));
+  };
+  const Eigen::VectorXd fine = with_part(finer->ratio), between = with_part(finer->ratio / 2);
   if (fine.size() != misfit.residual.size() || between.size() != fine.size()) return std::nullopt;
   NuisanceCandidate candidate{"mesh", "the size of the elements",
                               "choose a smaller mesh.max_volume"};
   candidate.by.resize(fine.size(), 2);
   candidate.by << fine - misfit.residual, fine - between;
-  const double limit = MeshLimit(ratio);
+  const double limit = finer->ToLimit();
   candidate.priors = {{limit, std::max(kLimitDeviation, limit - 1), false},
                       {0, kUnknownOfMesh, false}};
   candidate.is_always_taken = true;
@@ -153,10 +119,11 @@ std::optional<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem
   candidate.is_always_taken = true;
   for (int axis = 0; axis < 3; ++axis) {
     TetMesh larger = mesh;
-    larger.nodes.row(axis).array() += kShape * (mesh.nodes.row(axis).array() - centre[axis]);
+    larger.nodes.row(axis).array() +=
+        kShapeProbe * kShape * (mesh.nodes.row(axis).array() - centre[axis]);
     const LinearisedMisfit changed = CalibrationProblem(study, larger).Linearise(values, false);
     if (!changed.usable || changed.residual.size() != misfit.residual.size()) return std::nullopt;
-    candidate.by.col(axis) = changed.residual - misfit.residual;
+    candidate.by.col(axis) = (changed.residual - misfit.residual) / kShapeProbe;
     candidate.priors.push_back({0, 1, false});
   }
   return candidate;

@@ -32,18 +32,13 @@ inline constexpr double kMisplaced = 1e-3, kMisturned = 0.02;
 // Of more frames than this, single ones are too small a part to be looked at one by one.
 inline constexpr size_t kMostFramesEach = 400;
 
-// What is part of every model: the difference that a finer mesh makes, and a shorter step, none
-// where the refined model cannot be made, their priors expecting the difference to the limit; and
-// the object's three dimensions, each known to a part of itself, by runs of a body that is that
-// much larger.
+// What is part of every model: the difference that a finer mesh makes beyond what the parameters
+// can do (mesh_limit.h), and a shorter step, none where the refined model cannot be made, their
+// priors expecting the difference to the limit; and the object's three dimensions, each known to a
+// part of itself, by runs of a body that is larger. `misfit`: with the parameters' derivatives.
 std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& problem,
                                                     const Eigen::VectorXd& values,
                                                     const LinearisedMisfit& misfit);
-
-// By how much elements as fine as can be would change the residual, to the best of what one finer
-// mesh tells; with steps so many times as long. Empty where it cannot be had or simulated.
-Eigen::VectorXd ChangeByMesh(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                             double steps);
 
 // Those that need no simulation: a clock that is late, frames at uncertain times, one frame out of
 // place, a measuring frame that drifts. `left`: what the fit leaves of each row, in σ; it points at

@@ -42,10 +42,6 @@ constexpr double kGripRival = 0.5;
 // Where the best effect leaves more than noise, it must have explained this share of what is more
 // than noise to be named.
 constexpr double kMostOfIt = 0.85;
-// What is missing, once added, leaves nothing for another effect: the right one of eight bars left
-// evidence of 0.2 at most, and in one that was off by 6 σ 0.6 % of its own. One that leaves more
-// than this part of its own, and than chance, does another's work or only a part of it.
-constexpr double kLeavesMore = 0.05;
 // Where more than noise is left, a nuisance that explains this share of the misfit is still what is
 // to be seen to first.
 constexpr double kMostByNuisance = 0.5;

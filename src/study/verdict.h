@@ -6,6 +6,11 @@
 
 namespace lacuna {
 
+// What is missing, once added, leaves nothing for another effect: the right one of eight bars left
+// evidence of 0.2 at most, and in one that was off by 6 σ 0.6 % of its own. One that leaves more
+// than this part of its own, and than chance, does another's work or only a part of it.
+inline constexpr double kLeavesMore = 0.05;
+
 // Fills verdict, effects, explanation and experiment from everything else.
 void Decide(Diagnosis* diagnosis);
 

@@ -58,6 +58,7 @@ int Run(const std::string& file, int repeats) {
     forward.push_back(Seconds([&] { misfit = problem.Linearise(values, false); }));
     tangents.push_back(Seconds([&] { problem.Linearise(values, true, directions); }));
     pilots.push_back(Seconds([&] { RunPilots(problem, values, misfit, {}); }));
+    misfit = problem.Linearise(values, true);
     nuisances.push_back(Seconds([&] { NuisancesAlwaysTaken(problem, values, misfit); }));
     ranking.push_back(Seconds([&] { RankEffects(problem, values, &progress); }));
   }

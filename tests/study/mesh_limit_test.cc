@@ -47,7 +47,7 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const BarFit coarse(folder.Path(), "4000 mm^3"), fine(folder.Path(), "400 mm^3");
   const Eigen::VectorXd& values = coarse.calibration.parameters;
   const Eigen::VectorXd before = coarse.problem.Linearise(values, false).residual;
-  const auto limit = AtMeshLimit(coarse.problem, values, /*fitted_only=*/true);
+  const auto limit = AtMeshLimit(coarse.problem, values);
   ASSERT_TRUE(limit.has_value());
   // A coarse mesh is stiff: its modulus is fitted too low.
   const double missing = fine.calibration.parameters[0] - values[0];

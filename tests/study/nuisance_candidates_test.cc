@@ -29,7 +29,7 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
   // What holds the bar aside, without which nothing would move.
   for (size_t k = 0; k < problem.parameters().size(); ++k)
     if (problem.UnitOf(k) == "N") values[static_cast<Eigen::Index>(k)] = 0.03;
-  const LinearisedMisfit misfit = problem.Linearise(values, /*with_jacobian=*/false);
+  const LinearisedMisfit misfit = problem.Linearise(values, /*with_jacobian=*/true);
   const std::vector<NuisanceCandidate> nuisances = NuisancesAlwaysTaken(problem, values, misfit);
   const auto step = std::find_if(nuisances.begin(), nuisances.end(),
                                  [](const auto& own) { return own.name == "time_step"; });
