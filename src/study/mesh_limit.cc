@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "analysis/linear_evidence.h"
 #include "core/error.h"
@@ -54,18 +56,26 @@ ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::Vector
 
 // With the least ‖left + by (change − at)‖² and prior; what would go too far stays there.
 Eigen::VectorXd BestChange(const Eigen::VectorXd& left, const Eigen::MatrixXd& by,
-                           const Eigen::VectorXd& at, ChangePrior prior) {
-  constexpr double kFixed = 1e-6;  // of how far it may go
+                           const Eigen::VectorXd& at, const ChangePrior& prior) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());  // of those that have gone too far
+  std::vector<int> free(prior.priors.size());
+  std::iota(free.begin(), free.end(), 0);
   for (;;) {
-    const Eigen::VectorXd change = LinearModel(left - by * at, by, prior.priors).FitAll(1).change;
-    bool is_too_far = false;
-    for (size_t k = 0; k < prior.most.size(); ++k) {
-      const double here = change[static_cast<Eigen::Index>(k)], most = prior.most[k];
-      if (std::abs(here) <= 1.01 * most || !std::isfinite(most)) continue;
-      is_too_far = true;
-      prior.priors[k] = {std::copysign(most, here), std::max(kFixed * most, 1e-300), false};
+    const Eigen::VectorXd best =
+        LinearModel(left + by * (change - at), by, prior.priors).Fit(free, 1).change;
+    std::vector<int> within;
+    for (size_t k = 0; k < free.size(); ++k) {
+      const double here = best[static_cast<Eigen::Index>(k)], most = prior.most[free[k]];
+      if (std::abs(here) > most)
+        change[free[k]] = std::copysign(most, here);
+      else
+        within.push_back(free[k]);
     }
-    if (!is_too_far) return change;
+    if (within.size() == free.size()) {
+      change(free) = best;
+      return change;
+    }
+    free = std::move(within);
   }
 }
 
