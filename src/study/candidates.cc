@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "effects/catalogue.h"
 #include "record/effect_card.h"
@@ -21,7 +22,9 @@ struct Variant {
   std::string name;
   Values values;
   int line = 0;                                    // as in CandidateEffect
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // and this
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // and these
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  double spacing = 0;
 };
 
 // The object's shape in a few numbers.
@@ -29,7 +32,47 @@ struct Extent {
   Eigen::Vector3d centre;
   Eigen::Matrix3d axis;    // columns: longest first, each pointing to its larger coordinate
   Eigen::Vector3d length;  // along them
+  // Of a body that is no bar: in the middle of parts of about equal volume, and how far these are
+  // from one another, m; none: a place along a bar is told by a number.
+  Eigen::Matrix3Xd places;
+  double spacing = 0;
 };
+
+// Centres of parts of about equal volume, each in the body (Lloyd, IEEE Trans. Inf. Theory 28,
+// 1982).
+Eigen::Matrix3Xd EvenPlaces(const Body& body, const Eigen::Vector3d& first, int count) {
+  constexpr int kRounds = 30;
+  const auto nearest_to = [&](const Eigen::Vector3d& place) {
+    Eigen::Index nearest;
+    (body.point.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
+    return nearest;
+  };
+  Eigen::Matrix3Xd places(3, count);
+  places.col(0) = body.point.col(nearest_to(first));
+  Eigen::RowVectorXd away = (body.point.colwise() - first).colwise().squaredNorm();
+  for (int k = 1; k < count; ++k) {
+    Eigen::Index farthest;
+    away.maxCoeff(&farthest);
+    places.col(k) = body.point.col(farthest);
+    const Eigen::Vector3d place = places.col(k);
+    away = away.cwiseMin((body.point.colwise() - place).colwise().squaredNorm());
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, count);
+    Eigen::VectorXd volume = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index q = 0; q < body.point.cols(); ++q) {
+      const Eigen::Vector3d point = body.point.col(q);
+      Eigen::Index part;
+      (places.colwise() - point).colwise().squaredNorm().minCoeff(&part);
+      sum.col(part) += body.weight[q] * point;
+      volume[part] += body.weight[q];
+    }
+    for (int k = 0; k < count; ++k)
+      if (volume[k] > 0) places.col(k) = sum.col(k) / volume[k];
+  }
+  for (int k = 0; k < count; ++k) places.col(k) = body.point.col(nearest_to(places.col(k))).eval();
+  return places;
+}
 
 Extent Measure(const Body& body) {
   Extent extent;
@@ -61,6 +104,14 @@ Extent Measure(const Body& body) {
     const Eigen::RowVectorXd along = axis.transpose() * from;
     extent.length[k] = along.maxCoeff() - along.minCoeff();
   }
+  // Wider than this part of its length, it is no bar.
+  constexpr double kBar = 0.4;
+  constexpr int kPlaces = 16;
+  if (extent.length[1] > kBar * extent.length[0]) {
+    extent.places = EvenPlaces(body, extent.centre, kPlaces);
+    constexpr double kNear = 1.5;  // parts that share a side are so many of their widths apart
+    extent.spacing = kNear * std::cbrt(body.weight.sum() / kPlaces);
+  }
   return extent;
 }
 
@@ -75,19 +126,39 @@ std::string AxisName(const Eigen::Vector3d& axis) {
                      axis.z() + 0.0);
 }
 
+Variant AtPlace(const Eigen::Vector3d& place, double radius, std::string name) {
+  Variant variant;
+  variant.name = std::move(name);
+  for (const char* of : {"centre", "point"}) SetVector(of, place, &variant.values);
+  variant.values["radius"] = radius;
+  return variant;
+}
+
 // Along the object's longest axis, at these shares of its length.
-std::vector<Variant> Places(const Extent& extent, const std::vector<double>& shares,
-                            double radius_share) {
+std::vector<Variant> PlacesAlong(const Extent& extent, const std::vector<double>& shares,
+                                 double radius_share) {
   std::vector<Variant> variants;
   for (const double share : shares) {
-    Variant variant;
-    const Eigen::Vector3d place =
-        extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0);
-    variant.name = fmt::format("at {:.0f} % of the length", 100 * share);
-    for (const char* name : {"centre", "point"}) SetVector(name, place, &variant.values);
-    variant.values["radius"] = radius_share * extent.length[0];
-    variant.line = 1;
-    variants.push_back(variant);
+    variants.push_back(AtPlace(
+        extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0),
+        radius_share * extent.length[0], fmt::format("at {:.0f} % of the length", 100 * share)));
+    variants.back().line = 1;
+  }
+  return variants;
+}
+
+// Everywhere; along a bar, at these shares of its length.
+std::vector<Variant> Places(const Extent& extent, const std::vector<double>& shares,
+                            double radius_share) {
+  if (extent.places.cols() == 0) return PlacesAlong(extent, shares, radius_share);
+  std::vector<Variant> variants;
+  for (Eigen::Index k = 0; k < extent.places.cols(); ++k) {
+    const Eigen::Vector3d place = extent.places.col(k);
+    variants.push_back(AtPlace(place, radius_share * extent.length[0],
+                               fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * place.x() + 0.0,
+                                           1e3 * place.y() + 0.0, 1e3 * place.z() + 0.0)));
+    variants.back().place = place;
+    variants.back().spacing = extent.spacing;
   }
   return variants;
 }
@@ -101,11 +172,15 @@ Variant AlongDirection(const Eigen::Vector3d& axis) {
   return variant;
 }
 
-Variant AlongLength(const Extent& extent) {
-  Variant variant = AlongDirection(extent.axis.col(0));
-  SetVector("origin", extent.centre, &variant.values);
-  variant.values["length"] = extent.length[0];
-  return variant;
+// Along its length; of what is no bar, its width, too.
+std::vector<Variant> Gradients(const Extent& extent) {
+  std::vector<Variant> variants;
+  for (int axis = 0; axis < (extent.places.cols() > 0 ? 2 : 1); ++axis) {
+    variants.push_back(AlongDirection(extent.axis.col(axis)));
+    SetVector("origin", extent.centre, &variants.back().values);
+    variants.back().values["length"] = extent.length[axis];
+  }
+  return variants;
 }
 
 // The object's axes, and the diagonals between two and all of them: none is farther than 28° from
@@ -137,7 +212,7 @@ std::vector<Variant> Numbers(const std::string& parameter, const std::string& sy
 
 // The whole surface, or near an end or the middle of the length.
 std::vector<Variant> Supports(const Extent& extent) {
-  std::vector<Variant> variants = Places(extent, {0.05, 0.5, 0.95}, 0.1);
+  std::vector<Variant> variants = PlacesAlong(extent, {0.05, 0.5, 0.95}, 0.1);
   variants.insert(variants.begin(), {"of the whole surface", {}});
   return variants;
 }
@@ -176,7 +251,7 @@ std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
   if (type == "attached_mass") return Places(extent, kAlongLength, 0.05);
   if (type == "point_force" || type == "follower_force") return Places(extent, kAlongLength, 0.1);
   if (type == "fibre_stiffness" || type == "active_contraction") return Directions(extent);
-  if (type == "stiffness_gradient" || type == "density_gradient") return {AlongLength(extent)};
+  if (type == "stiffness_gradient" || type == "density_gradient") return Gradients(extent);
   if (type == "viscoelastic_branch")
     return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
   if (type == "elastoplastic_branch")
@@ -265,6 +340,8 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
       candidates.back().line = variant.line;
       candidates.back().axis = variant.axis;
+      candidates.back().place = variant.place;
+      candidates.back().spacing = variant.spacing;
       candidates.back().known = PlacesOn(setting.body);
     }
   }

@@ -30,6 +30,9 @@ struct CandidateEffect {
   // Of variants that differ in direction, either way along it; near ones are neighbours. 0: of the
   // others.
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  // Of variants that differ in place, m, and how far from one another neighbours are; 0: of others.
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  double spacing = 0;
   // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
   struct Range {
     double min = 0, max = 0;

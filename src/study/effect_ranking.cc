@@ -236,11 +236,14 @@ bool HypothesisRanking::AreNeighbours(size_t a, size_t b) const {
   const CandidateEffect &one = candidates_[a], &other = candidates_[b];
   if (a == b || one.type != other.type) return false;
   const bool in_line = one.line > 0 && one.line == other.line && (a + 1 == b || b + 1 == a);
-  return in_line || std::abs(one.axis.dot(other.axis)) > std::cos(kNeighbourAngle);
+  const bool is_near =
+      one.spacing > 0 && other.spacing > 0 && (one.place - other.place).norm() < one.spacing;
+  return in_line || is_near || std::abs(one.axis.dot(other.axis)) > std::cos(kNeighbourAngle);
 }
 
 bool HypothesisRanking::IsBetterThanNeighbours(size_t candidate) const {
-  if (candidates_[candidate].line == 0 && candidates_[candidate].axis.isZero(0)) return false;
+  const CandidateEffect& own = candidates_[candidate];
+  if (own.line == 0 && own.spacing == 0 && own.axis.isZero(0)) return false;
   for (size_t other = 0; other < candidates_.size(); ++other)
     if (AreNeighbours(candidate, other) && scores_[other].evidence >= scores_[candidate].evidence)
       return false;

@@ -160,8 +160,16 @@ bool IsPlausible(const HiddenEffect& hidden) {
   return true;
 }
 
+void Film(const TrialCase& trial, const std::filesystem::path& folder) {
+  FilmCase(trial, folder);
+  if (trial.group != "removed") return;
+  std::string types;
+  for (const HiddenEffect& hidden : trial.hidden) types += hidden.type + "\n";
+  WriteFileAtomically(folder / "without.txt", types);
+}
+
 // Gives the hidden effects their sizes and films the case. Returns why it cannot; empty: it did.
-std::string Film(TrialCase* trial, const std::filesystem::path& folder) {
+std::string SizeAndFilm(TrialCase* trial, const std::filesystem::path& folder) {
   try {
     for (HiddenEffect& hidden : trial->hidden) {
       const double size = hidden.factor * Detectable(*trial, hidden, folder);
@@ -170,7 +178,7 @@ std::string Film(TrialCase* trial, const std::filesystem::path& folder) {
       if (!std::isfinite(size) || !IsPlausible(hidden) || !is_seen)
         return fmt::format("{} would have to be {:g} times its unit", hidden.type, size);
     }
-    FilmCase(*trial, folder);
+    Film(*trial, folder);
   } catch (const InputError& problem) {
     return problem.what();
   }
@@ -241,12 +249,16 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
 
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   const std::filesystem::path own = folder / trial.name;
-  if (std::filesystem::exists(own / "truth.json")) return true;
   if (std::filesystem::exists(own / "skipped.txt")) return false;
   MakeFolder(own);
+  if (std::filesystem::exists(own / "truth.json")) {
+    // Where only that was kept, it is filmed again as it was.
+    if (!std::filesystem::exists(own / "experiment.yaml")) Film(LoadCase(own / "truth.json"), own);
+    return true;
+  }
   std::string reasons;
   for (int attempt = 1;; ++attempt) {
-    const std::string reason = Film(&trial, own);
+    const std::string reason = SizeAndFilm(&trial, own);
     if (reason.empty()) break;
     reasons += reason + "\n";
     if (trial.hidden.empty() || attempt == kMostAttempts) {
@@ -254,11 +266,6 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
       return false;
     }
     trial = DrawnAgain(trial);
-  }
-  if (trial.group == "removed") {
-    std::string types;
-    for (const HiddenEffect& hidden : trial.hidden) types += hidden.type + "\n";
-    WriteFileAtomically(own / "without.txt", types);
   }
   SaveCase(trial, own / "truth.json");
   return true;

@@ -31,7 +31,8 @@ TrialSuite ReadTrialSuite(const Config& config);
 std::vector<TrialCase> CasesOf(const TrialSuite& suite);
 
 // Makes a case in <folder>/<case>: sizes its hidden effects, films it and writes truth.json last. A
-// case that is there already stays. Where an effect would have to be larger than is plausible to be
+// case that is there already stays; one of which only truth.json is there is filmed again as it
+// was. Where an effect would have to be larger than is plausible to be
 // seen the case is drawn again; after some draws it is given up (skipped.txt) and false returned.
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder);
 

@@ -92,6 +92,12 @@ TEST(Trials, FindAStrongDragAndKeepWhatCameOfIt) {
   const TrialCase sealed = LoadCase(own / "truth.json");
   EXPECT_EQ(sealed.hidden[0].type, "drag");
   EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³: it is felt in air
+  // What was hidden is kept of reported cases, and films them again.
+  const std::string filmed = FileContent(own / "recording_1/markers.csv");
+  std::filesystem::remove_all(own / "recording_1");
+  std::filesystem::remove(own / "experiment.yaml");
+  ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
+  EXPECT_EQ(FileContent(own / "recording_1/markers.csv"), filmed);
 
   EXPECT_EQ(RunTrials(folder.Path(), 1), 0);
   const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
