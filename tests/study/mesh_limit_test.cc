@@ -8,6 +8,7 @@
 
 #include "study/calibration_fits.h"
 #include "study/held_bar.h"
+#include "study/linear_misfit.h"
 #include "study/reference.h"
 #include "support/temporary_folder.h"
 
@@ -53,6 +54,18 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const double missing = fine.calibration.parameters[0] - values[0];
   EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
   EXPECT_NEAR((*limit)[0], fine.calibration.parameters[0], 0.5 * missing);
+  // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
+  const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
+  const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
+  ASSERT_TRUE(finer.has_value());
+  const auto part = [&](const Eigen::VectorXd& change) {
+    const Eigen::VectorXd there =
+        ResidualOnMesh(coarse.problem.AsChosen(), finer->ratio,
+                       MovedBy(coarse.problem.parameters(), values, change));
+    return WhitenedRows(there - before, misfit, 0, false).norm();
+  };
+  EXPECT_LT(part(finer->change), 0.5 * part(Eigen::VectorXd::Zero(values.size())));
+  coarse.problem.SetModel(values);
   const Eigen::VectorXd after = coarse.problem.Linearise(values, false).residual;
   EXPECT_LT((after - before).norm(), 1e-6 * before.norm()) << "the problem is left as it was";
 }
