@@ -22,6 +22,8 @@ constexpr double kCloseBehind = 5;
 // the third's.
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
+// A refit that keeps less than this part of what first order promises is made again from elsewhere.
+constexpr double kKept = 0.5;
 // A nuisance that has this part of the best effect's evidence, both to first order, is fitted with
 // the model too: neither is judged by a promise. The most that are.
 constexpr double kRivalNuisance = 0.5;
@@ -254,16 +256,25 @@ class Refits {
   EffectRefit Tried(const AdoptedNuisances& adopted, const EffectRefit& without,
                     RankedEffect* effect) const {
     const bool is_far_off = InNoise(without.hypothesis) > kFarOff;
-    EffectRefit refit =
-        Refit(problem_, values_, &effect->scored, adopted, ranking_.misfit, is_far_off, &progress_);
+    const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
+      return Refit(problem_, values_, &variant, adopted, ranking_.misfit, is_far_off, &progress_,
+                   start);
+    };
+    EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
     ScoredVariant best = effect->scored;
     for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
       if (elsewhere.score.evidence < kNearlyAsGood * effect->scored.score.evidence) break;
-      EffectRefit other =
-          Refit(problem_, values_, &elsewhere, adopted, ranking_.misfit, is_far_off, &progress_);
+      EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
       if (!IsBetter(other, refit)) continue;
       refit = std::move(other);
       best = elsewhere;
+    }
+    if (!effect->scored.candidate.IsPilot() && FallsShort(refit, without, effect->scored.score)) {
+      EffectRefit other = from(effect->scored, RefitFrom::kItsSize);
+      if (IsBetter(other, refit)) {
+        refit = std::move(other);
+        best = effect->scored;
+      }
     }
     static_cast<ScoredVariant&>(effect->scored) = std::move(best);
     effect->refitted = true;
@@ -274,6 +285,13 @@ class Refits {
       effect->sizes = refit.sizes;
     }
     return refit;
+  }
+  // It has not found what first order promises: a minimum on the way, or a promise that is none.
+  bool FallsShort(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
+    if (!refit.message.empty()) return true;
+    const double reached = EvidenceOf(refit.hypothesis, ranking_.noise).log_evidence -
+                           EvidenceOf(without.hypothesis, ranking_.noise).log_evidence;
+    return reached < kKept * score.evidence;
   }
   const FittedHypothesis& Best() const {
     const FittedHypothesis* best = &present_.hypothesis;

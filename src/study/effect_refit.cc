@@ -29,6 +29,10 @@ constexpr double kSettled = 0.5;
 // than the model without the effect. Moduli that fall below a part of themselves are not believed.
 constexpr double kPartsOfTheWay[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
 constexpr double kSoundPart = 0.2;
+// Or at these parts of the size that first order expects, one after another, with everything but
+// the effect fitted to each; the effect is held by a prior of this part of what is typical.
+constexpr double kSizesHeld[] = {0.1, 0.3, 1};
+constexpr double kHeld = 1e-3;
 // σ: what a refit leaves that has found its way. One that leaves 1.8 may end 1.1 from elsewhere.
 constexpr double kArrived = 1.2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -319,11 +323,34 @@ class ExtendedProblem {
     return start;
   }
 
+  // With the effect held at a size, everything else where it is best: what a size asks of the other
+  // parameters is no straight line. Empty: nothing could be fitted.
+  Eigen::VectorXd StartAtItsSize(const std::string& stage, Progress* progress) const {
+    Eigen::VectorXd start;
+    double least = kInfinity;
+    for (const double part : kSizesHeld) {
+      const Eigen::VectorXd of_part = PartWay(part, values_);
+      Eigen::VectorXd at = start.size() > 0 ? start : of_part;
+      at.segment(shared_, added_) = of_part.segment(shared_, added_);
+      const Calibration fitted = CalibrateFrom(at, stage, progress, /*holds_effect=*/true);
+      if (fitted.estimates.empty() || fitted.rms >= least) continue;
+      least = fitted.rms;
+      start = fitted.parameters;
+    }
+    return start;
+  }
+
   Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
-                            Progress* progress) const {
+                            Progress* progress, bool holds_effect = false) const {
     std::vector<CalibratedParameter> parameters = parameters_;
-    for (size_t k = 0; k < parameters.size(); ++k)
-      parameters[k].start = start[static_cast<Eigen::Index>(k)];
+    for (size_t k = 0; k < parameters.size(); ++k) {
+      CalibratedParameter& parameter = parameters[k];
+      parameter.start = start[static_cast<Eigen::Index>(k)];
+      const Eigen::Index own = static_cast<Eigen::Index>(k) - shared_;
+      if (!holds_effect || own < 0 || own >= added_) continue;
+      parameter.prior_mean = parameter.start;
+      parameter.prior_deviation = kHeld * parameter.typical;
+    }
     int evaluations = 0;
     const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
       const Prediction prediction = Predict(at, with_jacobian);
@@ -390,13 +417,16 @@ class ExtendedProblem {
 
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredVariant* effect, const AdoptedNuisances& adopted,
-                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress) {
+                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress,
+                  RefitFrom from) {
   const ExtendedProblem extended(problem, values, effect, adopted, misfit);
   const CalibrationProblem& with = extended.with();
   const Eigen::Index own = extended.OwnCount();
   const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
-  Eigen::VectorXd start = extended.Start();
   EffectRefit refit;
+  Eigen::VectorXd start;
+  if (from == RefitFrom::kItsSize) start = extended.StartAtItsSize(stage + " at a size", progress);
+  if (start.size() == 0) start = extended.Start();
   refit.calibration = extended.CalibrateFrom(start, stage, progress);
   const bool arrived = !refit.calibration.estimates.empty() && refit.calibration.rms <= kArrived;
   if (effect != nullptr && is_far_off && !arrived) {

@@ -82,6 +82,10 @@ FurtherEvidence FurtherEvidenceAlong(const CalibrationProblem& problem,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without, Progress* progress);
 
+// Where a refit begins: where first order expects the best parameters; or with the effect at the
+// size that it expects, and everything else fitted to that.
+enum class RefitFrom { kFirstOrder, kItsSize };
+
 // From where first order expects the best parameters, or from `values` where that is nearer, or
 // part of the way where neither predicts as well as the model without the effect. Null `effect`:
 // the model as it is, with what was adopted, so that it is compared at its best too. Leaves the
@@ -90,7 +94,8 @@ FurtherEvidence FurtherEvidenceAlong(const CalibrationProblem& problem,
 // with the effect ends when it is fitted afresh. Throws Interrupted.
 EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                   const ScoredVariant* effect, const AdoptedNuisances& adopted,
-                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress);
+                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress,
+                  RefitFrom from = RefitFrom::kFirstOrder);
 
 }  // namespace lacuna
 
