@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "effects/catalogue.h"
+#include "geometry/farthest_first.h"
 #include "record/effect_card.h"
 
 namespace lacuna {
@@ -21,10 +22,7 @@ using Values = std::map<std::string, double>;
 struct Variant {
   std::string name;
   Values values;
-  int line = 0;                                    // as in CandidateEffect
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  // and these
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  double spacing = 0;
+  VariantPosition position = {};
 };
 
 // The object's shape in a few numbers.
@@ -40,23 +38,19 @@ struct Extent {
 
 // Centres of parts of about equal volume, each in the body (Lloyd, IEEE Trans. Inf. Theory 28,
 // 1982).
-Eigen::Matrix3Xd EvenPlaces(const Body& body, const Eigen::Vector3d& first, int count) {
+Eigen::Matrix3Xd EvenPlaces(const Body& body, const Eigen::Vector3d& first, int most) {
   constexpr int kRounds = 30;
+  const int count = std::min(most, static_cast<int>(body.point.cols()));
   const auto nearest_to = [&](const Eigen::Vector3d& place) {
     Eigen::Index nearest;
     (body.point.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
     return nearest;
   };
-  Eigen::Matrix3Xd places(3, count);
-  places.col(0) = body.point.col(nearest_to(first));
-  Eigen::RowVectorXd away = (body.point.colwise() - first).colwise().squaredNorm();
-  for (int k = 1; k < count; ++k) {
-    Eigen::Index farthest;
-    away.maxCoeff(&farthest);
-    places.col(k) = body.point.col(farthest);
-    const Eigen::Vector3d place = places.col(k);
-    away = away.cwiseMin((body.point.colwise() - place).colwise().squaredNorm());
-  }
+  Eigen::Matrix3Xd places = body.point(
+      Eigen::all, FarthestFirst(static_cast<int>(body.point.cols()),
+                                static_cast<int>(nearest_to(first)), count, [&](int a, int b) {
+                                  return (body.point.col(a) - body.point.col(b)).squaredNorm();
+                                }));
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, count);
     Eigen::VectorXd volume = Eigen::VectorXd::Zero(count);
@@ -142,7 +136,7 @@ std::vector<Variant> PlacesAlong(const Extent& extent, const std::vector<double>
     variants.push_back(AtPlace(
         extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0),
         radius_share * extent.length[0], fmt::format("at {:.0f} % of the length", 100 * share)));
-    variants.back().line = 1;
+    variants.back().position = {.line = 1, .number = static_cast<int>(variants.size())};
   }
   return variants;
 }
@@ -157,8 +151,7 @@ std::vector<Variant> Places(const Extent& extent, const std::vector<double>& sha
     variants.push_back(AtPlace(place, radius_share * extent.length[0],
                                fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * place.x() + 0.0,
                                            1e3 * place.y() + 0.0, 1e3 * place.z() + 0.0)));
-    variants.back().place = place;
-    variants.back().spacing = extent.spacing;
+    variants.back().position = {.place = place, .spacing = extent.spacing};
   }
   return variants;
 }
@@ -194,7 +187,7 @@ std::vector<Variant> Directions(const Extent& extent) {
     if (last <= 0) continue;
     const Eigen::Vector3d axis = (extent.axis * steps).normalized();
     variants.push_back(AlongDirection(axis));
-    variants.back().axis = axis;
+    variants.back().position.axis = axis;
   }
   return variants;
 }
@@ -206,7 +199,7 @@ std::vector<Variant> Numbers(const std::string& parameter, const std::string& sy
     variants.push_back(
         {fmt::format("{} = {:.2g}{}{}", symbol, number, unit.empty() ? "" : " ", unit),
          {{parameter, number}},
-         /*line=*/1});
+         {.line = 1, .number = static_cast<int>(variants.size())}});
   return variants;
 }
 
@@ -226,7 +219,7 @@ std::vector<Variant> SlippingSupports(const Extent& extent) {
     for (Variant variant : Supports(extent)) {
       variant.name += fmt::format(", sliding at {:.2g} mm", 1e3 * distance);
       variant.values["slip_distance"] = distance;
-      if (variant.line > 0) variant.line = line;
+      if (variant.position.line > 0) variant.position.line = line;
       variants.push_back(std::move(variant));
     }
   }
@@ -305,6 +298,15 @@ Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
 
 }  // namespace
 
+bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
+  // Of the object's axes and their diagonals, an axis and the diagonals beside it.
+  constexpr double kNeighbourAngle = 1;  // rad
+  const bool in_line = a.line > 0 && a.line == b.line && std::abs(a.number - b.number) == 1;
+  const bool is_near =
+      a.spacing > 0 && b.spacing > 0 && (a.place - b.place).norm() < std::min(a.spacing, b.spacing);
+  return in_line || is_near || std::abs(a.axis.dot(b.axis)) > std::cos(kNeighbourAngle);
+}
+
 double PlausibleScale(const ParameterCard& card) {
   return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
 }
@@ -338,10 +340,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       const Eigen::VectorXd values = ValuesOf(card, variant, setting);
       CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
       candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
-      candidates.back().line = variant.line;
-      candidates.back().axis = variant.axis;
-      candidates.back().place = variant.place;
-      candidates.back().spacing = variant.spacing;
+      candidates.back().position = variant.position;
       candidates.back().known = PlacesOn(setting.body);
     }
   }

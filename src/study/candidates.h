@@ -14,6 +14,18 @@
 
 namespace lacuna {
 
+// Where a variant stands among the others of its effect; by nothing: it has no neighbours.
+struct VariantPosition {
+  // Variants of the same line, 1 or more, follow one another in place or time.
+  int line = 0, number = 0;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();   // either way along it
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m
+  double spacing = 0;                               // m: how far away neighbours in place may be
+
+  bool IsSingle() const { return line == 0 && spacing == 0 && axis.isZero(0); }
+};
+bool AreNeighbours(const VariantPosition& a, const VariantPosition& b);
+
 struct CandidateEffect {
   std::string type;                // of the effect
   std::string variant;             // "τ = 0.3 s", "at the tip"; empty where there is one only
@@ -25,14 +37,7 @@ struct CandidateEffect {
   // Of a pilot that acts besides: the parameters that a refit moves, each with its prior deviation
   // from the pilot setting, SI.
   std::map<std::string, double> refined = {};
-  // Variants of the same line, one after another in the list, are neighbours: in place or time.
-  int line = 0;  // 0: they have none
-  // Of variants that differ in direction, either way along it; near ones are neighbours. 0: of the
-  // others.
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-  // Of variants that differ in place, m, and how far from one another neighbours are; 0: of others.
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
-  double spacing = 0;
+  VariantPosition position = {};
   // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
   struct Range {
     double min = 0, max = 0;

@@ -16,9 +16,6 @@ namespace {
 
 // First order cannot tell effects apart whose derivatives are this parallel.
 constexpr double kLookAlike = 0.95;
-// Directions less than this apart, rad, are neighbours: of the object's axes and their diagonals,
-// an axis and the diagonals beside it.
-constexpr double kNeighbourAngle = 1;
 // A nuisance is taken for granted with odds of e⁵, and where no effect explains as much.
 constexpr double kAdopted = 5;
 constexpr int kMostAdopted = 3;
@@ -83,8 +80,7 @@ class HypothesisRanking {
   Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
   void ScoreDiscretisation();
   void ScoreEffects(const LinearFit& before);
-  double BestEvidence() const;                   // of an effect; 0: none has more
-  bool AreNeighbours(size_t a, size_t b) const;  // variants
+  double BestEvidence() const;  // of an effect; 0: none has more
   bool IsBetterThanNeighbours(size_t candidate) const;
   // The best nuisance that is not in the model; −1: there is none.
   int ScoreNuisances(const LinearFit& before);
@@ -232,20 +228,13 @@ double HypothesisRanking::BestEvidence() const {
   return entries_.empty() ? 0 : std::max(0.0, scores_[entries_[0].best].evidence);
 }
 
-bool HypothesisRanking::AreNeighbours(size_t a, size_t b) const {
-  const CandidateEffect &one = candidates_[a], &other = candidates_[b];
-  if (a == b || one.type != other.type) return false;
-  const bool in_line = one.line > 0 && one.line == other.line && (a + 1 == b || b + 1 == a);
-  const bool is_near =
-      one.spacing > 0 && other.spacing > 0 && (one.place - other.place).norm() < one.spacing;
-  return in_line || is_near || std::abs(one.axis.dot(other.axis)) > std::cos(kNeighbourAngle);
-}
-
 bool HypothesisRanking::IsBetterThanNeighbours(size_t candidate) const {
   const CandidateEffect& own = candidates_[candidate];
-  if (own.line == 0 && own.spacing == 0 && own.axis.isZero(0)) return false;
+  if (own.position.IsSingle()) return false;
   for (size_t other = 0; other < candidates_.size(); ++other)
-    if (AreNeighbours(candidate, other) && scores_[other].evidence >= scores_[candidate].evidence)
+    if (other != candidate && candidates_[other].type == own.type &&
+        AreNeighbours(own.position, candidates_[other].position) &&
+        scores_[other].evidence >= scores_[candidate].evidence)
       return false;
   return true;
 }

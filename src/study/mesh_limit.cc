@@ -54,15 +54,17 @@ ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::Vector
   return prior;
 }
 
-// With the least ‖left + by (change − at)‖² and prior; what would go too far stays there.
-Eigen::VectorXd BestChange(const Eigen::VectorXd& left, const Eigen::MatrixXd& by,
-                           const Eigen::VectorXd& at, const ChangePrior& prior) {
+// With the least ‖left + by (change − at)‖² and prior; what would go too far stays there. `model`:
+// of any residual and `by`.
+Eigen::VectorXd BestChange(const LinearModel& model, const Eigen::VectorXd& left,
+                           const Eigen::MatrixXd& by, const Eigen::VectorXd& at,
+                           const ChangePrior& prior) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());  // of those that have gone too far
   std::vector<int> free(prior.priors.size());
   std::iota(free.begin(), free.end(), 0);
   for (;;) {
     const Eigen::VectorXd best =
-        LinearModel(left + by * (change - at), by, prior.priors).Fit(free, 1).change;
+        model.WithResidual(left + by * (change - at), by).Fit(free, 1).change;
     std::vector<int> within;
     for (size_t k = 0; k < free.size(); ++k) {
       const double here = best[static_cast<Eigen::Index>(k)], most = prior.most[free[k]];
@@ -86,15 +88,14 @@ double FinerMesh::ToRatio(double other) const {
   return (1 - std::pow(other, -kVolumePower)) * ToLimit();
 }
 
-Eigen::VectorXd ResidualOnMesh(const PredictionStudy& study, double ratio,
-                               const Eigen::VectorXd& values) {
+std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
+                                                            double ratio) {
   PredictionStudy fine = study;
   fine.mesh.tets.max_volume /= ratio;
   try {
-    const ReferenceBody reference = MakeReferenceBody(fine);
-    return CalibrationProblem(fine, reference.mesh).Linearise(values, false).residual;
+    return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(fine).mesh);
   } catch (const InputError&) {
-    return {};  // a shape that cannot be meshed more finely says nothing about its mesh
+    return nullptr;  // a shape that cannot be meshed more finely says nothing about its mesh
   }
 }
 
@@ -103,13 +104,16 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const LinearisedMisfit& misfit, bool fitted_only) {
   PredictionStudy study = problem.AsChosen();
   study.time_step *= kLongSteps;
-  FinerMesh finer{RatioFor(problem), Eigen::VectorXd::Zero(values.size())};
+  const double ratio = RatioFor(problem);
+  const auto fine_problem = WithFinerElements(study, ratio);
+  if (fine_problem == nullptr) return std::nullopt;
+  FinerMesh finer{ratio, fine_problem->body()->mesh, Eigen::VectorXd::Zero(values.size())};
   const Eigen::VectorXd coarse =
       CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
   // Whitened; empty where it cannot be had.
   const auto difference = [&](const Eigen::VectorXd& change) -> Eigen::VectorXd {
     const Eigen::VectorXd fine =
-        ResidualOnMesh(study, finer.ratio, MovedBy(problem.parameters(), values, change));
+        fine_problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
     if (fine.size() != misfit.residual.size() || coarse.size() != fine.size() || fine == coarse)
       return {};
     return WhitenedRows(fine - coarse, misfit, 0, fitted_only);
@@ -119,9 +123,10 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
   const ChangePrior prior = PriorOfChange(problem, values);
   Eigen::VectorXd left = difference(finer.change);
   const bool is_finer = left.size() > 0;
+  const LinearModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
   double length = 1;
   for (int step = 0; step < kMostSteps && left.size() > 0 && length >= kShortestStep; ++step) {
-    const Eigen::VectorXd way = BestChange(left, by, finer.change, prior) - finer.change;
+    const Eigen::VectorXd way = BestChange(model, left, by, finer.change, prior) - finer.change;
     const double promised = left.squaredNorm() - (left + by * way).squaredNorm();
     if (!(promised > kSettled)) break;
     const Eigen::VectorXd there = difference(finer.change + length * way);

@@ -3,6 +3,7 @@
 #define LACUNA_STUDY_MESH_LIMIT_H_
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 #include "study/calibration_problem.h"
@@ -17,7 +18,8 @@ namespace lacuna {
 // by Gauss–Newton steps with the study's own derivatives, they stay together, and what no parameter
 // can do is small.
 struct FinerMesh {
-  double ratio = 0;        // how many times smaller the volume is
+  double ratio = 0;  // how many times smaller the volume is
+  TetMesh mesh;
   Eigen::VectorXd change;  // of the parameters there (MovedBy)
 
   // Parts of what this mesh changes: to elements as fine as can be, and to others between.
@@ -32,9 +34,10 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);
 
-// The residual of the study with elements of this part of the volume; empty where it cannot be had.
-Eigen::VectorXd ResidualOnMesh(const PredictionStudy& study, double ratio,
-                               const Eigen::VectorXd& values);
+// The study with elements of so many times less volume; null where its shape cannot be meshed so.
+// The study must outlive it.
+std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
+                                                            double ratio);
 
 // What the study, fitted to `values`, would be fitted to with elements as fine as can be; nothing
 // as above.

@@ -52,11 +52,14 @@ std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
       MakeFinerMesh(problem, values, misfit, /*fitted_only=*/false);
   if (!finer) return std::nullopt;
   const PredictionStudy study = problem.AsChosen();
-  const auto with_part = [&](double ratio) {
-    return ResidualOnMesh(
-        study, ratio, MovedBy(problem.parameters(), values, finer->ToRatio(ratio) * finer->change));
+  const auto residual = [&](const CalibrationProblem& with_part, double ratio) {
+    const Eigen::VectorXd change = finer->ToRatio(ratio) * finer->change;
+    return with_part.Linearise(MovedBy(problem.parameters(), values, change), false).residual;
   };
-  const Eigen::VectorXd fine = with_part(finer->ratio), between = with_part(finer->ratio / 2);
+  const auto half_way = WithFinerElements(study, finer->ratio / 2);
+  if (half_way == nullptr) return std::nullopt;
+  const Eigen::VectorXd fine = residual(CalibrationProblem(study, finer->mesh), finer->ratio);
+  const Eigen::VectorXd between = residual(*half_way, finer->ratio / 2);
   if (fine.size() != misfit.residual.size() || between.size() != fine.size()) return std::nullopt;
   NuisanceCandidate candidate{"mesh", "the size of the elements",
                               "choose a smaller mesh.max_volume"};
@@ -92,7 +95,7 @@ std::optional<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
   };
   const Eigen::VectorXd half = with_steps(2), quarter = with_steps(4);
   if (half.size() != misfit.residual.size() || quarter.size() != half.size()) return std::nullopt;
-  NuisanceCandidate candidate{"time_step", "the length of the step",
+  NuisanceCandidate candidate{kTimeStepNuisance, "the length of the step",
                               "choose a smaller motion.time_step"};
   candidate.by.resize(half.size(), 2);
   const double power = ChangeOfHalving(problem.study().scheme, misfit.residual, half, quarter);

@@ -27,6 +27,7 @@ struct NuisanceCandidate {
   Eigen::MatrixXd unknown = {};
 };
 
+inline constexpr char kTimeStepNuisance[] = "time_step";
 // By how much a grip, a frame, a registration may be shifted, m, and turned, rad (priors).
 inline constexpr double kMisplaced = 1e-3, kMisturned = 0.02;
 // Of more frames than this, single ones are too small a part to be looked at one by one.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "geometry/farthest_first.h"
 
 namespace lacuna {
 namespace {
@@ -15,25 +16,20 @@ constexpr int kSamplesPerPatch = 40;
 constexpr int kIterations = 4;
 constexpr uint64_t kSeed = 1;
 
-double SquaredDistance(const SurfacePatches& patches, Eigen::Index c, const Eigen::Vector3d& point,
-                       const Eigen::Vector3d& normal) {
-  return (point - patches.place.col(c)).squaredNorm() +
-         patches.width * patches.width * (normal - patches.normal.col(c)).squaredNorm();
+double SquaredDistance(const Eigen::Vector3d& a, const Eigen::Vector3d& normal_of_a,
+                       const Eigen::Vector3d& b, const Eigen::Vector3d& normal_of_b, double width) {
+  return (a - b).squaredNorm() + width * width * (normal_of_a - normal_of_b).squaredNorm();
 }
 
-// Each next centre is the sample farthest from all before it.
 void SpreadCentres(const PointCloud& samples, int count, SurfacePatches* patches) {
-  Eigen::VectorXd nearest =
-      Eigen::VectorXd::Constant(samples.Size(), std::numeric_limits<double>::infinity());
-  Eigen::Index next = 0;
-  for (int c = 0; c < count; ++c) {
-    patches->place.col(c) = samples.points.col(next);
-    patches->normal.col(c) = samples.normals.col(next);
-    for (Eigen::Index j = 0; j < samples.Size(); ++j)
-      nearest[j] = std::min(
-          nearest[j], SquaredDistance(*patches, c, samples.points.col(j), samples.normals.col(j)));
-    nearest.maxCoeff(&next);
-  }
+  const auto distance = [&](int a, int b) {
+    return SquaredDistance(samples.points.col(a), samples.normals.col(a), samples.points.col(b),
+                           samples.normals.col(b), patches->width);
+  };
+  const std::vector<int> centres =
+      FarthestFirst(static_cast<int>(samples.Size()), 0, count, distance);
+  patches->place = samples.points(Eigen::all, centres);
+  patches->normal = samples.normals(Eigen::all, centres);
 }
 
 // Moves each centre to the mean of the samples that belong to it.
@@ -64,7 +60,7 @@ int SurfacePatches::PatchOf(const Eigen::Vector3d& point, const Eigen::Vector3d&
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int c = 0; c < Count(); ++c) {
-    const double distance = SquaredDistance(*this, c, point, at_normal);
+    const double distance = SquaredDistance(point, at_normal, place.col(c), normal.col(c), width);
     if (distance >= least) continue;
     least = distance;
     best = c;
@@ -77,8 +73,6 @@ SurfacePatches DivideSurface(const TriMesh& surface, int count) {
   const PointCloud samples =
       EvaluateSamples(surface, SampleSurface(surface, kSamplesPerPatch * count, kSeed));
   SurfacePatches patches;
-  patches.place.resize(3, count);
-  patches.normal.resize(3, count);
   patches.width = std::sqrt(TriangleAreas(surface).sum() / (M_PI * count));
   SpreadCentres(samples, count, &patches);
   for (int k = 0; k < kIterations; ++k) CentreOnSamples(samples, &patches);

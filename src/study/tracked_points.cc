@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/error.h"
+#include "geometry/farthest_first.h"
 #include "study/frame_states.h"
 
 namespace lacuna {
@@ -22,14 +23,13 @@ constexpr size_t kMostPoints = 400, kMostOfGrip = 40;
 std::vector<int> EvenlySpread(const Eigen::Matrix3Xd& points, const std::vector<int>& from,
                               size_t most) {
   if (from.size() <= most) return from;
-  std::vector<double> away(from.size(), std::numeric_limits<double>::infinity());
+  const auto distance = [&](int a, int b) {
+    return (points.col(from[a]) - points.col(from[b])).squaredNorm();
+  };
   std::vector<int> chosen;
-  for (size_t next = 0; chosen.size() < most;) {
-    chosen.push_back(from[next]);
-    for (size_t k = 0; k < from.size(); ++k)
-      away[k] = std::min(away[k], (points.col(from[k]) - points.col(chosen.back())).squaredNorm());
-    next = static_cast<size_t>(std::max_element(away.begin(), away.end()) - away.begin());
-  }
+  for (const int k :
+       FarthestFirst(static_cast<int>(from.size()), 0, static_cast<int>(most), distance))
+    chosen.push_back(from[k]);
   return chosen;
 }
 

@@ -98,7 +98,7 @@ TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   ASSERT_NE(fibres, ranking.effects.end());
   ASSERT_FALSE(fibres->elsewhere.empty());
   const auto is_other = [&](const ScoredVariant& other) {
-    return std::abs(other.candidate.axis.dot(fibres->candidate.axis)) < 0.55 &&
+    return std::abs(other.candidate.position.axis.dot(fibres->candidate.position.axis)) < 0.55 &&
            other.score.evidence < fibres->score.evidence;
   };
   EXPECT_TRUE(std::all_of(fibres->elsewhere.begin(), fibres->elsewhere.end(), is_other));

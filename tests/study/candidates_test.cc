@@ -49,11 +49,11 @@ TEST(Candidates, HavePlacesAllOverWhatIsNoBar) {
       double away = 1;
       int near = 0;
       for (const CandidateEffect& mass : masses) {
-        const Eigen::Vector3d& place = mass.place;
+        const Eigen::Vector3d& place = mass.position.place;
         EXPECT_TRUE(place.x() < 0.04 || place.y() < 0.03) << place.transpose();
         const double distance = (place - Eigen::Vector3d(x, y, 0.007)).norm();
         away = std::min(away, distance);
-        near += distance < mass.spacing;
+        near += distance < mass.position.spacing;
       }
       EXPECT_LT(away, 0.015) << x << " " << y;
       EXPECT_GE(near, 2) << "neighbours of " << x << " " << y;
@@ -66,7 +66,7 @@ TEST(Candidates, HavePlacesAlongABar) {
   const TetMesh bar = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {8, 2, 2});
   const std::vector<CandidateEffect> masses = CandidatesOf(bar, "attached_mass");
   ASSERT_EQ(masses.size(), 7u);
-  EXPECT_EQ(masses[0].spacing, 0);
+  EXPECT_EQ(masses[0].position.spacing, 0);
   EXPECT_EQ(masses[0].variant, "at 5 % of the length");
   EXPECT_EQ(CandidatesOf(bar, "stiffness_gradient").size(), 1u);
 }

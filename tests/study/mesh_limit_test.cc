@@ -58,10 +58,11 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
   const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
   ASSERT_TRUE(finer.has_value());
+  const PredictionStudy study = coarse.problem.AsChosen();
+  const CalibrationProblem on_finer(study, finer->mesh);
   const auto part = [&](const Eigen::VectorXd& change) {
     const Eigen::VectorXd there =
-        ResidualOnMesh(coarse.problem.AsChosen(), finer->ratio,
-                       MovedBy(coarse.problem.parameters(), values, change));
+        on_finer.Linearise(MovedBy(coarse.problem.parameters(), values, change), false).residual;
     return WhitenedRows(there - before, misfit, 0, false).norm();
   };
   EXPECT_LT(part(finer->change), 0.5 * part(Eigen::VectorXd::Zero(values.size())));
