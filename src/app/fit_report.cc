@@ -94,6 +94,8 @@ void PrintCalibration(const CalibrationRecord& record) {
                  recording.scan->places.cols(), 100 * recording.scan->used);
   }
   for (const std::string& strain : record.strains) fmt::print("  strained: {}\n", strain);
+  for (const std::string& note : record.mesh_notes)
+    fmt::print("{}", Wrapped("the mesh: " + note, "  ", "    "));
 }
 
 }  // namespace lacuna

@@ -33,12 +33,13 @@ int Validate(const std::filesystem::path& path, bool show) {
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
       for (const std::string& warning : StudyWarnings(study)) fmt::print("warning: {}\n", warning);
-      const TetMesh mesh = MakeReferenceBody(study).mesh;
-      const CalibrationProblem problem(study, mesh);  // its recordings on that mesh
+      const ReferenceBody body = MakeReferenceBody(study);
+      for (const std::string& note : body.notes) fmt::print("warning: the mesh: {}\n", note);
+      const CalibrationProblem problem(study, body.mesh);  // its recordings on that mesh
       fmt::print(
           "{}: a sound experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
           path.string(), study.recordings.size(), study.recordings.size() == 1 ? "" : "s",
-          mesh.NodeCount(), problem.parameters().size());
+          body.mesh.NodeCount(), problem.parameters().size());
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       for (const std::string& warning : study.recording.warnings)

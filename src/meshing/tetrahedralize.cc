@@ -129,6 +129,22 @@ void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
   }
 }
 
+// So many times more tetrahedra than the largest volume asks for, and no fewer than these, are
+// worth a note: simulations take that much longer.
+constexpr double kManyMore = 10;
+constexpr Eigen::Index kFewTets = 2000;
+
+void NoteAFineSurface(const TriMesh& surface, const TetOptions& options, MeshResult& result) {
+  if (options.max_volume == 0) return;
+  const double asked = result.quality.total_volume / options.max_volume;
+  const Eigen::Index tets = result.quality.tets;
+  if (tets < kFewTets || static_cast<double>(tets) < kManyMore * asked) return;
+  result.notes.push_back(
+      fmt::format("{} tetrahedra, where volumes of {:.4g} m^3 would be some {:.0f}: they must fit "
+                  "the surface's {} triangles; one of fewer triangles would make a faster model",
+                  tets, options.max_volume, std::ceil(asked), surface.triangles.cols()));
+}
+
 void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
   result.status = status;
   result.message = message;
@@ -238,6 +254,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
   NoteUnmetBounds(options, result);
+  NoteAFineSurface(surface, options, result);
   if (options.order == 2) result.mesh = ToQuadratic(result.mesh);
   result.quality.nodes = result.mesh.NodeCount();
   result.status = MeshStatus::kUsable;

@@ -14,6 +14,8 @@ namespace {
 using nlohmann::json;
 using Verdict = ParameterEstimate::Verdict;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
   static const std::vector<std::pair<Verdict, std::string>> names{
       {Verdict::kPinnedDown, "pinned down"},
@@ -64,18 +66,9 @@ FittedScan ScanFromJson(const json& value) {
 json ToJson(const CalibrationRecord& record) {
   json parameters = json::array();
   for (const FittedParameter& parameter : record.parameters) {
-    const ParameterEstimate& estimate = parameter.estimate;
-    parameters.push_back({{"name", parameter.name},
-                          {"unit", parameter.unit},
-                          {"log_scale", parameter.log_scale},
-                          {"value", estimate.value},
-                          {"low_95", Number(estimate.low)},
-                          {"high_95", Number(estimate.high)},
-                          {"deviation_from_data", Number(estimate.deviation)},
-                          {"deviation", Number(estimate.posterior_deviation)},
-                          {"verdict", VerdictName(estimate.verdict)},
-                          {"most_correlated_with", estimate.traded_with},
-                          {"correlation", estimate.correlation}});
+    parameters.push_back(
+        {{"name", parameter.name}, {"unit", parameter.unit}, {"log_scale", parameter.log_scale}});
+    parameters.back().update(EstimateToJson(parameter.estimate));
     if (parameter.with_finest_mesh)
       parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
   }
@@ -110,7 +103,6 @@ json ToJson(const CalibrationRecord& record) {
 
 CalibrationRecord FromJson(const json& value) {
   CalibrationRecord record;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   record.experiment = value.at("experiment").get<std::string>();
   record.usable = value.at("usable");
   record.message = value.at("message");
@@ -125,16 +117,7 @@ CalibrationRecord FromJson(const json& value) {
     parameter.name = entry.at("name");
     parameter.unit = entry.at("unit");
     parameter.log_scale = entry.at("log_scale");
-    ParameterEstimate& estimate = parameter.estimate;
-    estimate.value = entry.at("value");
-    estimate.low = FromNumber(entry.at("low_95"), -kInfinity);
-    estimate.high = FromNumber(entry.at("high_95"), kInfinity);
-    estimate.deviation = FromNumber(entry.at("deviation_from_data"), kInfinity);
-    estimate.posterior_deviation = FromNumber(entry.at("deviation"), kInfinity);
-    for (const auto& [verdict, name] : VerdictNames())
-      if (name == entry.at("verdict")) estimate.verdict = verdict;
-    estimate.traded_with = entry.at("most_correlated_with");
-    estimate.correlation = entry.at("correlation");
+    parameter.estimate = EstimateFromJson(entry);
     if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
     record.parameters.push_back(parameter);
   }
@@ -152,6 +135,31 @@ CalibrationRecord FromJson(const json& value) {
 }
 
 }  // namespace
+
+json EstimateToJson(const ParameterEstimate& estimate) {
+  return {{"value", estimate.value},
+          {"low_95", Number(estimate.low)},
+          {"high_95", Number(estimate.high)},
+          {"deviation_from_data", Number(estimate.deviation)},
+          {"deviation", Number(estimate.posterior_deviation)},
+          {"verdict", VerdictName(estimate.verdict)},
+          {"most_correlated_with", estimate.traded_with},
+          {"correlation", estimate.correlation}};
+}
+
+ParameterEstimate EstimateFromJson(const json& value) {
+  ParameterEstimate estimate;
+  estimate.value = value.at("value");
+  estimate.low = FromNumber(value.at("low_95"), -kInfinity);
+  estimate.high = FromNumber(value.at("high_95"), kInfinity);
+  estimate.deviation = FromNumber(value.at("deviation_from_data"), kInfinity);
+  estimate.posterior_deviation = FromNumber(value.at("deviation"), kInfinity);
+  for (const auto& [verdict, name] : VerdictNames())
+    if (name == value.at("verdict")) estimate.verdict = verdict;
+  estimate.traded_with = value.at("most_correlated_with");
+  estimate.correlation = value.at("correlation");
+  return estimate;
+}
 
 std::string VerdictName(Verdict verdict) {
   for (const auto& [value, name] : VerdictNames())

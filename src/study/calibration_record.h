@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,9 +64,15 @@ struct CalibrationRecord {
   // a clock or a hold far from what was allowed. Physics may hide there.
   std::vector<std::string> strains;
   MeshRecord mesh;
+  std::vector<std::string> mesh_notes;  // of a run just made; the file has neither
 };
 
 std::string VerdictName(ParameterEstimate::Verdict verdict);
+
+// What is infinite becomes null.
+nlohmann::json EstimateToJson(const ParameterEstimate& estimate);
+// Throws nlohmann::json::exception.
+ParameterEstimate EstimateFromJson(const nlohmann::json& value);
 
 void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem::path& file);
 // Throws InputError when it is not one.

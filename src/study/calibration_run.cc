@@ -127,6 +127,7 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
       });
   run.Finish();
   stage.record.mesh = reference.quality;
+  stage.record.mesh_notes = reference.notes;
   return stage.record;
 }
 

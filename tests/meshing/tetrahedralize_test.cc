@@ -103,6 +103,17 @@ TEST(MeshTetrahedra, SaysWhenAKeptSurfaceIsTooCoarseForTheLargestVolume) {
   EXPECT_THAT(result.notes[0], HasSubstr("are larger than 1e-08 m^3"));
 }
 
+TEST(MeshTetrahedra, SaysWhenASurfaceIsFarFinerThanTheLargestVolume) {
+  const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {80, 12, 16});
+  const MeshResult coarse = MeshTetrahedra(box, {.max_volume = 1e-5});
+  ASSERT_TRUE(coarse.IsUsable());
+  ASSERT_EQ(coarse.notes.size(), 1u);
+  EXPECT_THAT(coarse.notes[0], HasSubstr("would be some 24: they must fit the surface's"));
+  const MeshResult fitting = MeshTetrahedra(box, {.max_volume = 1e-8});
+  ASSERT_TRUE(fitting.IsUsable());
+  EXPECT_TRUE(fitting.notes.empty()) << fitting.notes[0];
+}
+
 TEST(MeshTetrahedra, ASmallerVolumeMakesMoreTetrahedra) {
   const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {14, 2, 3});
   const auto count = [&](double volume) {
