@@ -61,6 +61,13 @@ void PrintEffect(const RecordedEffect& effect) {
   if (effect.sizes.size() > 1) more.push_back(SizeText(effect));
   if (!effect.variant.empty())
     more.push_back((effect.HasUsableRefit() ? "refitted from " : "") + effect.variant);
+  std::vector<std::string> others;
+  for (const RecordedValue& other : effect.others)
+    others.push_back(fmt::format("{} {:.3g} [{:.3g}, {:.3g}]{}{}",
+                                 other.parameter.substr(other.parameter.find('.') + 1),
+                                 other.found.value, other.found.low, other.found.high,
+                                 other.unit.empty() ? "" : " ", other.unit));
+  if (!others.empty()) more.push_back(fmt::format("to {}", fmt::join(others, ", ")));
   if (!effect.look_alikes.empty())
     more.push_back(fmt::format("looks like {}", fmt::join(effect.look_alikes, ", ")));
   if (!effect.refit_message.empty()) more.push_back(effect.refit_message);
@@ -85,6 +92,7 @@ void PrintRanking(const DiagnosisRecord& diagnosis) {
     else
       quiet.push_back(effect.type);
   }
+  PrintText("σ: less what mesh, step and other nuisances in the model do; raw: with that");
   if (!quiet.empty()) PrintText(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
   for (const UntriedEffect& effect : diagnosis.untried)
     PrintText(fmt::format("not tried: {}; {}", effect.type, effect.why));
@@ -130,7 +138,8 @@ void PrintNoise(const DiagnosisRecord& diagnosis) {
                   diagnosis.correlation_time > 0
                       ? fmt::format("correlated over {:.3g} s", diagnosis.correlation_time)
                       : "white in time");
-  text += fmt::format("; the best hypothesis leaves {:.1f} σ.", diagnosis.left_in_noise);
+  text += fmt::format("; the best hypothesis leaves {:.1f} σ. Time step: {:.3g} ms.",
+                      diagnosis.left_in_noise, 1e3 * diagnosis.time_step);
   if (diagnosis.control > 0)
     text += fmt::format(" Control: without any effect, evidence up to {:.1f} comes by chance.",
                         diagnosis.control);

@@ -1,5 +1,6 @@
 #include "study/diagnosis.h"
 
+#include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -22,8 +23,9 @@ constexpr double kCloseBehind = 5;
 // the third's.
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
-// A refit that keeps less than this part of what first order promises is made again from elsewhere.
-constexpr double kKept = 0.5;
+// A refit that keeps less than this part of what first order promises is made again from elsewhere;
+// unless it explains this part of what is more than noise: then the promise was too large.
+constexpr double kKept = 0.5, kFoundItsWay = 0.85;
 // A nuisance that has this part of the best effect's evidence, both to first order, is fitted with
 // the model too: neither is judged by a promise. The most that are.
 constexpr double kRivalNuisance = 0.5;
@@ -31,6 +33,9 @@ constexpr int kMostRivalNuisances = 3;
 // What has less than this part of the nuisances' evidence to first order is not tried in their
 // place.
 constexpr double kCouldDoAsMuch = 0.5;
+
+// A step that could lend evidence is halved so many times at most.
+constexpr int kMostHalvings = 3;
 
 // What the best refits leave is looked at again in so many, no farther than this behind the best.
 constexpr int kMostLooks = 3;
@@ -87,14 +92,11 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
 class Refits {
  public:
   // `ranking`: without its effects, which `diagnosis` has.
-  Refits(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-         const EffectRanking& ranking, Progress* progress, Diagnosis* diagnosis)
-      : problem_(problem),
-        values_(values),
+  Refits(const PresentModel& model, const EffectRanking& ranking, Diagnosis* diagnosis)
+      : model_(model),
         ranking_(ranking),
-        progress_(*progress),
         diagnosis_(*diagnosis),
-        present_(Refit(problem, values, nullptr, ranking.adopted, ranking.misfit, false, progress)),
+        present_(Refit(model, nullptr, ranking.adopted, false)),
         refits_(diagnosis->ranking.size()) {
     CHECK(present_.message.empty()) << present_.message;
     diagnosis_.errors.without_nuisances = present_.errors.without_nuisances;
@@ -157,8 +159,7 @@ class Refits {
     const double before = EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence;
     for (ScoredNuisance* nuisance : rivals) {
       const EffectRefit with =
-          Refit(problem_, values_, nullptr, ranking_.adopted.And(nuisance->candidate),
-                ranking_.misfit, false, &progress_);
+          Refit(model_, nullptr, ranking_.adopted.And(nuisance->candidate), false);
       if (!with.message.empty()) continue;
       const double evidence = EvidenceOf(with.hypothesis, diagnosis_.noise_level).log_evidence -
                               before - nuisance->candidate.price - Price(nuisances->size());
@@ -172,8 +173,7 @@ class Refits {
     Diagnosis::Instead instead;
     if (!ranking_.adopted.HasMore()) return instead;
     const AdoptedNuisances always = ranking_.adopted.Always();
-    const EffectRefit bare =
-        Refit(problem_, values_, nullptr, always, ranking_.misfit, false, &progress_);
+    const EffectRefit bare = Refit(model_, nullptr, always, false);
     if (!bare.message.empty()) return instead;
     instead.bare = bare.errors;
     const RefitEvidence before = EvidenceOf(bare, diagnosis_.noise_level);
@@ -205,8 +205,7 @@ class Refits {
           others < std::max(kNoEvidence, kLeavesMore * effect.evidence))
         continue;
       ++looked;
-      effect.further =
-          FurtherEvidenceAlong(problem_, values_, effect.scored, refits_[k], without, &progress_);
+      effect.further = FurtherEvidenceAlong(model_, effect.scored, refits_[k], without);
     }
   }
 
@@ -214,7 +213,7 @@ class Refits {
   void Weigh() {
     const FittedHypothesis& best = Best();
     diagnosis_.noise_level =
-        LevelOf(best.left, best.misfit, best.misfit.by.cols(), problem_.LeastNoiseVariance());
+        LevelOf(best.left, best.misfit, best.misfit.by.cols(), model_.problem.LeastNoiseVariance());
     diagnosis_.left_in_noise = InNoise(best);
     const RefitEvidence before = EvidenceOf(present_, diagnosis_.noise_level);
     for (size_t k = 0; k < refits_.size(); ++k)
@@ -257,8 +256,7 @@ class Refits {
                     RankedEffect* effect) const {
     const bool is_far_off = InNoise(without.hypothesis) > kFarOff;
     const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
-      return Refit(problem_, values_, &variant, adopted, ranking_.misfit, is_far_off, &progress_,
-                   start);
+      return Refit(model_, &variant, adopted, is_far_off, start);
     };
     EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
     ScoredVariant best = effect->scored;
@@ -283,15 +281,19 @@ class Refits {
     if (refit.message.empty()) {
       effect->values = refit.effect;
       effect->sizes = refit.sizes;
+      effect->others = refit.others;
     }
     return refit;
   }
   // It has not found what first order promises: a minimum on the way, or a promise that is none.
   bool FallsShort(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
     if (!refit.message.empty()) return true;
-    const double reached = EvidenceOf(refit.hypothesis, ranking_.noise).log_evidence -
-                           EvidenceOf(without.hypothesis, ranking_.noise).log_evidence;
-    return reached < kKept * score.evidence;
+    const HypothesisEvidence before = EvidenceOf(without.hypothesis, ranking_.noise);
+    const HypothesisEvidence after = EvidenceOf(refit.hypothesis, ranking_.noise);
+    const double noise =
+        ranking_.noise.variance * static_cast<double>(ObservedRows(ranking_.misfit));
+    return after.log_evidence - before.log_evidence < kKept * score.evidence &&
+           before.misfit - after.misfit < kFoundItsWay * (before.misfit - noise);
   }
   const FittedHypothesis& Best() const {
     const FittedHypothesis* best = &present_.hypothesis;
@@ -306,16 +308,75 @@ class Refits {
     return *best;
   }
 
-  const CalibrationProblem& problem_;
-  const Eigen::VectorXd& values_;
+  const PresentModel& model_;
   const EffectRanking& ranking_;
-  Progress& progress_;
   Diagnosis& diagnosis_;
   EffectRefit present_;  // the model as it is
   std::vector<EffectRefit> refits_;
   int most_ = kMostRefits;  // unless more are asked for
   int done_ = 0;
 };
+
+// There is evidence, and what is not known of the step's error may have lent it.
+bool IsStepTooLong(const EffectRanking& ranking) {
+  const auto step = std::find_if(
+      ranking.nuisances.begin(), ranking.nuisances.end(),
+      [](const ScoredNuisance& nuisance) { return nuisance.candidate.name == kTimeStepNuisance; });
+  return step != ranking.nuisances.end() && MayLend(step->doubt) > kNamed &&
+         !ranking.effects.empty() && ranking.effects.front().score.evidence > kNamed;
+}
+
+Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
+                     const DiagnosisOptions& options, int halvings, Progress* progress,
+                     RefitStore* kept) {
+  EffectRanking ranking = RankEffects(problem, fitted, progress, options.without);
+  if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking)) {
+    PredictionStudy study = problem.AsChosen();
+    study.time_step /= 2;
+    progress->Begin("time step", 0);
+    progress->End(
+        fmt::format("{:.3g} ms, as twice that may pass for an effect", 1e3 * study.time_step));
+    const CalibrationProblem shorter(study, problem.body()->mesh);
+    const Calibration fit = FitOn(shorter, fitted, progress);
+    if (fit.parameters.size() == fitted.size()) {
+      Diagnosis diagnosis =
+          DiagnoseAt(shorter, fit.parameters, options, halvings - 1, progress, kept);
+      problem.SetModel(fitted);
+      return diagnosis;
+    }
+  }
+  Diagnosis diagnosis;
+  diagnosis.noise = problem.noise();
+  diagnosis.scan_noise = problem.scan_noise();
+  diagnosis.time_step = problem.study().time_step;
+  diagnosis.errors = ErrorsOf(problem, fitted);
+  diagnosis.scored = ranking.variants;
+  diagnosis.control = ranking.control;
+  diagnosis.untried = std::move(ranking.untried);
+  for (ScoredEffect& effect : ranking.effects) {
+    diagnosis.ranking.emplace_back();
+    diagnosis.ranking.back().scored = std::move(effect);
+  }
+
+  const PresentModel model{problem, fitted, ranking.misfit, progress, kept};
+  Refits refits(model, ranking, &diagnosis);
+  refits.RunBest(options.refits);
+  if (diagnosis.present_in_noise > kFarOff)
+    refits.RunEarly(RankEarly(problem, fitted, options.without, progress), options.refits);
+  refits.Weigh();
+  refits.RunLookAlikesOfBest();
+  refits.Weigh();
+  refits.RunRivalNuisances(&ranking.nuisances);
+  refits.LookAgain(options.without);
+  diagnosis.nuisances = std::move(ranking.nuisances);
+  Decide(&diagnosis);
+  if (diagnosis.verdict == Verdict::kNuisance) {
+    diagnosis.instead = refits.RunInstead(options.refits);
+    DecideAgainstNuisances(&diagnosis);
+  }
+  problem.SetModel(fitted);
+  return diagnosis;
+}
 
 }  // namespace
 
@@ -338,37 +399,8 @@ std::string VerdictName(Verdict verdict) {
 }
 
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                   const DiagnosisOptions& options, Progress* progress) {
-  Diagnosis diagnosis;
-  diagnosis.noise = problem.noise();
-  diagnosis.scan_noise = problem.scan_noise();
-  diagnosis.errors = ErrorsOf(problem, fitted);
-  EffectRanking ranking = RankEffects(problem, fitted, progress, options.without);
-  diagnosis.scored = ranking.variants;
-  diagnosis.control = ranking.control;
-  diagnosis.untried = std::move(ranking.untried);
-  for (ScoredEffect& effect : ranking.effects) {
-    diagnosis.ranking.emplace_back();
-    diagnosis.ranking.back().scored = std::move(effect);
-  }
-
-  Refits refits(problem, fitted, ranking, progress, &diagnosis);
-  refits.RunBest(options.refits);
-  if (diagnosis.present_in_noise > kFarOff)
-    refits.RunEarly(RankEarly(problem, fitted, options.without, progress), options.refits);
-  refits.Weigh();
-  refits.RunLookAlikesOfBest();
-  refits.Weigh();
-  refits.RunRivalNuisances(&ranking.nuisances);
-  refits.LookAgain(options.without);
-  diagnosis.nuisances = std::move(ranking.nuisances);
-  Decide(&diagnosis);
-  if (diagnosis.verdict == Verdict::kNuisance) {
-    diagnosis.instead = refits.RunInstead(options.refits);
-    DecideAgainstNuisances(&diagnosis);
-  }
-  problem.SetModel(fitted);
-  return diagnosis;
+                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept) {
+  return DiagnoseAt(problem, fitted, options, kMostHalvings, progress, kept);
 }
 
 }  // namespace lacuna

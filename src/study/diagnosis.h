@@ -45,6 +45,7 @@ struct RankedEffect {
   FurtherEvidence further;       // for another effect beside it
   Eigen::VectorXd values;        // the effect's parameters there; empty: there is no usable refit
   std::vector<ParameterEstimate> sizes;  // of those that make its size (scored.score.size)
+  std::vector<NamedEstimate> others;     // as in EffectRefit
 };
 
 struct Diagnosis {
@@ -54,6 +55,7 @@ struct Diagnosis {
   std::string explanation;           // in words
   std::string experiment;            // that would settle it; empty: none is needed
   double noise = 0, scan_noise = 0;  // m: of a marker's coordinate, of a scanned point
+  double time_step = 0;              // s, that it was made with
   NoiseLevel noise_level;
   ModelErrors errors;                     // of the present model
   std::vector<RankedEffect> ranking;      // by first order's evidence
@@ -75,9 +77,12 @@ struct Diagnosis {
 
 std::string VerdictName(Diagnosis::Verdict verdict);
 
-// Of the study fitted to `fitted` (CalibrationProblem::parameters). Throws Interrupted.
+// Of the study fitted to `fitted` (CalibrationProblem::parameters). Where the study leaves its step
+// open, and what is not known of the step's error could lend an effect its evidence, the study is
+// fitted and diagnosed with shorter steps. `kept`: where fits are kept, so that one that is stopped
+// goes on there. Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                   const DiagnosisOptions& options, Progress* progress);
+                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr);
 
 }  // namespace lacuna
 

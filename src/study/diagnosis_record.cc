@@ -45,6 +45,10 @@ ModelErrors ErrorsFrom(const json& value, bool has_held_out) {
   return errors;
 }
 
+RecordedInterval IntervalFrom(const json& value) {
+  return {value.at("value"), FromNumber(value.at("low_95"), -1), FromNumber(value.at("high_95"))};
+}
+
 RecordedEffect EffectFrom(const json& entry, bool has_held_out) {
   RecordedEffect effect;
   effect.type = entry.at("effect");
@@ -61,8 +65,7 @@ RecordedEffect EffectFrom(const json& entry, bool has_held_out) {
                             FromNumber(size.at("detectable")),
                             {}});
     if (const json& found = size.at("refitted"); !found.is_null())
-      effect.sizes.back().refitted = {found.at("value"), FromNumber(found.at("low_95"), -1),
-                                      FromNumber(found.at("high_95"))};
+      effect.sizes.back().refitted = IntervalFrom(found);
   }
   effect.look_alikes = entry.at("look_alikes").get<std::vector<std::string>>();
   effect.refitted = entry.at("refitted");
@@ -71,6 +74,8 @@ RecordedEffect EffectFrom(const json& entry, bool has_held_out) {
     const json& refit = entry.at("refit");
     effect.refit_message = refit.at("message");
     effect.refit_evidence = refit.at("evidence");
+    for (const json& other : refit.at("others"))
+      effect.others.push_back({other.at("parameter"), other.at("unit"), IntervalFrom(other)});
     effect.errors = ErrorsFrom(refit, has_held_out);
   }
   return effect;
@@ -87,6 +92,7 @@ DiagnosisRecord FromJson(const json& value) {
   record.correlation_time = value.at("noise_correlation_time_s");
   record.variance_factor = value.at("noise_variance_factor");
   record.control = value.at("control_evidence");
+  record.time_step = value.at("time_step_s");
   record.left_in_noise = value.at("left_in_noise");
   const json& instead = value.at("instead");
   record.nuisances_evidence = instead.at("nuisances_evidence");
@@ -110,6 +116,10 @@ namespace {
 
 json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
+json IntervalJson(const ParameterEstimate& found) {
+  return {{"value", found.value}, {"low_95", Number(found.low)}, {"high_95", Number(found.high)}};
+}
+
 json EffectJson(const RankedEffect& effect) {
   json sizes = json::array();
   for (size_t k = 0; k < effect.scored.parameters.size(); ++k) {
@@ -120,11 +130,7 @@ json EffectJson(const RankedEffect& effect) {
                      {"deviation", Number(effect.scored.score.deviation[at])},
                      {"detectable", Number(effect.scored.score.detectable[at])},
                      {"refitted", nullptr}});
-    if (k < effect.sizes.size()) {
-      const ParameterEstimate& found = effect.sizes[k];
-      sizes.back()["refitted"] = {
-          {"value", found.value}, {"low_95", Number(found.low)}, {"high_95", Number(found.high)}};
-    }
+    if (k < effect.sizes.size()) sizes.back()["refitted"] = IntervalJson(effect.sizes[k]);
   }
   json entry = {{"effect", effect.scored.candidate.type},
                 {"variant", effect.scored.candidate.variant},
@@ -136,11 +142,17 @@ json EffectJson(const RankedEffect& effect) {
                 {"look_alikes", effect.scored.look_alikes},
                 {"refitted", effect.refitted}};
   if (effect.refitted) {
+    json others = json::array();
+    for (const NamedEstimate& other : effect.others) {
+      others.push_back({{"parameter", other.name}, {"unit", other.unit}});
+      others.back().update(IntervalJson(other.estimate));
+    }
     entry["refit"] = {{"message", effect.refit_message},
                       {"evidence", effect.evidence},
                       {"held_out_evidence", effect.held_out_evidence},
                       {"explained_share", effect.explained},
                       {"left_in_noise", effect.left_in_noise},
+                      {"others", others},
                       {"further",
                        {{"effect", effect.further.type},
                         {"evidence", effect.further.evidence},
@@ -170,13 +182,14 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   json untried = json::array();
   for (const UntriedEffect& effect : diagnosis.untried)
     untried.push_back({{"effect", effect.type}, {"why", effect.why}});
-  json all = {{"schema_version", 7},
+  json all = {{"schema_version", 8},
               {"verdict", VerdictName(diagnosis.verdict)},
               {"effects", diagnosis.effects},
               {"explanation", diagnosis.explanation},
               {"experiment", diagnosis.experiment},
               {"noise_m", diagnosis.noise},
               {"scan_noise_m", diagnosis.scan_noise},
+              {"time_step_s", diagnosis.time_step},
               {"noise_correlation_time_s", diagnosis.noise_level.correlation_time},
               {"noise_variance_factor", diagnosis.noise_level.variance},
               {"has_held_out", diagnosis.errors.has_held_out},

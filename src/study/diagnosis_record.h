@@ -11,15 +11,22 @@
 
 namespace lacuna {
 
+struct RecordedInterval {
+  double value = 0, low = 0, high = 0;  // 95 %
+};
+
 // One of an effect's amounts, in its unit (SI). Infinite: the data does not tell it.
 struct RecordedSize {
   std::string parameter, unit;
   double expected = 0, deviation = 0;
-  double detectable = 0;  // the smallest that these recordings could have shown
-  struct Interval {
-    double value = 0, low = 0, high = 0;  // 95 %
-  };
-  std::optional<Interval> refitted;  // after a usable refit; not of a pilot
+  double detectable = 0;                     // the smallest that these recordings could have shown
+  std::optional<RecordedInterval> refitted;  // after a usable refit; not of a pilot
+};
+
+// A parameter of a refitted effect that does not make its size: its place, its time. SI.
+struct RecordedValue {
+  std::string parameter, unit;
+  RecordedInterval found;
 };
 
 // An effect in the best of its variants (Score, RankedEffect).
@@ -36,6 +43,7 @@ struct RecordedEffect {
   std::string refit_message;  // why it is not usable; empty: it is
   double refit_evidence = 0;
   ModelErrors errors;
+  std::vector<RecordedValue> others;  // of a usable refit
 
   bool HasUsableRefit() const { return refitted && refit_message.empty(); }
 };
@@ -54,6 +62,7 @@ struct DiagnosisRecord {
   double noise = 0, scan_noise = 0;  // m, of a coordinate, of a scanned point
   double correlation_time = 0;       // s, of the noise
   double variance_factor = 1;        // of the noise against what was given
+  double time_step = 0;              // s, that it was made with
   double control = 0;        // the evidence that one in twenty controls finds without an effect
   double left_in_noise = 0;  // σ, of the best hypothesis
   ModelErrors errors;        // of the model as it is

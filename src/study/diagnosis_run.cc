@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 23;
+constexpr int kDiagnosisVersion = 24;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -86,14 +86,16 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
     return record;
   }
   const CalibrationProblem problem(fitted.study, fitted.mesh);
-  const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress);
   MakeFolder(ResultFile(run).parent_path());
+  RefitStore kept(ResultFile(run).parent_path() / "refits.json", OriginOf(run, options));
+  const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept);
   SaveDiagnosis(diagnosis, ResultFile(run));
   const json origin = {{"schema_version", 2},
                        {"of", OriginOf(run, options)},
                        {"diagnosis", HashFile(ResultFile(run))},
                        {"settings", SettingsOf(diagnosis)}};
   WriteFileAtomically(OriginFile(run), origin.dump(2) + "\n");
+  kept.Drop();
   problem.SetModel(fitted.values);
   return ReadDiagnosisFile(ResultFile(run));
 }

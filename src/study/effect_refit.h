@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
 #include "study/calibration_problem.h"
 #include "study/effect_ranking.h"
+#include "study/extended_problem.h"
 
 namespace lacuna {
 
@@ -47,6 +47,7 @@ struct EffectRefit {
   Calibration calibration;
   Eigen::VectorXd effect;                // parameters of the effect there, in the order of its card
   std::vector<ParameterEstimate> sizes;  // of those that make its size; none of a pilot
+  std::vector<NamedEstimate> others;     // of the others that were fitted: its place, its time
   ModelErrors errors;
   // At the parameters that are best for the fitted frames, and for all.
   FittedHypothesis at_fit, hypothesis;
@@ -75,26 +76,24 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const NoiseLevel& noise);
 
 // The same along the refitted model's own motion, with its own mesh and step: what a diagnosis of
-// it would find, at the price of its ranking. `values`: of the model without the effect, where it
-// leaves the study's effects. Throws Interrupted.
-FurtherEvidence FurtherEvidenceAlong(const CalibrationProblem& problem,
-                                     const Eigen::VectorXd& values, const ScoredVariant& effect,
+// it would find, at the price of its ranking. Leaves the study's effects at the present values.
+// Throws Interrupted.
+FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVariant& effect,
                                      const EffectRefit& refit,
-                                     const std::vector<std::string>& without, Progress* progress);
+                                     const std::vector<std::string>& without);
 
 // Where a refit begins: where first order expects the best parameters; or with the effect at the
 // size that it expects, and everything else fitted to that.
 enum class RefitFrom { kFirstOrder, kItsSize };
 
-// From where first order expects the best parameters, or from `values` where that is nearer, or
-// part of the way where neither predicts as well as the model without the effect. Null `effect`:
-// the model as it is, with what was adopted, so that it is compared at its best too. Leaves the
-// study's effects at `values`. `misfit`: of the model as it is. `is_far_off`: so is the model as it
-// is, and a refit from there that leaves more than noise is made again from where the model
-// with the effect ends when it is fitted afresh. Throws Interrupted.
-EffectRefit Refit(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                  const ScoredVariant* effect, const AdoptedNuisances& adopted,
-                  const LinearisedMisfit& misfit, bool is_far_off, Progress* progress,
+// From where first order expects the best parameters, or from the present ones where that is
+// nearer, or part of the way where neither predicts as well as the model without the effect. Null
+// `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
+// Leaves the study's effects at the present values. `is_far_off`: so is the model as it is, and a
+// refit from there that leaves more than noise is made again from where the model with the effect
+// ends when it is fitted afresh. Throws Interrupted.
+EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
+                  const AdoptedNuisances& adopted, bool is_far_off,
                   RefitFrom from = RefitFrom::kFirstOrder);
 
 }  // namespace lacuna

@@ -14,15 +14,15 @@ namespace {
 
 using Verdict = Diagnosis::Verdict;
 
-// Logarithms of odds: to be named at all.
-constexpr double kNamed = 5;
-// And to be preferred to a rival: the model that both are added to is not perfect, and what it is
-// off by makes the better of two that explain about the same by chance. So the lead must be a part
-// of the evidence itself, and never needs to be more than the last of these.
+// Logarithms of odds: to be preferred to a rival. The model that both are added to is not perfect,
+// and what it is off by makes the better of two that explain about the same by chance. So the lead
+// must be a part of the evidence itself, and never needs to be more than the last of these.
 constexpr double kLeastLead = 3, kLeadShare = 0.25, kMostLead = 10;
-// The unknown part of what mesh and step change may lie along an effect, or tilt two rivals by
-// twice its evidence.
-constexpr double kDoubtful = 2;
+constexpr double kDoubtful = 2;  // of MayLend()
+// With these odds an effect is there, though its interval reaches nothing: intervals take for
+// straight lines what a lump's stiffness, radius and place may do for one another, and with it gone
+// they would have no meaning (Davies, Biometrika 64, 1977).
+constexpr double kBeyondIntervals = 10;
 // What is left is noise below so many standard deviations; of held-out frames alone, which feel
 // what the fitted ones leave open of the parameters, below these.
 constexpr double kAtNoise = 1.2, kHeldOutAtNoise = 1.3;
@@ -94,9 +94,9 @@ std::vector<const RankedEffect*> ByEvidence(
   return chosen;
 }
 
-// Its size after the refit may be none, whatever its evidence.
+// Its size after the refit may be none, and its evidence does not say otherwise.
 bool MayBeNothing(const RankedEffect& effect) {
-  return !effect.sizes.empty() &&
+  return !effect.sizes.empty() && effect.evidence < kBeyondIntervals &&
          std::all_of(effect.sizes.begin(), effect.sizes.end(),
                      [](const ParameterEstimate& size) { return size.low <= 0 && size.high >= 0; });
 }
@@ -107,8 +107,22 @@ double ExcessExplained(double before, double after) {
   return std::clamp((before * before - after * after) / (before * before - 1), 0.0, 1.0);
 }
 
-// Nothing of the catalogue is needed, or nothing of it helps.
-void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noise) {
+// The evidence that mesh or step may lend an effect, and which of them; null: none is uncertain.
+std::pair<double, const ScoredNuisance*> MostLent(const std::vector<ScoredNuisance>& nuisances) {
+  double most = 0;
+  const ScoredNuisance* lender = nullptr;
+  for (const ScoredNuisance& nuisance : nuisances) {
+    if (MayLend(nuisance.doubt) <= most) continue;
+    most = MayLend(nuisance.doubt);
+    if (nuisance.doubt > 0) lender = &nuisance;
+  }
+  return {most, lender};
+}
+
+// Nothing of the catalogue is needed, or nothing of it helps. `lender`: what may have lent the best
+// effect its evidence; null: it has none.
+void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noise,
+                         const ScoredNuisance* lender) {
   const std::string error = fmt::format(
       "{:.3f} mm or {:.1f} σ", 1e3 * diagnosis->errors.held_out_rms, diagnosis->errors.in_noise);
   std::vector<std::string> advice, small;
@@ -137,6 +151,13 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     diagnosis->explanation = fmt::format(
         "the error, {}, is that of the noise, and no effect has evidence beyond what chance gives",
         error);
+    if (lender != nullptr) {
+      diagnosis->explanation = fmt::format(
+          "the error, {}, is that of the noise, and the best evidence for an effect, {:.1f}, is "
+          "within the {:.1f} that what is not known of {} may lend it",
+          error, best_evidence, MayLend(lender->doubt), lender->candidate.what);
+      diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
+    }
     if (!small.empty())
       diagnosis->explanation += fmt::format("; {} shows, and explains less than {:.0f} % of it",
                                             fmt::join(small, ", "), 100 * kNuisanceMatters);
@@ -193,6 +214,8 @@ bool DecideThatNoneOfThemIsIt(const RankedEffect& best,
 
 }  // namespace
 
+double MayLend(double doubt) { return kDoubtful * doubt + kLeastLead; }
+
 void Decide(Diagnosis* diagnosis) {
   if (NothingCouldBeSeen(diagnosis->ranking)) {
     diagnosis->verdict = Verdict::kNoPower;
@@ -217,13 +240,10 @@ void Decide(Diagnosis* diagnosis) {
     if (!nuisance.candidate.is_always_taken) in_the_model += std::max(0.0, nuisance.evidence);
   }
   // What mesh or step may lend is no evidence where the model is at the noise without.
-  double lent = 0;
-  for (const ScoredNuisance& nuisance : diagnosis->nuisances)
-    lent = std::max(lent, kDoubtful * nuisance.doubt + kLeastLead);
-  const double needed = std::max(
-      {kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model, at_noise ? lent : 0.0});
-  if (evidence < needed) {
-    DecideWithoutEffect(diagnosis, evidence, is_noise);
+  const auto [lent, lender] = MostLent(diagnosis->nuisances);
+  const double needed = std::max({kNamed, diagnosis->control, kFirstOrderDoubt * in_the_model});
+  if (evidence < needed || (at_noise && evidence < lent)) {
+    DecideWithoutEffect(diagnosis, evidence, is_noise, evidence < needed ? nullptr : lender);
     return;
   }
   const RankedEffect& best = *refitted.front();
@@ -273,7 +293,7 @@ void Decide(Diagnosis* diagnosis) {
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : 1;
-    if (kDoubtful * nuisance.doubt + kLeastLead > evidence) {
+    if (MayLend(nuisance.doubt) > evidence) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
     } else if (!nuisance.adopted && nuisance.refitted.value_or(nuisance.evidence) >

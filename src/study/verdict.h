@@ -11,6 +11,12 @@ namespace lacuna {
 // than this part of its own, and than chance, does another's work or only a part of it.
 inline constexpr double kLeavesMore = 0.05;
 
+// Logarithm of the odds to be named at all.
+inline constexpr double kNamed = 5;
+// The evidence that the unknown part of what mesh and step change may lend an effect: more than
+// twice what lies along it, as it may tilt two rivals.
+double MayLend(double doubt);
+
 // Fills verdict, effects, explanation and experiment from everything else.
 void Decide(Diagnosis* diagnosis);
 

@@ -48,9 +48,9 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
     Progress progress(Silent());
-    const EffectRefit refit =
-        Refit(problem, values, &effect->scored, {}, problem.Linearise(values, false),
-              diagnosis.present_in_noise > kFarOff, &progress);
+    const LinearisedMisfit misfit = problem.Linearise(values, false);
+    const EffectRefit refit = Refit({problem, values, misfit, &progress}, &effect->scored, {},
+                                    diagnosis.present_in_noise > kFarOff);
     if (!refit.message.empty()) return;
     sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;

@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "study/diagnosis_record.h"
 #include "study/held_bar.h"
+#include "study/verdict.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -39,6 +42,7 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
     EXPECT_NEAR(effect.sizes[0].value, truth.alpha, 0.15 * truth.alpha);
     EXPECT_LT(effect.sizes[0].low, effect.sizes[0].value);
     EXPECT_GT(effect.sizes[0].high, effect.sizes[0].value);
+    EXPECT_TRUE(effect.others.empty());
   }
 }
 
@@ -46,6 +50,27 @@ TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
   EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+}
+
+// Half the distance of frames, where the first fit would begin.
+TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
+  HeldBarTruth truth;
+  truth.alpha = 12;
+  std::map<std::string, std::string> left_open = kWithoutDamping;
+  left_open["motion: {time_step: 1.5 ms}\n"] = "";
+  const Diagnosis shortened = DiagnoseBar(truth, left_open, {.refits = 1});
+  EXPECT_LT(shortened.time_step, 0.003);
+  std::map<std::string, std::string> given = kWithoutDamping;
+  given["time_step: 1.5 ms"] = "time_step: 5 ms";
+  const Diagnosis as_given = DiagnoseBar(truth, given, {.refits = 1});
+  EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
+  const auto doubt = [](const Diagnosis& diagnosis) {
+    for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+      if (nuisance.candidate.name == kTimeStepNuisance) return nuisance.doubt;
+    return std::nan("");
+  };
+  EXPECT_GT(MayLend(doubt(as_given)), kNamed);
+  EXPECT_LT(doubt(shortened), 0.5 * doubt(as_given));
 }
 
 TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
@@ -80,6 +105,10 @@ TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
   refitted.sizes.resize(1);
   refitted.sizes[0].value = 2;
   refitted.sizes[0].low = 1;
+  ParameterEstimate place;
+  place.value = 0.05;
+  place.high = 0.07;
+  refitted.others = {{"drag.centre_x", "m", place}};
   const TemporaryFolder folder;
   SaveDiagnosis(diagnosis, folder / "diagnosis.json");
   std::ifstream stream(folder / "diagnosis.json");
@@ -94,6 +123,13 @@ TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->value, 2);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->low, 1);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
+  EXPECT_TRUE(read.ranking[0].others.empty());
+  ASSERT_EQ(read.ranking[1].others.size(), 1u);
+  EXPECT_EQ(read.ranking[1].others[0].parameter, "drag.centre_x");
+  EXPECT_EQ(read.ranking[1].others[0].unit, "m");
+  EXPECT_EQ(read.ranking[1].others[0].found.value, 0.05);
+  EXPECT_EQ(read.ranking[1].others[0].found.low, -INFINITY);
+  EXPECT_EQ(read.ranking[1].others[0].found.high, 0.07);
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesThatAreBetterThanTheirNeighbours
     for (const ScoredVariant& other : effect.elsewhere) {
       EXPECT_EQ(other.candidate.type, effect.candidate.type);
       EXPECT_NE(other.candidate.variant, effect.candidate.variant);
-      EXPECT_GT(other.candidate.line, 0);
+      EXPECT_GT(other.candidate.position.line, 0);
       EXPECT_LE(other.score.evidence, at_most);
       at_most = other.score.evidence;
     }
@@ -213,9 +213,8 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
   bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
   bed.fitted = fit.parameters;
-  const EffectRefit refit =
-      Refit(*problem_, fit.parameters, &bed, {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0},
-            misfit, false, &progress_);
+  const EffectRefit refit = Refit({*problem_, fit.parameters, misfit, &progress_}, &bed,
+                                  {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   // A refit ends where a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);

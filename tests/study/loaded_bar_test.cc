@@ -186,6 +186,14 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
       Diagnose(problem, fit.calibration.parameters, options, progress_.get());
   EXPECT_EQ(diagnosis.verdict, Diagnosis::Verdict::kMissing) << diagnosis.explanation;
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    if (effect.scored.candidate.type != "viscoelastic_branch") continue;
+    ASSERT_EQ(effect.others.size(), 1u);
+    EXPECT_EQ(effect.others[0].name, "viscoelastic_branch.relaxation_time");
+    EXPECT_EQ(effect.others[0].unit, "s");
+    EXPECT_NEAR(effect.others[0].estimate.value, 2.5, 0.5);
+    EXPECT_NEAR(effect.sizes.at(0).value, 4e4, 0.6e4);
+  }
 }
 
 // A bar that is stretched evenly by two grips, whose motion is known from noisy markers: the

@@ -58,7 +58,7 @@ TEST(ScanPrediction, ARefitTakesAwayWhatANuisanceExplains) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const EffectRefit refit = Refit(problem, start, nullptr, all_of_it, misfit, false, &progress);
+  const EffectRefit refit = Refit({problem, start, misfit, &progress}, nullptr, all_of_it, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   EXPECT_GT(refit.calibration.start_rms, 5);
   EXPECT_LT(refit.calibration.rms, 1);

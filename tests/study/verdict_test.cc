@@ -81,6 +81,9 @@ TEST(Verdict, NamesNoEffectWhoseSizeMayBeNone) {
   for (RankedEffect& effect : diagnosis.ranking) effect.sizes.assign(3, size);
   Diagnosis at_noise = diagnosis;
   at_noise.errors.in_noise = at_noise.errors.without_nuisances = at_noise.present_in_noise = 1.1;
+  Diagnosis certain = at_noise;
+  at_noise.ranking[0].evidence = 9;
+  at_noise.ranking[1].evidence = 2;
   Diagnosis sure = at_noise;
   Decide(&at_noise);
   EXPECT_EQ(at_noise.verdict, Verdict::kAdequate) << at_noise.explanation;
@@ -88,6 +91,9 @@ TEST(Verdict, NamesNoEffectWhoseSizeMayBeNone) {
   Decide(&sure);
   EXPECT_EQ(sure.verdict, Verdict::kMissing) << sure.explanation;
   EXPECT_THAT(sure.effects, ElementsAre("point_force"));
+  // The interval of what has such evidence means little.
+  Decide(&certain);
+  EXPECT_EQ(certain.verdict, Verdict::kMissing) << certain.explanation;
   // Far from the noise, evidence counts.
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
@@ -197,6 +203,7 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
   diagnosis.nuisances.emplace_back().candidate.name = "mesh";
   diagnosis.nuisances.back().candidate.is_always_taken = true;
+  diagnosis.nuisances.back().candidate.advice = "choose a smaller mesh.max_volume";
   diagnosis.nuisances.back().doubt = 200;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ are no noise";
@@ -205,6 +212,7 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   diagnosis.effects.clear();
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.experiment, "choose a smaller mesh.max_volume, and diagnose again");
 }
 
 // Both are judged after a refit where there was one: first order promised both too much.
