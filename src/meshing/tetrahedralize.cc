@@ -142,7 +142,7 @@ void NoteAFineSurface(const TriMesh& surface, const TetOptions& options, MeshRes
   result.notes.push_back(
       fmt::format("{} tetrahedra, where volumes of {:.4g} m^3 would be some {:.0f}: they must fit "
                   "the surface's {} triangles; one of fewer triangles would make a faster model",
-                  tets, options.max_volume, std::ceil(asked), surface.triangles.cols()));
+                  tets, options.max_volume, std::max(1.0, asked), surface.triangles.cols()));
 }
 
 void Fail(MeshStatus status, const std::string& message, MeshResult& result) {

@@ -228,7 +228,7 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
   const LinearisedMisfit& misfit = present.misfit;
   const ExtendedProblem extended(present, effect, adopted);
-  const CalibrationProblem& with = extended.with();
+  const CalibrationProblem with = extended.Fresh();
   const Eigen::Index own = extended.OwnCount();
   const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
   EffectRefit refit;

@@ -182,9 +182,10 @@ Calibration ExtendedProblem::Kept(const std::string& what,
 Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                                            bool holds_effect) const {
   const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
+  const CalibrationProblem with = Fresh();
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
-    const Prediction prediction = Predict(at, with_jacobian);
+    const Prediction prediction = Predict(with, at, with_jacobian);
     present_.progress->Report(
         ++evaluations, prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
     return prediction;
@@ -200,13 +201,15 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
-  return Kept("afresh", with_.parameters(),
-              [&] { return FitFrom(with_, with_.Start(), present_.progress); });
+  const CalibrationProblem with = Fresh();
+  return Kept("afresh", with.parameters(),
+              [&] { return FitFrom(with, with.Start(), present_.progress); });
 }
 
 // Adopted nuisances change the misfit as they did at the model without the effect.
-Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian) const {
-  Prediction prediction = with_.Predict(at.head(own_), with_jacobian);
+Prediction ExtendedProblem::Predict(const CalibrationProblem& with, const Eigen::VectorXd& at,
+                                    bool with_jacobian) const {
+  Prediction prediction = with.Predict(at.head(own_), with_jacobian);
   if (!prediction.usable) return prediction;
   prediction.residual += nuisance_ * at.tail(at.size() - own_);
   if (with_jacobian) {
@@ -217,7 +220,7 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
 }
 
 double ExtendedProblem::Missed(const Eigen::VectorXd& at) const {
-  const Prediction prediction = Predict(at, /*with_jacobian=*/false);
+  const Prediction prediction = Predict(with_, at, /*with_jacobian=*/false);
   return prediction.usable ? prediction.residual.norm() : kInfinity;
 }
 

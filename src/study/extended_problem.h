@@ -36,7 +36,10 @@ class ExtendedProblem {
   ExtendedProblem(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted);
 
-  const CalibrationProblem& with() const { return with_; }
+  // One that has predicted nothing yet. Predictions begin where the last one ended, and so depend
+  // on it in their last digits: each fit has a problem of its own, whether those before it were
+  // made or read back.
+  CalibrationProblem Fresh() const { return {study_, present_.problem.body()->mesh}; }
   // The effect that the problem has more; with the values of the last prediction.
   const Effect& OwnEffect() const;
   Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
@@ -65,7 +68,8 @@ class ExtendedProblem {
                    const std::function<Calibration()>& fit) const;
   std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
                     const std::string& what) const;
-  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian) const;
+  Prediction Predict(const CalibrationProblem& with, const Eigen::VectorXd& at,
+                     bool with_jacobian) const;
   double Missed(const Eigen::VectorXd& at) const;
   // From the present parameters towards others, and the effect from nothing towards the size that
   // it begins with.

@@ -58,11 +58,11 @@ TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
   truth.alpha = 12;
   std::map<std::string, std::string> left_open = kWithoutDamping;
   left_open["motion: {time_step: 1.5 ms}\n"] = "";
-  const Diagnosis shortened = DiagnoseBar(truth, left_open, {.refits = 1});
+  const Diagnosis shortened = DiagnoseBar(truth, left_open, {.refits = 1, .without = {}});
   EXPECT_LT(shortened.time_step, 0.003);
   std::map<std::string, std::string> given = kWithoutDamping;
   given["time_step: 1.5 ms"] = "time_step: 5 ms";
-  const Diagnosis as_given = DiagnoseBar(truth, given, {.refits = 1});
+  const Diagnosis as_given = DiagnoseBar(truth, given, {.refits = 1, .without = {}});
   EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
   const auto doubt = [](const Diagnosis& diagnosis) {
     for (const ScoredNuisance& nuisance : diagnosis.nuisances)

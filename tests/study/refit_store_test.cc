@@ -76,18 +76,19 @@ TEST(RefitStore, ADiagnosisThatWasStoppedGoesOnToTheSameResult) {
   truth.alpha = 12;
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   const PredictionStudy study = ReadBarStudy(
-      folder.Path(), {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
-                      {", {name: mass_damping.alpha}", ""}});
-  const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
+      folder.Path(),
+      {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}});
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
-  const Calibration fit = FitFromStart(problem, &progress);
+  const Calibration fit = FitFromStart(CalibrationProblem(study, mesh), &progress);
   ASSERT_TRUE(fit.usable) << fit.message;
   const std::filesystem::path file = folder / "refits.json";
   const auto diagnose = [&](const std::string& name) {
+    const CalibrationProblem problem(study, mesh);
     RefitStore kept(file, {{"of", "bar"}});
-    SaveDiagnosis(Diagnose(problem, fit.parameters, {.refits = 1}, &progress, &kept),
+    SaveDiagnosis(Diagnose(problem, fit.parameters, {.refits = 1, .without = {}}, &progress, &kept),
                   folder / name);
     return TextOf(folder / name);
   };
