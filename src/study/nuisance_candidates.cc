@@ -170,6 +170,7 @@ std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& pr
                                0,
                                {},
                                {}};
+      jitter.is_of_single_frames = true;
       jitter.by.resize(misfit.residual.size(), frames);
       for (Eigen::Index frame = 0; frame < frames; ++frame) {
         jitter.by.col(frame) = FrameColumn(
@@ -212,6 +213,7 @@ std::vector<NuisanceCandidate> MeasurementNuisances(const CalibrationProblem& pr
                             0,
                             {},
                             {}};
+    bad.is_of_single_frames = true;
     bad.by.resize(misfit.residual.size(), 6);
     drift.by.resize(misfit.residual.size(), 6);
     for (int axis = 0; axis < 6; ++axis) {

@@ -22,6 +22,7 @@ struct NuisanceCandidate {
   std::vector<LinearPrior> priors = {};  // per direction
   // It is simulated, bounded and always there: part of every model, evidence or none.
   bool is_always_taken = false;
+  bool is_of_single_frames = false;  // it changes each by itself: none tells of another
   // What it changes is known but for something of the size of `unknown` (rows × columns, as `by`)
   // that may lie in any direction; 0 columns: for nothing.
   Eigen::MatrixXd unknown = {};

@@ -55,11 +55,18 @@ constexpr double kInstead = 0.75, kPredicts = 0.9;
 // A finer discretisation would change this share of the error.
 constexpr double kMeshMatters = 0.25;
 
-std::string Titles(const std::vector<std::string>& types) {
+// Of effects, and of nuisances what they are.
+std::string Titles(const std::vector<std::string>& types,
+                   const std::vector<ScoredNuisance>& nuisances = {}) {
   std::vector<std::string> titles;
   for (const std::string& type : types) {
     const CatalogueEntry* entry = FindEntry(type);
-    titles.push_back(entry != nullptr ? entry->card->title : type);
+    const auto nuisance =
+        std::find_if(nuisances.begin(), nuisances.end(),
+                     [&](const ScoredNuisance& one) { return one.candidate.name == type; });
+    titles.push_back(entry != nullptr              ? entry->card->title
+                     : nuisance != nuisances.end() ? nuisance->candidate.what
+                                                   : type);
   }
   return fmt::format("{}", fmt::join(titles, "; "));
 }
@@ -105,6 +112,19 @@ bool MayBeNothing(const RankedEffect& effect) {
 double ExcessExplained(double before, double after) {
   if (before <= 1) return 1;
   return std::clamp((before * before - after * after) / (before * before - 1), 0.0, 1.0);
+}
+
+// With the nuisances in the model as the fitted frames tell them. What is left over all frames does
+// not say so: mesh, dimensions and drift, at their best for all of them, bend to what is missing.
+// Nuisances of single frames tell of no others.
+bool PredictsHeldOutFrames(const Diagnosis& diagnosis) {
+  const ScoredNuisance* best = nullptr;
+  for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+    if (!nuisance.candidate.is_always_taken && (nuisance.adopted || nuisance.evidence > kNamed) &&
+        (best == nullptr || nuisance.evidence > best->evidence))
+      best = &nuisance;
+  return !diagnosis.errors.has_held_out || diagnosis.errors.without_nuisances <= kHeldOutAtNoise ||
+         (best != nullptr && best->candidate.is_of_single_frames);
 }
 
 // The evidence that mesh or step may lend an effect, and which of them; null: none is uncertain.
@@ -163,10 +183,15 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
                                             fmt::join(small, ", "), 100 * kNuisanceMatters);
   } else {
     diagnosis->verdict = Verdict::kNotInLibrary;
+    std::string best = fmt::format("best evidence {:.1f}", best_evidence);
+    if (lender != nullptr) {
+      best += fmt::format(", of which what is not known of {} may lend {:.1f}",
+                          lender->candidate.what, MayLend(lender->doubt));
+      diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
+    }
     diagnosis->explanation = fmt::format(
-        "{} are left, which is not noise, and no effect of the catalogue explains them "
-        "(best evidence {:.1f}){}",
-        error, best_evidence,
+        "{} are left, which is not noise, and no effect of the catalogue explains them ({}){}",
+        error, best,
         advice.empty() ? "" : fmt::format("; nor is this all of it: {}", fmt::join(advice, "; ")));
   }
 }
@@ -224,7 +249,7 @@ void Decide(Diagnosis* diagnosis) {
         "parameters can do: more motion, other loads or less noise are needed";
     return;
   }
-  const bool is_noise = diagnosis->left_in_noise <= kAtNoise;
+  const bool is_noise = diagnosis->left_in_noise <= kAtNoise && PredictsHeldOutFrames(*diagnosis);
   const bool at_noise = diagnosis->present_in_noise <= kAtNoise;
   const std::vector<const RankedEffect*> refitted =
       ByEvidence(diagnosis->ranking, [&](const RankedEffect& effect) {
@@ -286,6 +311,7 @@ void Decide(Diagnosis* diagnosis) {
                                      to_first_order);
   }
   std::vector<std::string> refine;
+  std::string advice;  // on nuisances that are rivals
   // Look-alikes that were not refitted cannot be ruled out either.
   for (const std::string& other : best.scored.look_alikes) {
     const RankedEffect* rival = Find(diagnosis->ranking, other);
@@ -297,25 +323,33 @@ void Decide(Diagnosis* diagnosis) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
     } else if (!nuisance.adopted && nuisance.refitted.value_or(nuisance.evidence) >
-                                        std::min(evidence - lead, part * evidence))
+                                        std::min(evidence - lead, part * evidence)) {
       diagnosis->effects.push_back(nuisance.candidate.name);
+      advice += "; or " + nuisance.candidate.advice;
+    }
   }
   const std::string drop =
       fmt::format("the {} error{} goes from {:.1f} σ to {:.1f} σ, the odds for it are e^{:.0f}",
                   diagnosis->errors.has_held_out ? "held-out" : "fitted",
                   corrected ? ", less what mesh, step and other nuisances in the model do," : "",
                   diagnosis->errors.without_nuisances, best.errors.without_nuisances, evidence);
+  if (corrected && diagnosis->errors.has_held_out &&
+      best.errors.held_out_rms > diagnosis->errors.held_out_rms)
+    doubts +=
+        fmt::format("; with what those do it rises, from {:.3f} mm to {:.3f} mm: see to them, too",
+                    1e3 * diagnosis->errors.held_out_rms, 1e3 * best.errors.held_out_rms);
   if (diagnosis->effects.size() == 1) {
     diagnosis->verdict = Verdict::kMissing;
-    diagnosis->explanation = fmt::format("{}: with it {}", Titles(diagnosis->effects), drop);
+    diagnosis->explanation =
+        fmt::format("{}: with it {}{}", Titles(diagnosis->effects), drop, doubts);
   } else {
     diagnosis->verdict = Verdict::kAmbiguous;
     diagnosis->explanation =
         fmt::format("{}: these recordings cannot tell them apart; with the best {}{}",
-                    Titles(diagnosis->effects), drop, doubts);
-    diagnosis->experiment = refine.empty()
-                                ? best.scored.candidate.effect->Card().separating_experiment
-                                : fmt::format("{}, and fit again", fmt::join(refine, "; "));
+                    Titles(diagnosis->effects, diagnosis->nuisances), drop, doubts);
+    diagnosis->experiment =
+        refine.empty() ? best.scored.candidate.effect->Card().separating_experiment + advice
+                       : fmt::format("{}, and fit again", fmt::join(refine, "; "));
   }
 }
 

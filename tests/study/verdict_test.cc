@@ -208,11 +208,37 @@ TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ are no noise";
   EXPECT_THAT(diagnosis.effects, Contains("mesh"));
-  diagnosis.present_in_noise = 1;
+  diagnosis.present_in_noise = diagnosis.errors.without_nuisances = 1;
   diagnosis.effects.clear();
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
   EXPECT_EQ(diagnosis.experiment, "choose a smaller mesh.max_volume, and diagnose again");
+}
+
+// With mesh, dimensions and drift at their best for all frames a magnet left 1.2 σ; from the fitted
+// frames, 2.4 σ of the others.
+TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
+  Diagnosis diagnosis = SaggingBeam(0, 0);
+  for (RankedEffect& effect : diagnosis.ranking) effect.evidence = 1;
+  ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
+  drift.candidate.name = "registration_drift";
+  drift.evidence = 20;
+  drift.explained = 0.1;
+  diagnosis.errors.in_noise = 2.4;
+  diagnosis.present_in_noise = 1.18;
+  diagnosis.left_in_noise = 1.15;
+  diagnosis.errors.without_nuisances = 1.2;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  diagnosis.effects.clear();
+  diagnosis.errors.without_nuisances = 2.4;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
+  // What is wrong with single frames cannot be predicted.
+  diagnosis.effects.clear();
+  diagnosis.nuisances.back().candidate.is_of_single_frames = true;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
 }
 
 // Both are judged after a refit where there was one: first order promised both too much.
@@ -239,7 +265,7 @@ TEST(Verdict, TellsASmallNuisanceAtTheNoiseWithoutNamingIt) {
   Diagnosis diagnosis = SaggingBeam(1, 1);
   for (RankedEffect& effect : diagnosis.ranking) effect.refitted = false;
   diagnosis.present_in_noise = 0.9;
-  diagnosis.errors.in_noise = 1.1;
+  diagnosis.errors.in_noise = diagnosis.errors.without_nuisances = 1.1;
   ScoredNuisance& placement = diagnosis.nuisances.emplace_back();
   placement.candidate.name = "grip_placement";
   placement.candidate.what = "the placement";
