@@ -160,8 +160,8 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     }
     most_explained = std::max(most_explained, nuisance.explained);
     diagnosis->effects.push_back(nuisance.candidate.name);
-    advice.push_back(fmt::format("{} explains {:.0f} % of the misfit: {}", nuisance.candidate.what,
-                                 100 * nuisance.explained, nuisance.candidate.advice));
+    advice.push_back(fmt::format("{:.0f} % of the misfit by {}: {}", 100 * nuisance.explained,
+                                 nuisance.candidate.what, nuisance.candidate.advice));
   }
   if (!diagnosis->effects.empty() && (is_noise || most_explained > kMostByNuisance)) {
     diagnosis->verdict = Verdict::kNuisance;
@@ -183,6 +183,7 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
                                             fmt::join(small, ", "), 100 * kNuisanceMatters);
   } else {
     diagnosis->verdict = Verdict::kNotInLibrary;
+    diagnosis->effects.clear();  // these are a part of it only
     std::string best = fmt::format("best evidence {:.1f}", best_evidence);
     if (lender != nullptr) {
       best += fmt::format(", of which what is not known of {} may lend {:.1f}",
@@ -192,7 +193,8 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     diagnosis->explanation = fmt::format(
         "{} are left, which is not noise, and no effect of the catalogue explains them ({}){}",
         error, best,
-        advice.empty() ? "" : fmt::format("; nor is this all of it: {}", fmt::join(advice, "; ")));
+        advice.empty() ? ""
+                       : fmt::format("; nuisances explain a part: {}", fmt::join(advice, "; ")));
   }
 }
 

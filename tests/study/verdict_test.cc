@@ -234,6 +234,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   diagnosis.errors.without_nuisances = 2.4;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
+  EXPECT_TRUE(diagnosis.effects.empty());
   // What is wrong with single frames cannot be predicted.
   diagnosis.effects.clear();
   diagnosis.nuisances.back().candidate.is_of_single_frames = true;
