@@ -201,9 +201,10 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
-  const CalibrationProblem with = Fresh();
-  return Kept("afresh", with.parameters(),
-              [&] { return FitFrom(with, with.Start(), present_.progress); });
+  return Kept("afresh", with_.parameters(), [&] {
+    const CalibrationProblem with = Fresh();
+    return FitFrom(with, with.Start(), present_.progress);
+  });
 }
 
 // Adopted nuisances change the misfit as they did at the model without the effect.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "effects/catalogue.h"
 
@@ -145,7 +146,7 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
                          const ScoredNuisance* lender) {
   const std::string error = fmt::format(
       "{:.3f} mm or {:.1f} σ", 1e3 * diagnosis->errors.held_out_rms, diagnosis->errors.in_noise);
-  std::vector<std::string> advice, small;
+  std::vector<std::string> named, advice, small;
   double most_explained = 0;
   const bool at_noise = diagnosis->errors.in_noise <= kAtNoise;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
@@ -159,14 +160,18 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
       continue;
     }
     most_explained = std::max(most_explained, nuisance.explained);
-    diagnosis->effects.push_back(nuisance.candidate.name);
+    named.push_back(nuisance.candidate.name);
     advice.push_back(fmt::format("{:.0f} % of the misfit by {}: {}", 100 * nuisance.explained,
                                  nuisance.candidate.what, nuisance.candidate.advice));
   }
-  if (!diagnosis->effects.empty() && (is_noise || most_explained > kMostByNuisance)) {
+  if (!named.empty() && (is_noise || most_explained > kMostByNuisance)) {
     diagnosis->verdict = Verdict::kNuisance;
+    diagnosis->effects = std::move(named);
     diagnosis->explanation = fmt::format("{}", fmt::join(advice, "; "));
-  } else if (is_noise) {
+    return;
+  }
+  if (lender != nullptr) diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
+  if (is_noise) {
     diagnosis->verdict = Verdict::kAdequate;
     diagnosis->explanation = fmt::format(
         "the error, {}, is that of the noise, and no effect has evidence beyond what chance gives",
@@ -176,19 +181,16 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
           "the error, {}, is that of the noise, and the best evidence for an effect, {:.1f}, is "
           "within the {:.1f} that what is not known of {} may lend it",
           error, best_evidence, MayLend(lender->doubt), lender->candidate.what);
-      diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
     }
     if (!small.empty())
       diagnosis->explanation += fmt::format("; {} shows, and explains less than {:.0f} % of it",
                                             fmt::join(small, ", "), 100 * kNuisanceMatters);
   } else {
     diagnosis->verdict = Verdict::kNotInLibrary;
-    diagnosis->effects.clear();  // these are a part of it only
     std::string best = fmt::format("best evidence {:.1f}", best_evidence);
     if (lender != nullptr) {
       best += fmt::format(", of which what is not known of {} may lend {:.1f}",
                           lender->candidate.what, MayLend(lender->doubt));
-      diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
     }
     diagnosis->explanation = fmt::format(
         "{} are left, which is not noise, and no effect of the catalogue explains them ({}){}",
