@@ -323,13 +323,16 @@ void Decide(Diagnosis* diagnosis) {
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : 1;
+    const double its_evidence = nuisance.refitted.value_or(nuisance.evidence);
     if (MayLend(nuisance.doubt) > evidence) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       refine.push_back(nuisance.candidate.advice);
-    } else if (!nuisance.adopted && nuisance.refitted.value_or(nuisance.evidence) >
-                                        std::min(evidence - lead, part * evidence)) {
+    } else if (!nuisance.adopted && its_evidence > std::min(evidence - lead, part * evidence)) {
       diagnosis->effects.push_back(nuisance.candidate.name);
       advice += "; or " + nuisance.candidate.advice;
+      if (its_evidence > evidence)
+        doubts +=
+            fmt::format("; {} has more evidence, e^{:.0f}", nuisance.candidate.name, its_evidence);
     }
   }
   const std::string drop =
@@ -349,7 +352,7 @@ void Decide(Diagnosis* diagnosis) {
   } else {
     diagnosis->verdict = Verdict::kAmbiguous;
     diagnosis->explanation =
-        fmt::format("{}: these recordings cannot tell them apart; with the best {}{}",
+        fmt::format("{}: these recordings cannot tell them apart; with the best effect {}{}",
                     Titles(diagnosis->effects, diagnosis->nuisances), drop, doubts);
     diagnosis->experiment =
         refine.empty() ? best.scored.candidate.effect->Card().separating_experiment + advice

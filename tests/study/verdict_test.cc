@@ -12,6 +12,8 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 using Verdict = Diagnosis::Verdict;
 
 constexpr double kEvidence = 1000;  // of the nuisance
@@ -244,7 +246,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
 
 // Both are judged after a refit where there was one: first order promised both too much.
 TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
-  const auto effects_with = [](std::optional<double> refitted) {
+  const auto with = [](std::optional<double> refitted) {
     Diagnosis diagnosis = SaggingBeam(1, 1);
     RankedEffect& force = diagnosis.ranking.front();
     force.evidence = 1900;
@@ -254,11 +256,15 @@ TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
     drift.evidence = 1980;
     drift.refitted = refitted;
     Decide(&diagnosis);
-    return diagnosis.effects;
+    return diagnosis;
   };
-  EXPECT_THAT(effects_with(1850), ElementsAre("point_force"));
-  EXPECT_THAT(effects_with(1899), ElementsAre("point_force", "registration_drift"));
-  EXPECT_THAT(effects_with(std::nullopt), ElementsAre("point_force", "registration_drift"));
+  EXPECT_THAT(with(1850).effects, ElementsAre("point_force"));
+  EXPECT_THAT(with(1899).effects, ElementsAre("point_force", "registration_drift"));
+  EXPECT_THAT(with(std::nullopt).effects, ElementsAre("point_force", "registration_drift"));
+  // An effect comes first, as it can be added; that another does more is said.
+  EXPECT_THAT(with(1950).effects, ElementsAre("point_force", "registration_drift"));
+  EXPECT_THAT(with(1950).explanation, HasSubstr("registration_drift has more evidence, e^1950"));
+  EXPECT_THAT(with(1899).explanation, Not(HasSubstr("more evidence")));
 }
 
 // A grip that is certainly misplaced, by a twentieth of a millimetre.
