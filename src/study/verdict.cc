@@ -164,7 +164,8 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     advice.push_back(fmt::format("{:.0f} % of the misfit by {}: {}", 100 * nuisance.explained,
                                  nuisance.candidate.what, nuisance.candidate.advice));
   }
-  if (!named.empty() && (is_noise || most_explained > kMostByNuisance)) {
+  if (!named.empty() &&
+      (is_noise || (most_explained > kMostByNuisance && PredictsHeldOutFrames(*diagnosis)))) {
     diagnosis->verdict = Verdict::kNuisance;
     diagnosis->effects = std::move(named);
     diagnosis->explanation = fmt::format("{}", fmt::join(advice, "; "));

@@ -237,6 +237,11 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
   EXPECT_TRUE(diagnosis.effects.empty());
+  diagnosis.nuisances.back().explained = 0.7;  // the most of what is left over all frames
+  diagnosis.left_in_noise = 1.3;
+  Decide(&diagnosis);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
+  EXPECT_TRUE(diagnosis.effects.empty());
   // What is wrong with single frames cannot be predicted.
   diagnosis.effects.clear();
   diagnosis.nuisances.back().candidate.is_of_single_frames = true;
