@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-// Share of the fitted time that is fitted first.
+// Share of the fitted time in which the object moves that is fitted first.
 constexpr double kShortHorizon = 0.25;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 // A fit that may be astray is tried from these parts of the moduli's start values.
@@ -31,16 +31,26 @@ double LargestChange(const std::vector<CalibratedParameter>& parameters,
   return largest;
 }
 
-// s: the fitted time of a recording, of the longest.
-double LongestFitted(const CalibrationProblem& problem) {
-  double longest = 0;
-  for (const RecordingModel& model : problem.models()) {
-    const std::vector<int> frames = model.FittedFrames();
-    const std::vector<double>& times = model.item().recording.times;
-    if (frames.empty()) continue;
-    longest = std::max(longest, times[frames.back()] - model.item().StartTime());
+// s after its start: when the last fitted frame is that hardly differs from the first. Rest tells
+// nothing of what moves. Of scans, whose points are others in every frame, the start.
+double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& frames) {
+  constexpr double kHardly = 0.03;  // of the largest difference
+  if (model.Markers() == nullptr) return 0;
+  const Recording& recording = model.item().recording;
+  const Eigen::Matrix3Xd& first = recording.markers.positions[frames.front()];
+  std::vector<double> moved;  // of the marker that moved farthest, m
+  for (const int frame : frames) {
+    double most = 0;
+    for (const double distance : (recording.markers.positions[frame] - first).colwise().norm())
+      if (distance > most) most = distance;  // not one that was not seen
+    moved.push_back(most);
   }
-  return longest;
+  const double least = kHardly * *std::max_element(moved.begin(), moved.end());
+  const auto moving =
+      std::find_if(moved.begin(), moved.end(), [&](double distance) { return distance > least; });
+  if (moving == moved.begin() || moving == moved.end()) return 0;
+  const int last = frames[static_cast<size_t>(moving - moved.begin()) - 1];
+  return std::max(0.0, recording.times[last] - model.item().StartTime());
 }
 
 double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
@@ -66,7 +76,7 @@ class Fitter {
   }
 
   Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
-    return Stage(name, kShortHorizon * LongestFitted(problem_), start, {});
+    return Stage(name, ShortHorizon(problem_), start, {});
   }
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
@@ -134,6 +144,18 @@ class Fitter {
 };
 
 }  // namespace
+
+double ShortHorizon(const CalibrationProblem& problem) {
+  double longest = 0;
+  for (const RecordingModel& model : problem.models()) {
+    const std::vector<int> frames = model.FittedFrames();
+    if (frames.empty()) continue;
+    const double rest = BeginningOfMotion(model, frames);
+    const double whole = model.item().recording.times[frames.back()] - model.item().StartTime();
+    longest = std::max(longest, rest + kShortHorizon * (whole - rest));
+  }
+  return longest;
+}
 
 Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                          Progress* progress) {

@@ -13,7 +13,11 @@
 
 namespace lacuna {
 
-// Over a short horizon, where a wrong model is least wrong.
+// s after a recording's start: a quarter of the fitted time in which the object moves, of the
+// recording where that ends last.
+double ShortHorizon(const CalibrationProblem& problem);
+
+// Over the short horizon, where a wrong model is least wrong.
 Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                          Progress* progress);
 

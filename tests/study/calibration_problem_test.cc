@@ -147,6 +147,27 @@ TEST(CalibrationProblem, RecoversWhatWasFilmed) {
   EXPECT_GE(misfits[0].held_out.largest, misfits[0].held_out.rms);
 }
 
+// A quarter of the fitted time would be rest, from which nothing could be fitted.
+TEST(CalibrationFits, TheFirstPartBeginsWhereTheObjectMoves) {
+  const TemporaryFolder folder;
+  const std::vector<Eigen::Matrix3Xd> moving = FilmHeldBar({});
+  const auto horizon = [&](const std::string& name, int resting) {
+    std::vector<Eigen::Matrix3Xd> late = moving;
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 5e-5);
+    for (int frame = 0; frame < resting; ++frame) {
+      late[frame] = moving.front();
+      for (double& coordinate : late[frame].reshaped()) coordinate += noise(random);
+    }
+    WriteBarRecording(folder / name, late);
+    return ShortHorizon(CalibrationProblem(ReadBarStudy(folder / name), StudyMesh()));
+  };
+  const double last = 0.15;
+  EXPECT_NEAR(horizon("late", 11), 0.1 - kRelease + 0.25 * (last - 0.1), 1e-9);
+  // In the 6 ms from its release to the next frame it hardly moves.
+  EXPECT_NEAR(horizon("at_once", 0), 0.05 - kRelease + 0.25 * (last - 0.05), 1e-9);
+}
+
 // Neither the frames after `fit_until` nor a recording that is only predicted, not even through the
 // estimate of the noise.
 TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
