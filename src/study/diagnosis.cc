@@ -23,9 +23,6 @@ constexpr double kCloseBehind = 5;
 // the third's.
 constexpr double kNearlyAsGood = 0.8;
 constexpr int kMostRefits = 6;
-// A refit that keeps less than this part of what first order promises is made again from elsewhere;
-// unless it explains this part of what is more than noise: then the promise was too large.
-constexpr double kKept = 0.5, kFoundItsWay = 0.85;
 // A nuisance that has this part of the best effect's evidence, both to first order, is fitted with
 // the model too: neither is judged by a promise. The most that are.
 constexpr double kRivalNuisance = 0.5;
@@ -267,7 +264,7 @@ class Refits {
       refit = std::move(other);
       best = elsewhere;
     }
-    if (!effect->scored.candidate.IsPilot() && FallsShort(refit, without, effect->scored.score)) {
+    if (!effect->scored.candidate.IsPilot() && FellShort(refit, without, effect->scored.score)) {
       EffectRefit other = from(effect->scored, RefitFrom::kItsSize);
       if (IsBetter(other, refit)) {
         refit = std::move(other);
@@ -285,15 +282,12 @@ class Refits {
     }
     return refit;
   }
-  // It has not found what first order promises: a minimum on the way, or a promise that is none.
-  bool FallsShort(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
+  bool FellShort(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
     if (!refit.message.empty()) return true;
-    const HypothesisEvidence before = EvidenceOf(without.hypothesis, ranking_.noise);
-    const HypothesisEvidence after = EvidenceOf(refit.hypothesis, ranking_.noise);
     const double noise =
         ranking_.noise.variance * static_cast<double>(ObservedRows(ranking_.misfit));
-    return after.log_evidence - before.log_evidence < kKept * score.evidence &&
-           before.misfit - after.misfit < kFoundItsWay * (before.misfit - noise);
+    return FallsShort(EvidenceOf(without.hypothesis, ranking_.noise),
+                      EvidenceOf(refit.hypothesis, ranking_.noise), noise, score.evidence);
   }
   const FittedHypothesis& Best() const {
     const FittedHypothesis* best = &present_.hypothesis;

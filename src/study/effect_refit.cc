@@ -18,6 +18,9 @@ constexpr double kShorter = 0.3;
 constexpr double kSettled = 0.5;
 // σ: what a refit leaves that has found its way. One that leaves 1.8 may end 1.1 from elsewhere.
 constexpr double kArrived = 1.2;
+// Parts: of what first order promises, that a refit keeps; of what is more than noise, that one
+// explains that first order promised too much; of the noise, within which it is known.
+constexpr double kKept = 0.5, kFoundItsWay = 0.85, kMoreThanEstimated = 0.2;
 
 std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
   for (LinearPrior& prior : priors) {
@@ -223,6 +226,14 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
 }
 
 }  // namespace
+
+bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
+                double promised) {
+  const double more_than_noise = without.misfit - noise;
+  const bool found_its_way = more_than_noise > kMoreThanEstimated * noise &&
+                             without.misfit - refit.misfit >= kFoundItsWay * more_than_noise;
+  return refit.log_evidence - without.log_evidence < kKept * promised && !found_its_way;
+}
 
 EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {

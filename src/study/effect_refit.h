@@ -86,6 +86,13 @@ FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVa
 // size that it expects, and everything else fitted to that.
 enum class RefitFrom { kFirstOrder, kItsSize };
 
+// It has found less than half of the evidence that first order promises: a minimum on the way, or a
+// promise that is none. The latter where it explains most of what is more than `noise`, the misfit
+// that is expected of noise; but the noise is estimated, and what it has left over by a model that
+// is about as good says nothing.
+bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
+                double promised);
+
 // From where first order expects the best parameters, or from the present ones where that is
 // nearer, or part of the way where neither predicts as well as the model without the effect. Null
 // `effect`: the model as it is, with what was adopted, so that it is compared at its best too.

@@ -65,6 +65,20 @@ TEST(HypothesisEvidence, IsThatOfTheLinearModelAtItsBest) {
   EXPECT_NEAR(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence, 1e-9);
 }
 
+TEST(FallsShort, WhereItKeepsLittleOfThePromiseAndLeavesMoreThanNoise) {
+  const double noise = 100, promised = 50;
+  const auto falls_short = [&](double misfit_before, double misfit_after, double gained) {
+    return FallsShort({-900, misfit_before}, {-900 + gained, misfit_after}, noise, promised);
+  };
+  EXPECT_FALSE(falls_short(300, 200, 30));
+  EXPECT_TRUE(falls_short(300, 200, 20));
+  EXPECT_FALSE(falls_short(300, 110, 20));  // there is no more to be found
+  // Of a model that is at the estimated noise, or below.
+  EXPECT_TRUE(falls_short(102, 90, 20));
+  EXPECT_TRUE(falls_short(90, 80, 20));
+  EXPECT_FALSE(falls_short(90, 80, 30));
+}
+
 // A nuisance takes its part of the misfit away, and is paid for by its prior.
 TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   const FittedHypothesis usual = MakeHypothesis(0.1), far = MakeHypothesis(0.9);
