@@ -37,8 +37,8 @@ void PrintParameters(const CalibrationRecord& record) {
   }
   if (moved)
     fmt::print(
-        "  Intervals do not count what the elements' size changes: choose a smaller "
-        "mesh.max_volume.\n");
+        "  The intervals count what finer elements would change; a smaller mesh.max_volume makes "
+        "them narrower.\n");
 }
 
 std::string Describe(const MisfitMeasure& measure) {

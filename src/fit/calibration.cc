@@ -197,6 +197,14 @@ Eigen::MatrixXd Widened(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd
   return covariance + known * more * known;
 }
 
+// `deviation`: of φ.
+void SetInterval(const CalibratedParameter& parameter, double deviation,
+                 ParameterEstimate* estimate) {
+  const double free = ToFree(parameter, estimate->value), reach = kNormalQuantile * deviation;
+  estimate->low = std::max(parameter.min, FromFree(parameter, free - reach));
+  estimate->high = std::min(parameter.max, FromFree(parameter, free + reach));
+}
+
 // At the solution; `J`: ∂r/∂φ.
 void Estimate(const std::vector<CalibratedParameter>& parameters, const Prediction& last,
               const Eigen::MatrixXd& J, Calibration* calibration) {
@@ -213,14 +221,12 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
   calibration->covariance = Widened(GeneralisedCovariance(with_prior), more / variance);
   for (Eigen::Index k = 0; k < count; ++k) {
     const CalibratedParameter& parameter = parameters[k];
-    const double value = calibration->parameters[k], free = ToFree(parameter, value);
+    const double value = calibration->parameters[k];
     ParameterEstimate estimate;
     estimate.value = value;
     estimate.deviation = std::sqrt(data_only(k, k));
     estimate.posterior_deviation = std::sqrt(calibration->covariance(k, k));
-    const double reach = kNormalQuantile * estimate.posterior_deviation;
-    estimate.low = std::max(parameter.min, FromFree(parameter, free - reach));
-    estimate.high = std::min(parameter.max, FromFree(parameter, free + reach));
+    SetInterval(parameter, estimate.posterior_deviation, &estimate);
     for (Eigen::Index i = 0; i < count; ++i) {
       const double product = information(i, i) * information(k, k);
       if (i == k || !(product > 0)) continue;
@@ -307,6 +313,12 @@ double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_sc
       log_scale && other > 0 ? std::log(other / estimate.value) : other - estimate.value;
   if (estimate.posterior_deviation > 0) return change / estimate.posterior_deviation;
   return change == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), change);
+}
+
+void CountModelError(const CalibratedParameter& parameter, double other,
+                     ParameterEstimate* estimate) {
+  const double change = ToFree(parameter, other) - ToFree(parameter, estimate->value);
+  SetInterval(parameter, std::hypot(estimate->posterior_deviation, change), estimate);
 }
 
 double RootMeanSquare(const Eigen::VectorXd& residual) {

@@ -61,7 +61,8 @@ struct ParameterEstimate {
   // prior; of noise as Calibration::inflation and memory say. Infinite where the data says nothing.
   double deviation = std::numeric_limits<double>::infinity();
   double posterior_deviation = std::numeric_limits<double>::infinity();
-  // 95 % interval of θ, prior included.
+  // 95 % interval of θ, prior included, and the error of the model where CountModelError was told
+  // of it.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   // kDead: the predictions do not depend on it. kFlat: they do, but a change of `typical` is within
@@ -76,6 +77,12 @@ struct ParameterEstimate {
 // From the estimate to another value, in its posterior deviations (of φ); infinite where it has
 // none and the other value is not the same.
 double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale);
+
+// Widens the interval by an error of the model that is known: without it `other` would be fitted,
+// and the way there counts as one more standard deviation. The posterior deviation stays that of
+// the fit.
+void CountModelError(const CalibratedParameter& parameter, double other,
+                     ParameterEstimate* estimate);
 
 struct Calibration {
   bool usable = false;

@@ -19,7 +19,8 @@ struct FittedParameter {
   std::string name, unit;  // SI
   bool log_scale = false;
   ParameterEstimate estimate;
-  // What would be fitted with elements as fine as can be; absent where it was not to be had.
+  // What would be fitted with elements as fine as can be; absent where it was not to be had. The
+  // estimate's interval counts it.
   std::optional<double> with_finest_mesh;
 };
 

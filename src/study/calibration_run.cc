@@ -17,7 +17,7 @@ namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 11;
+constexpr int kCalibrationVersion = 12;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -72,8 +72,11 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   if (calibration.rms <= kFarOff) {
     progress->Begin("finer elements", 0);
     if (const auto limit = AtMeshLimit(problem, calibration.parameters))
-      for (size_t k = 0; k < record.parameters.size(); ++k)
-        record.parameters[k].with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
+      for (size_t k = 0; k < record.parameters.size(); ++k) {
+        FittedParameter& parameter = record.parameters[k];
+        parameter.with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
+        CountModelError(problem.parameters()[k], *parameter.with_finest_mesh, &parameter.estimate);
+      }
     progress->End();
   }
   return stage;

@@ -156,6 +156,22 @@ TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
               poor.inflation / good.inflation, 0.3 * poor.inflation);
 }
 
+TEST(Calibration, AnIntervalCountsAKnownErrorOfTheModel) {
+  CalibratedParameter modulus;
+  modulus.min = 1e3;
+  modulus.max = 1e6;
+  modulus.log_scale = true;
+  ParameterEstimate estimate;
+  estimate.value = 1e5;
+  estimate.posterior_deviation = 0.03;
+  CountModelError(modulus, 1e5 * std::exp(0.04), &estimate);
+  EXPECT_NEAR(std::log(estimate.high / 1e5), 1.96 * 0.05, 1e-4);
+  EXPECT_NEAR(std::log(estimate.low / 1e5), -1.96 * 0.05, 1e-4);
+  EXPECT_EQ(estimate.posterior_deviation, 0.03);
+  CountModelError(modulus, 1e6, &estimate);
+  EXPECT_EQ(estimate.high, 1e6) << "its bound";
+}
+
 TEST(Calibration, SecantsComeToTheSameEndWithFewJacobians) {
   const Decay decay(2, 0.7, 1);
   int jacobians = 0;

@@ -54,6 +54,11 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const double missing = fine.calibration.parameters[0] - values[0];
   EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
   EXPECT_NEAR((*limit)[0], fine.calibration.parameters[0], 0.5 * missing);
+  ParameterEstimate estimate = coarse.calibration.estimates[0];
+  const double of_fine = fine.calibration.parameters[0];
+  EXPECT_LT(estimate.high, of_fine);
+  CountModelError(coarse.problem.parameters()[0], (*limit)[0], &estimate);
+  EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
   // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
   const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
