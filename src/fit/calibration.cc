@@ -6,7 +6,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
+#include "fit/active_bounds.h"
 #include "fit/secant_predictions.h"
 
 namespace lacuna {
@@ -26,9 +29,15 @@ constexpr double kAtBound = 1e-6, kInside = 0.02;
 constexpr int kSecantRounds = 3;
 // Errors that last longer could not be told from motion.
 constexpr double kLongestMemory = 0.9;
-// Steps are in typical changes: one that overshoots is shortened at once. A round goes on from the
-// radius of the last, which was shortened a little too far.
-constexpr double kFirstRadius = 100, kWidened = 9;
+// Steps are in typical changes: one that overshoots is shortened at once.
+constexpr double kFirstRadius = 100;
+// So near to its bound, in typical changes, φ(u) turns back, and J by u sees next to nothing of it:
+// a step that leads to the bound gets half the way, one that goes over the turn is refused, until
+// steps are too short for all other parameters. After so many in a row the round ends.
+constexpr double kAtTurn = 0.01;
+constexpr int kAtTurnSteps = 3;
+// Parts of a step within the bounds that are tried.
+constexpr double kParts[] = {1, 0.25, 0.06};
 
 double ToFree(const CalibratedParameter& parameter, double value) {
   return parameter.log_scale ? std::log(value) : value;
@@ -71,23 +80,30 @@ struct Free {
     return {has_low ? low + (root - 1) : high - (root - 1), inside / root};
   }
 
+  bool IsAtTurn(double scaled) const {
+    const double near = kAtTurn * std::min(1.0, high - low);
+    return scaled - low <= near || high - scaled <= near;
+  }
+  // One that is at a bound could not move from there.
+  double MovedInside(double scaled) const {
+    const double inside = std::min(kInside, 0.5 * (high - low));
+    return scaled - low < kAtBound    ? low + inside
+           : high - scaled < kAtBound ? high - inside
+                                      : scaled;
+  }
   // u of φ/typical.
   double From(double scaled) const {
     const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
     if (has_low && has_high) {
       const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
       if (half == 0) return middle;
-      const double away = (scaled - middle) / half;
-      return middle + half * std::asin(std::copysign(1 - Inside(1 - std::abs(away)), away));
+      return middle + half * std::asin(std::clamp((scaled - middle) / half, -1.0, 1.0));
     }
     if (!has_low && !has_high) return scaled;
-    const double inside = Inside(has_low ? scaled - low : high - scaled) + 1;
+    const double inside = std::max(0.0, has_low ? scaled - low : high - scaled) + 1;
     const double root = std::sqrt(inside * inside - 1);
     return has_low ? low + root : high - root;
   }
-
- private:
-  static double Inside(double distance) { return distance < kAtBound ? kInside : distance; }
 };
 
 class PredictionCost : public ceres::CostFunction {
@@ -269,22 +285,27 @@ double CostOf(const Prediction& prediction, const std::vector<CalibratedParamete
   return 0.5 * cost;
 }
 
-// By which part of the cost a Gauss–Newton step would lower it.
-double ExpectedGain(ceres::Problem& problem, const std::vector<double*>& blocks) {
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = blocks;
-  double cost = 0;
-  std::vector<double> gradient;
-  ceres::CRSMatrix jacobian;
-  if (!problem.Evaluate(options, &cost, nullptr, &gradient, &jacobian) || !(cost > 0)) return 0;
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(jacobian.num_rows, jacobian.num_cols);
-  for (int row = 0; row < jacobian.num_rows; ++row)
-    for (int k = jacobian.rows[row]; k < jacobian.rows[row + 1]; ++k)
-      J(row, jacobian.cols[k]) = jacobian.values[k];
-  const Eigen::Map<const Eigen::VectorXd> g(gradient.data(), J.cols());
-  // A parameter at its bound does not move: J has no full rank there.
-  const Eigen::MatrixXd information = J.transpose() * J;
-  return 0.5 * g.dot(information.completeOrthogonalDecomposition().solve(g)) / cost;
+// ½ ‖r‖² and the priors, to first order in φ/typical.
+QuadraticCost ModelOf(const Prediction& prediction,
+                      const std::vector<CalibratedParameter>& parameters,
+                      const Eigen::VectorXd& values) {
+  Eigen::MatrixXd J = prediction.jacobian;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    J.col(at) *= parameters[k].typical * (parameters[k].log_scale ? values[at] : 1);
+  }
+  QuadraticCost model{CostOf(prediction, parameters, values), J.transpose() * prediction.residual,
+                      J.transpose() * J};
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    if (!std::isfinite(parameter.prior_deviation)) continue;
+    const auto at = static_cast<Eigen::Index>(k);
+    const double away = ToFree(parameter, values[at]) - ToFree(parameter, PriorMeanOf(parameter));
+    const double unit = parameter.typical / parameter.prior_deviation;
+    model.gradient[at] += unit * away / parameter.prior_deviation;
+    model.information(at, at) += unit * unit;
+  }
+  return model;
 }
 
 // Values that have all but come to a bound, and do no worse at it, are put there.
@@ -305,6 +326,178 @@ void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
   const Prediction there = predictions->WithoutJacobianAt(snapped);
   if (CostOf(there, parameters, snapped) <= before + kNoWorse) *values = snapped;
 }
+
+// Ends a round that stays where a parameter turns.
+class UntilAtTurn : public ceres::IterationCallback {
+ public:
+  explicit UntilAtTurn(std::function<bool()> is_at_turn) : is_at_turn_(std::move(is_at_turn)) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
+    steps_ = step.iteration > 0 && is_at_turn_() ? steps_ + 1 : 0;
+    return steps_ >= kAtTurnSteps ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  std::function<bool()> is_at_turn_;
+  int steps_ = 0;
+};
+
+// The radius of the trust region to go on with: of the last step that was taken, as those that are
+// refused shorten it faster and faster.
+double NextRadius(const ceres::Solver::Summary& summary) {
+  for (auto step = summary.iterations.rbegin(); step != summary.iterations.rend(); ++step)
+    if (step->iteration == 0 || step->step_is_successful)
+      return std::min(kFirstRadius, step->trust_region_radius);
+  return kFirstRadius;
+}
+
+// Ceres in rounds, and between them steps that meet bounds. Begins at the starts of the parameters,
+// of which there is one at least.
+class Descent {
+ public:
+  Descent(const std::vector<CalibratedParameter>& parameters, const CalibrationOptions& options,
+          const Prediction& first, SecantPredictions* predictions)
+      : parameters_(parameters), options_(options), predictions_(*predictions) {
+    for (const CalibratedParameter& parameter : parameters) {
+      const Free bounds(parameter);
+      bounds_.push_back(bounds);
+      free_.push_back(
+          bounds.From(bounds.MovedInside(ToFree(parameter, parameter.start) / parameter.typical)));
+    }
+    for (double& value : free_) blocks_.push_back(&value);
+    problem_.AddResidualBlock(
+        new PredictionCost(parameters, static_cast<int>(first.residual.size()), predictions),
+        nullptr, blocks_);
+    for (size_t k = 0; k < parameters.size(); ++k) {
+      const CalibratedParameter& parameter = parameters[k];
+      if (!std::isfinite(parameter.prior_deviation)) continue;
+      problem_.AddResidualBlock(
+          new PriorCost(bounds_[k], ToFree(parameter, PriorMeanOf(parameter)) / parameter.typical,
+                        parameter.prior_deviation / parameter.typical),
+          nullptr, blocks_[k]);
+    }
+    solver_.linear_solver_type = ceres::DENSE_QR;
+    solver_.function_tolerance =
+        options.cost_tolerance /
+        static_cast<double>(std::max<Eigen::Index>(1, first.residual.size()));
+    solver_.parameter_tolerance = 1e-6;
+    solver_.initial_trust_region_radius = kFirstRadius;
+    solver_.logging_type = ceres::SILENT;
+    solver_.update_state_every_iteration = true;  // for the callback
+    Eigen::VectorXd start(static_cast<Eigen::Index>(parameters.size()));
+    for (size_t k = 0; k < parameters.size(); ++k)
+      start[static_cast<Eigen::Index>(k)] = parameters[k].start;
+    cost_ = CostOf(first, parameters, start);
+  }
+
+  // Returns the parameters that it comes to.
+  Eigen::VectorXd Run(bool is_near, Calibration* calibration) {
+    UntilAtTurn until_at_turn([this] { return IsAtTurn(); });
+    solver_.callbacks = {&until_at_turn};
+    bool ended = false;
+    for (int round = 0; !ended; ++round) {
+      predictions_.FollowSecants(is_near && round < kSecantRounds);
+      ceres::Solver::Summary summary;
+      solver_.max_num_iterations = options_.max_iterations - calibration->iterations;
+      ceres::Solve(solver_, &problem_, &summary);
+      predictions_.FollowSecants(false);
+      calibration->iterations += static_cast<int>(summary.iterations.size()) - 1;
+      calibration->usable = summary.termination_type == ceres::CONVERGENCE;
+      calibration->message = calibration->usable ? "" : summary.message;
+      solver_.initial_trust_region_radius = NextRadius(summary);
+      const bool has_budget = calibration->iterations < options_.max_iterations;
+      const bool has_failed = summary.termination_type == ceres::FAILURE;
+      if (has_failed || !has_budget) break;
+      ended = !IsWorthARound();
+    }
+    if (ended) {
+      calibration->usable = true;
+      calibration->message.clear();
+    }
+    return Values(Scaled());
+  }
+
+ private:
+  // φ/typical.
+  Eigen::VectorXd Scaled() const {
+    Eigen::VectorXd scaled(static_cast<Eigen::Index>(free_.size()));
+    for (size_t k = 0; k < free_.size(); ++k)
+      scaled[static_cast<Eigen::Index>(k)] = bounds_[k].At(free_[k]).first;
+    return scaled;
+  }
+  Eigen::VectorXd Values(const Eigen::VectorXd& scaled) const {
+    Eigen::VectorXd values = scaled;
+    for (size_t k = 0; k < free_.size(); ++k) {
+      const CalibratedParameter& parameter = parameters_[k];
+      double& value = values[static_cast<Eigen::Index>(k)];
+      value =
+          std::clamp(FromFree(parameter, value * parameter.typical), parameter.min, parameter.max);
+    }
+    return values;
+  }
+
+  // Of those that Ceres moves.
+  bool IsAtTurn() const {
+    const Eigen::VectorXd scaled = Scaled();
+    for (size_t k = 0; k < free_.size(); ++k)
+      if (!problem_.IsParameterBlockConstant(blocks_[k]) &&
+          bounds_[k].IsAtTurn(scaled[static_cast<Eigen::Index>(k)]))
+        return true;
+    return false;
+  }
+
+  // After a round. Ceres ends with a step that gains little, though it may be short only because
+  // those before it were refused, or because secants had led them astray. A round that gains
+  // nothing where a step promises more is the last: the promise is that of a valley that is not
+  // straight. Where the step meets bounds, or leaves them, it is made here: Ceres could do neither.
+  bool IsWorthARound() {
+    const Eigen::VectorXd scaled = Scaled(), values = Values(scaled);
+    const QuadraticCost model = ModelOf(predictions_.ExactAt(values), parameters_, values);
+    const double least_gain = solver_.function_tolerance * cost_;
+    const bool has_gained = cost_ - model.cost > least_gain;
+    cost_ = model.cost;
+    Eigen::VectorXd low = scaled, high = scaled;
+    for (Eigen::Index k = 0; k < scaled.size(); ++k) {
+      low[k] = std::min(low[k], bounds_[k].low);
+      high[k] = std::max(high[k], bounds_[k].high);
+    }
+    const Eigen::VectorXd step = StepWithin(model, low - scaled, high - scaled);
+    if (model.GainOf(step) <= solver_.function_tolerance) return false;
+    const auto is_at_bound = [&](const Eigen::VectorXd& at, Eigen::Index k) {
+      return at[k] <= low[k] || at[k] >= high[k];
+    };
+    bool meets_bound = IsAtTurn();
+    for (Eigen::Index k = 0; k < scaled.size(); ++k)
+      meets_bound = meets_bound || is_at_bound(scaled, k) || is_at_bound(scaled + step, k);
+    if (!meets_bound) return has_gained;
+    for (const double part : kParts) {
+      const Eigen::VectorXd there = (scaled + part * step).cwiseMax(low).cwiseMin(high);
+      const Eigen::VectorXd values_there = Values(there);
+      const double cost =
+          CostOf(predictions_.WithoutJacobianAt(values_there), parameters_, values_there);
+      if (!(cost_ - cost > least_gain)) continue;
+      cost_ = cost;
+      for (Eigen::Index k = 0; k < scaled.size(); ++k) {
+        free_[k] = bounds_[k].From(there[k]);
+        if (is_at_bound(there, k))
+          problem_.SetParameterBlockConstant(blocks_[k]);
+        else
+          problem_.SetParameterBlockVariable(blocks_[k]);
+      }
+      return true;
+    }
+    return has_gained;
+  }
+
+  const std::vector<CalibratedParameter>& parameters_;
+  const CalibrationOptions& options_;
+  SecantPredictions& predictions_;
+  std::vector<Free> bounds_;
+  std::vector<double> free_;  // u
+  std::vector<double*> blocks_;
+  ceres::Problem problem_;
+  ceres::Solver::Options solver_;
+  double cost_ = 0;  // where it is
+};
 
 }  // namespace
 
@@ -331,16 +524,14 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
   const int count = static_cast<int>(parameters.size());
   Calibration calibration;
   calibration.parameters.resize(count);
-  std::vector<double> free(count);
   for (int k = 0; k < count; ++k) {
     const CalibratedParameter& parameter = parameters[k];
     CHECK(parameter.start >= parameter.min && parameter.start <= parameter.max)
         << parameter.name << " starts outside its bounds";
     CHECK(!parameter.log_scale || parameter.start > 0)
         << parameter.name << " cannot start at " << parameter.start << " on a logarithmic scale";
-    calibration.parameters[k] = parameter.start;
     CHECK_GT(parameter.typical, 0) << parameter.name;
-    free[k] = Free(parameter).From(ToFree(parameter, parameter.start) / parameter.typical);
+    calibration.parameters[k] = parameter.start;
   }
   SecantPredictions predictions(predict, parameters);
   const Prediction& first = predictions.At(calibration.parameters);
@@ -350,67 +541,10 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     return calibration;
   }
   calibration.start_rms = RootMeanSquare(first.residual);
-  const Eigen::Index residuals = first.residual.size();
-
   if (count > 0) {
-    ceres::Problem problem;
-    std::vector<double*> blocks;
-    for (double& value : free) blocks.push_back(&value);
-    problem.AddResidualBlock(
-        new PredictionCost(parameters, static_cast<int>(residuals), &predictions), nullptr, blocks);
-    for (int k = 0; k < count; ++k) {
-      const CalibratedParameter& parameter = parameters[k];
-      if (!std::isfinite(parameter.prior_deviation)) continue;
-      problem.AddResidualBlock(
-          new PriorCost(Free(parameter),
-                        ToFree(parameter, PriorMeanOf(parameter)) / parameter.typical,
-                        parameter.prior_deviation / parameter.typical),
-          nullptr, blocks[k]);
-    }
-    ceres::Solver::Options solver;
-    solver.linear_solver_type = ceres::DENSE_QR;
-    solver.function_tolerance = options.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(
-                                                             1, first.residual.size()));
-    solver.parameter_tolerance = 1e-6;
-    solver.initial_trust_region_radius = kFirstRadius;
-    solver.logging_type = ceres::SILENT;
-    const auto values = [&] {
-      Eigen::VectorXd at(count);
-      for (int k = 0; k < count; ++k)
-        at[k] = std::clamp(
-            FromFree(parameters[k], Free(parameters[k]).At(free[k]).first * parameters[k].typical),
-            parameters[k].min, parameters[k].max);
-      return at;
-    };
-    const auto solve = [&] {
-      ceres::Solver::Summary summary;
-      solver.max_num_iterations = options.max_iterations - calibration.iterations;
-      ceres::Solve(solver, &problem, &summary);
-      calibration.iterations += static_cast<int>(summary.iterations.size()) - 1;
-      calibration.usable = summary.termination_type == ceres::CONVERGENCE;
-      calibration.message = calibration.usable ? "" : summary.message;
-      solver.initial_trust_region_radius =
-          std::min(kFirstRadius, kWidened * summary.iterations.back().trust_region_radius);
-    };
-    bool ended = false;
-    double cost = CostOf(first, parameters, calibration.parameters);
     const bool is_near = calibration.start_rms <= options.near_rms;
-    for (int round = 0; is_near && !ended && round < kSecantRounds; ++round) {
-      predictions.FollowSecants(true);
-      solve();
-      predictions.FollowSecants(false);
-      const Eigen::VectorXd at = values();
-      const Prediction& end = predictions.ExactAt(at);
-      const double left = CostOf(end, parameters, at);
-      // A round begins with an exact Jacobian: where it gains nothing, a step that promises more
-      // leads along a valley that is not straight.
-      ended = calibration.iterations >= options.max_iterations || !end.usable ||
-              cost - left <= solver.function_tolerance * cost ||
-              ExpectedGain(problem, blocks) <= solver.function_tolerance;
-      cost = left;
-    }
-    if (!ended) solve();
-    calibration.parameters = values();
+    calibration.parameters =
+        Descent(parameters, options, first, &predictions).Run(is_near, &calibration);
     SnapToBounds(parameters, &predictions, &calibration.parameters);
   } else {
     calibration.usable = true;

@@ -146,6 +146,46 @@ TEST(Calibration, StaysWithinBoundsAndSaysSo) {
   EXPECT_EQ(found.estimates[0].verdict, Verdict::kAtBound);
 }
 
+// Two dampings that do nearly the same, of which there can be no less than none. The fit starts, or
+// comes by, where one is all but none, and has to leave that bound or to stay there.
+TEST(Calibration, IsNotCaughtAtABound) {
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(80, 0, 2);
+  const auto swing = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
+    const Eigen::ArrayXd rate = at[0] + at[1] * (1 + 0.1 * times.array());
+    return (-rate * times.array()).exp() * (at[2] * times.array()).cos();
+  };
+  for (const Eigen::Vector3d& truth :
+       {Eigen::Vector3d(1.5, 0, 20), Eigen::Vector3d(0, 1.5, 20), Eigen::Vector3d(0.7, 0.7, 20)}) {
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 0.001);
+    Eigen::VectorXd measured = swing(truth);
+    for (double& value : measured) value += noise(random);
+    const double best = RootMeanSquare((swing(truth) - measured) / 0.001);
+    const auto predict = [&](const Eigen::VectorXd& at, bool) {
+      Prediction prediction{true, "", (swing(at) - measured) / 0.001, {}};
+      prediction.jacobian.resize(times.size(), 3);
+      for (int k = 0; k < 3; ++k) {
+        Eigen::VectorXd to = at, from = at;
+        to[k] += 1e-6;
+        from[k] -= 1e-6;
+        prediction.jacobian.col(k) = (swing(to) - swing(from)) / (2e-6 * 0.001);
+      }
+      return prediction;
+    };
+    for (const Eigen::Vector2d& start : {Eigen::Vector2d(4e-6, 0.1), Eigen::Vector2d(1e-4, 10),
+                                         Eigen::Vector2d(10, 1e-4), Eigen::Vector2d(1, 1)}) {
+      const Calibration found =
+          Calibrate({{.name = "a", .start = start[0], .min = 0, .max = 300, .typical = 150},
+                     {.name = "b", .start = start[1], .min = 0, .max = 300, .typical = 150},
+                     {.name = "frequency", .start = 19.7, .min = 0, .max = 1e3, .log_scale = true}},
+                    predict);
+      EXPECT_TRUE(found.usable) << found.message;
+      EXPECT_LT(found.rms, 1.02 * best)
+          << truth.transpose() << " from " << start.transpose() << ", " << found.iterations;
+    }
+  }
+}
+
 TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
   Decay decay(2, 0.7, 1);
   const Calibration good = Calibrate(AmplitudeAndTime(), decay);

@@ -1,0 +1,66 @@
+#include "fit/active_bounds.h"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <vector>
+
+namespace lacuna {
+
+double QuadraticCost::GainOf(const Eigen::VectorXd& step) const {
+  if (!(cost > 0)) return 0;
+  return -(gradient.dot(step) + 0.5 * step.dot(information * step)) / cost;
+}
+
+Eigen::VectorXd StepWithin(const QuadraticCost& model, const Eigen::VectorXd& low,
+                           const Eigen::VectorXd& high) {
+  const Eigen::Index count = model.gradient.size();
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
+  std::vector<char> at_bound(static_cast<size_t>(count), 0);
+  for (Eigen::Index k = 0; k < count; ++k)
+    at_bound[k] =
+        (low[k] == 0 && model.gradient[k] >= 0) || (high[k] == 0 && model.gradient[k] <= 0);
+  // Each round meets a bound, or leaves one for less cost. It ends by itself but for rounding.
+  for (Eigen::Index round = 0; round < 10 * (count + 1); ++round) {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index k = 0; k < count; ++k)
+      if (!at_bound[k]) free.push_back(k);
+    Eigen::VectorXd uphill = model.gradient + model.information * step;
+    double part = 1;  // of the way to the best of the free ones, until the first bound
+    Eigen::Index met = -1;
+    double bound = 0;
+    if (!free.empty()) {
+      const Eigen::MatrixXd theirs = model.information(free, free);
+      const Eigen::VectorXd slope = uphill(free);
+      const Eigen::VectorXd way = -theirs.completeOrthogonalDecomposition().solve(slope);
+      for (size_t i = 0; i < free.size(); ++i) {
+        const double to = way[static_cast<Eigen::Index>(i)];
+        const double its_bound = (to > 0 ? high : low)[free[i]];
+        const double room = std::abs(its_bound - step[free[i]]);
+        if (part * std::abs(to) <= room) continue;
+        part = room / std::abs(to);
+        met = free[i];
+        bound = its_bound;
+      }
+      step(free) += part * way;
+    }
+    if (met >= 0) {
+      step[met] = bound;
+      at_bound[met] = 1;
+      continue;
+    }
+    uphill = model.gradient + model.information * step;
+    Eigen::Index released = -1;
+    double most = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double inwards = step[k] <= low[k] ? -uphill[k] : uphill[k];
+      if (!at_bound[k] || low[k] == high[k] || !(inwards > most)) continue;
+      most = inwards;
+      released = k;
+    }
+    if (released < 0) break;
+    at_bound[released] = 0;
+  }
+  return step;
+}
+
+}  // namespace lacuna
