@@ -52,8 +52,8 @@ double FromFree(const CalibratedParameter& parameter, double free) {
 }
 
 // What Ceres works with: u, unbounded, in typical changes of φ. Near a bound φ(u) turns back, so
-// that no step leaves the bounds, none has to be cut short, and none ends where nothing can move it
-// any more (as in Minuit: James & Roos, Comput. Phys. Commun. 10, 1975):
+// that no step leaves the bounds and none has to be cut short (as in Minuit: James & Roos, Comput.
+// Phys. Commun. 10, 1975). What a turn does to a search, see kAtTurn:
 //   both bounds  φ = middle + half sin((u − middle)/half)
 //   one bound    φ = low − 1 + √((u − low)² + 1)             and likewise from above
 struct Free {
@@ -400,7 +400,8 @@ class Descent {
       solver_.max_num_iterations = options_.max_iterations - calibration->iterations;
       ceres::Solve(solver_, &problem_, &summary);
       predictions_.FollowSecants(false);
-      calibration->iterations += static_cast<int>(summary.iterations.size()) - 1;
+      // None, not even the start, where all are held at their bounds.
+      calibration->iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
       calibration->usable = summary.termination_type == ceres::CONVERGENCE;
       calibration->message = calibration->usable ? "" : summary.message;
       solver_.initial_trust_region_radius = NextRadius(summary);

@@ -186,6 +186,23 @@ TEST(Calibration, IsNotCaughtAtABound) {
   }
 }
 
+// Nothing is left to search where the one parameter is at its bound.
+TEST(Calibration, EndsAtTheBoundBeyondWhichItsOnlyParameterWouldFit) {
+  const auto predict = [](const Eigen::VectorXd& at, bool) {
+    Prediction prediction{true, "", Eigen::VectorXd::Constant(3, at[0] + 2), {}};
+    prediction.jacobian = Eigen::MatrixXd::Ones(3, 1);
+    return prediction;
+  };
+  for (const double start : {5.0, 0.0}) {
+    const Calibration found =
+        Calibrate({{.name = "a", .start = start, .min = 0, .max = 10, .typical = 1}}, predict);
+    EXPECT_TRUE(found.usable) << found.message;
+    EXPECT_EQ(found.parameters[0], 0);
+    EXPECT_GE(found.iterations, 0);
+    EXPECT_EQ(found.estimates[0].verdict, ParameterEstimate::Verdict::kAtBound);
+  }
+}
+
 TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
   Decay decay(2, 0.7, 1);
   const Calibration good = Calibrate(AmplitudeAndTime(), decay);
