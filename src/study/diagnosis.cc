@@ -264,7 +264,7 @@ class Refits {
       refit = std::move(other);
       best = elsewhere;
     }
-    if (!effect->scored.candidate.IsPilot() && FellShort(refit, without, effect->scored.score)) {
+    if (!effect->scored.candidate.IsPilot() && LostItsWay(refit, without, effect->scored.score)) {
       EffectRefit other = from(effect->scored, RefitFrom::kItsSize);
       if (IsBetter(other, refit)) {
         refit = std::move(other);
@@ -282,8 +282,8 @@ class Refits {
     }
     return refit;
   }
-  bool FellShort(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
-    if (!refit.message.empty()) return true;
+  bool LostItsWay(const EffectRefit& refit, const EffectRefit& without, const Score& score) const {
+    if (!refit.message.empty() || PredictsWorse(refit.errors, without.errors)) return true;
     const double noise =
         ranking_.noise.variance * static_cast<double>(ObservedRows(ranking_.misfit));
     return FallsShort(EvidenceOf(without.hypothesis, ranking_.noise),

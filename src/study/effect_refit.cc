@@ -21,6 +21,8 @@ constexpr double kArrived = 1.2;
 // Parts: of what first order promises, that a refit keeps; of what is more than noise, that one
 // explains that first order promised too much; of the noise, within which it is known.
 constexpr double kKept = 0.5, kFoundItsWay = 0.85, kMoreThanEstimated = 0.2;
+// Held-out misses of models that differ by noise are nearer than this.
+constexpr double kMissesMore = 1.1;
 
 std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
   for (LinearPrior& prior : priors) {
@@ -233,6 +235,10 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
   const bool found_its_way = more_than_noise > kMoreThanEstimated * noise &&
                              without.misfit - refit.misfit >= kFoundItsWay * more_than_noise;
   return refit.log_evidence - without.log_evidence < kKept * promised && !found_its_way;
+}
+
+bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
+  return with.has_held_out && with.without_nuisances > kMissesMore * without.without_nuisances;
 }
 
 EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,

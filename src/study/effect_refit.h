@@ -93,6 +93,10 @@ enum class RefitFrom { kFirstOrder, kItsSize };
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
                 double promised);
 
+// What follows the fitted frames with an effect, and misses the held-out ones by more than without
+// it, has its parameters in the wrong place.
+bool PredictsWorse(const ModelErrors& with, const ModelErrors& without);
+
 // From where first order expects the best parameters, or from the present ones where that is
 // nearer, or part of the way where neither predicts as well as the model without the effect. Null
 // `effect`: the model as it is, with what was adopted, so that it is compared at its best too.

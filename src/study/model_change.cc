@@ -45,7 +45,14 @@ Eigen::VectorXd StartOf(const ScoredVariant& scored) {
 
 // Where another effect is what is missing, a fit would make this one do its work at any size.
 void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
-  const double margin = kMargin * (plausible.plausible_max - plausible.plausible_min);
+  const double range = plausible.plausible_max - plausible.plausible_min;
+  if (plausible.dimension.SameAs(kAngle)) {
+    // No direction is the last one: a range that ended there would shut off its neighbours.
+    prior->min = std::max(prior->min, prior->start - range);
+    prior->max = std::min(prior->max, prior->start + range);
+    return;
+  }
+  const double margin = kMargin * range;
   // A pilot's place is taken from the recording, wherever that is.
   const double low = std::min(prior->start, plausible.log_scale && plausible.plausible_min > 0
                                                 ? 0.5 * plausible.plausible_min

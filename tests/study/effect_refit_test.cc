@@ -79,6 +79,21 @@ TEST(FallsShort, WhereItKeepsLittleOfThePromiseAndLeavesMoreThanNoise) {
   EXPECT_FALSE(falls_short(90, 80, 30));
 }
 
+TEST(PredictsWorse, WhereHeldOutFramesAreMissedByMoreThanNoiseExplains) {
+  const auto predicts_worse = [](double with, bool has_held_out) {
+    ModelErrors errors;
+    errors.has_held_out = has_held_out;
+    errors.without_nuisances = with;
+    ModelErrors without = errors;
+    without.without_nuisances = 2;
+    return PredictsWorse(errors, without);
+  };
+  EXPECT_FALSE(predicts_worse(1, true));
+  EXPECT_FALSE(predicts_worse(2.1, true));
+  EXPECT_TRUE(predicts_worse(2.4, true));
+  EXPECT_FALSE(predicts_worse(2.4, false));
+}
+
 // A nuisance takes its part of the misfit away, and is paid for by its prior.
 TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
   const FittedHypothesis usual = MakeHypothesis(0.1), far = MakeHypothesis(0.9);

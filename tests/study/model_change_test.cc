@@ -39,5 +39,38 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
   EXPECT_EQ(places, 3);
 }
 
+// An angle may turn past the end of its range, as the directions there are each other's neighbours;
+// a size may not leave what is plausible.
+TEST(WithEffect, LetsAnAngleTurnPastTheEndOfItsRange) {
+  PredictionStudy study;
+  study.effects = {MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
+  const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
+  ScoredEffect scored;
+  for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
+    if (candidate.type == "fibre_stiffness") scored.candidate = candidate;
+  ASSERT_NE(scored.candidate.effect, nullptr);
+  const EffectCard& card = scored.candidate.effect->Card();
+  const int azimuth = ParameterIndex(card, "azimuth");
+  const double end = card.parameters[azimuth].plausible_max;
+  const double range = end - card.parameters[azimuth].plausible_min;
+  Eigen::VectorXd values = scored.candidate.effect->Parameters();
+  values[azimuth] = 0.9 * end;
+  scored.candidate.effect = FindEntry("fibre_stiffness")->make(values);
+  scored.score.size = Eigen::VectorXd::Constant(1, 1e4);
+
+  int angles = 0;
+  for (const ModelParameter& parameter : WithEffect(study, scored).fitted) {
+    const CalibratedParameter& prior = parameter.prior;
+    if (prior.name.ends_with("azimuth")) {
+      EXPECT_NEAR(prior.min, 0.9 * end - range, 1e-12);
+      EXPECT_NEAR(prior.max, 0.9 * end + range, 1e-12);
+      ++angles;
+    }
+    if (prior.name.ends_with("modulus"))
+      EXPECT_LT(prior.max, 2 * card.parameters[parameter.places.front().second].plausible_max);
+  }
+  EXPECT_EQ(angles, 1);
+}
+
 }  // namespace
 }  // namespace lacuna
