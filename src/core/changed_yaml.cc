@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/text_file.h"
 #include "core/yaml_document.h"
 
 namespace lacuna {
@@ -172,7 +173,7 @@ class PathMover {
 std::string ChangedYaml(const std::filesystem::path& file, const std::vector<YamlChange>& changes,
                         const std::set<std::string>& path_keys,
                         const std::filesystem::path& folder) {
-  const YamlDocument document = ParseYaml(ReadText(file), file.string());
+  const YamlDocument document = ParseYaml(ReadWholeFile(file), file.string());
   for (const YamlChange& change : changes)
     Change(change.field, *document.root).Put(ParseValue(change));
   PathMover(document, changes, path_keys, folder).Move(*document.root, "");

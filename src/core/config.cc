@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "core/suggestion.h"
+#include "core/text_file.h"
 #include "core/yaml_document.h"
 
 namespace lacuna {
@@ -100,7 +99,7 @@ bool Inside(const Bounds& bounds, double value) {
 Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 Config Config::Load(const std::filesystem::path& file) {
-  return Parse(ReadText(file), file.string());
+  return Parse(ReadWholeFile(file), file.string());
 }
 
 Config Config::Parse(const std::string& text, const std::string& name) {

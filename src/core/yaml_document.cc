@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "core/error.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -99,7 +98,7 @@ void PutInPieces(YAML::Node node, const std::string& path,
       Fail(files.back(), mark, below("use") + ": " + file.string() + " would use itself");
     if (!std::filesystem::is_regular_file(file))
       Fail(files.back(), mark, below("use") + ": there is no file " + file.string());
-    YAML::Node piece = Parse(ReadText(file), file);
+    YAML::Node piece = Parse(ReadWholeFile(file), file);
     std::vector<std::filesystem::path> inner = files;
     inner.push_back(file);
     PutInPieces(piece, path, inner, document);
@@ -139,15 +138,6 @@ YamlDocument ParseYaml(const std::string& text, const std::filesystem::path& fil
   YamlDocument document{file, std::make_shared<YAML::Node>(Parse(text, file)), {}};
   PutInPieces(*document.root, "", {file.lexically_normal()}, &document);
   return document;
-}
-
-std::string ReadText(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw InputError(SourcePosition{file.string()}, "cannot be opened for reading");
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
 }
 
 std::string ExpandEnvironment(const std::string& text, std::string* missing) {

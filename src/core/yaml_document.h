@@ -31,9 +31,6 @@ struct YamlDocument {
 // entries that the mapping does not give itself.
 YamlDocument ParseYaml(const std::string& text, const std::filesystem::path& file);
 
-// The text of a file. Throws InputError.
-std::string ReadText(const std::filesystem::path& file);
-
 // "${NAME}" replaced by the environment variable of that name, "${NAME:-value}" falling back to
 // `value`; a variable that is not set becomes `*missing`.
 std::string ExpandEnvironment(const std::string& text, std::string* missing);

@@ -6,11 +6,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -34,12 +33,7 @@ std::string LowerExtension(const std::filesystem::path& file) {
 }
 
 TextScanner::TextScanner(const std::filesystem::path& file, char comment)
-    : file_(file), comment_(comment) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be opened");
-  content_.assign(std::istreambuf_iterator<char>(stream), {});
-  if (stream.bad()) throw InputError({file.string()}, "cannot be read");
-}
+    : file_(file), content_(ReadWholeFile(file)), comment_(comment) {}
 
 bool TextScanner::NextLine() {
   while (next_line_ < content_.size()) {

@@ -209,7 +209,7 @@ std::vector<std::string> ReadNames(const Bytes& bytes,
 }  // namespace
 
 MarkerTracks ReadC3d(const std::filesystem::path& file) {
-  Bytes bytes(file, ReadWholeFile(file));
+  Bytes bytes(file, ReadFilledFile(file));
   if (bytes.Size() < kBlock || bytes.Byte(1) != kKey || bytes.Byte(0) < 2) {
     bytes.Fail("is not a C3D file");
   }

@@ -5,11 +5,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "core/error.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -75,19 +74,14 @@ std::optional<double> ParseNumber(std::string_view text) {
   return value;
 }
 
-std::string ReadWholeFile(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw InputError({file.string()}, "cannot be opened for reading");
-  }
-  std::ostringstream content;
-  content << stream.rdbuf();
-  if (content.str().empty()) throw InputError({file.string()}, "is empty");
-  return std::move(content).str();
+std::string ReadFilledFile(const std::filesystem::path& file) {
+  std::string content = ReadWholeFile(file);
+  if (content.empty()) throw InputError({file.string()}, "is empty");
+  return content;
 }
 
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
-  const std::string content = ReadWholeFile(file);
+  const std::string content = ReadFilledFile(file);
   DelimitedTable table;
   table.file = file;
   std::vector<double> entries;

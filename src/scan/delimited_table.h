@@ -36,8 +36,8 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
 // The number that fills `text` wholly (NaN for an empty text and for "nan"); none otherwise.
 std::optional<double> ParseNumber(std::string_view text);
 
-// The whole of a text or binary file. Throws InputError when it cannot be read or is empty.
-std::string ReadWholeFile(const std::filesystem::path& file);
+// The whole of a file with measurements. Throws InputError when it cannot be read or is empty.
+std::string ReadFilledFile(const std::filesystem::path& file);
 
 }  // namespace lacuna
 

@@ -71,7 +71,7 @@ class PngWriter {
 }  // namespace
 
 DepthImage ReadDepthPng(const std::filesystem::path& file, double count_length) {
-  Source source{ReadWholeFile(file)};
+  Source source{ReadFilledFile(file)};
   PngReader reader;
   try {
     png_set_read_fn(reader.png, &source, ReadBytes);

@@ -126,7 +126,7 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
 }
 
 MarkerTracks ReadTrc(const std::filesystem::path& file) {
-  const std::string content = ReadWholeFile(file);
+  const std::string content = ReadFilledFile(file);
   const std::vector<std::string_view> lines = Lines(content);
   const TrcHeader header = ReadTrcHeader(file, lines);
   MarkerTracks tracks;

@@ -75,7 +75,7 @@ double AnnouncedCount(std::string_view header, std::string_view key) {
 
 // What PCL would pass over in silence or allocate without need.
 void CheckHeader(const std::filesystem::path& file, bool is_ply) {
-  const std::string content = ReadWholeFile(file);
+  const std::string content = ReadFilledFile(file);
   std::string_view line;
   const size_t body = FindBody(content, is_ply ? "end_header" : "DATA ", &line);
   const bool has_magic = is_ply ? content.rfind("ply", 0) == 0

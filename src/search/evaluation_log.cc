@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -67,11 +67,7 @@ EvaluationLog::EvaluationLog(const std::filesystem::path& file, const std::strin
                              int variable_count, int constraint_count)
     : file_(file) {
   std::string text;
-  if (std::filesystem::exists(file)) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError({file.string()}, "cannot be read");
-    text.assign(std::istreambuf_iterator<char>(stream), {});
-  }
+  if (std::filesystem::exists(file)) text = ReadWholeFile(file);
   const std::string header =
       Signed("lacuna search log 1, " +
              HashBytes(fmt::format("{} {} {}", key, variable_count, constraint_count)));

@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "core/error.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -89,8 +89,7 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
     : file_(file) {
   std::string text;
   if (std::filesystem::exists(file)) {
-    std::ifstream stream(file);
-    text.assign(std::istreambuf_iterator<char>(stream), {});
+    text = ReadWholeFile(file);
     const size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
     if (whole < text.size()) std::filesystem::resize_file(file, whole);
     text.resize(whole);

@@ -1,12 +1,11 @@
 #include "study/kept_recording.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "core/hash.h"
+#include "core/text_file.h"
 
 namespace lacuna {
 namespace {
@@ -30,9 +29,8 @@ std::string MarkOf(const fs::path& folder, const std::string& key) {
 }  // namespace
 
 bool IsKeptRecording(const fs::path& folder, const std::string& key) {
-  std::ifstream stream(folder / kMark);
-  const std::string mark{std::istreambuf_iterator<char>(stream), {}};
-  return !mark.empty() && mark == MarkOf(folder, key);
+  const fs::path mark = folder / kMark;
+  return fs::exists(mark) && ReadWholeFile(mark) == MarkOf(folder, key);
 }
 
 void MarkRecording(const fs::path& folder, const std::string& key) {

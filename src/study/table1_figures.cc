@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "analysis/measure.h"
 #include "core/atomic_file.h"
+#include "core/text_file.h"
 #include "geometry/cut_open.h"
 #include "geometry/nearest.h"
 #include "report/arrow_mesh.h"
@@ -22,11 +21,6 @@ namespace {
 const Eigen::Vector3d kScanColour(0.15, 0.2, 0.3), kFaintColour(0.74, 0.78, 0.84),
     kSkinColour(0.62, 0.72, 0.84), kInnerColour(0.95, 0.72, 0.42), kRemovedColour(0.85, 0.15, 0.1);
 constexpr double kDeg = 180 / M_PI;
-
-std::string TextOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 OuterProblem ProblemOf(const Table1Study& table1, const Table1Scans& scans) {
   const OuterSearchSettings& search = table1.configurations.front().search;
@@ -63,7 +57,7 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
         "is of another scene, or its recording was changed; run `lacuna table1` again");
   std::vector<Optimum> optima;
   try {
-    const nlohmann::json table = nlohmann::json::parse(TextOf(file));
+    const nlohmann::json table = nlohmann::json::parse(ReadWholeFile(file));
     for (const nlohmann::json& search : table.at("searches")) {
       if (search.at("seed") != 1 || !search.contains("best")) continue;
       optima.push_back(

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "core/atomic_file.h"
@@ -12,6 +10,7 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/text_file.h"
 #include "sweep/sweep_file.h"
 #include "sweep/sweep_table.h"
 
@@ -94,11 +93,6 @@ std::string MessageAbout(const std::string& field, const std::string& message) {
   throw InputError({sweep_file.File().string()}, Describe(entry) + ": " + message);
 }
 
-std::string TextOf(const fs::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) {
   if (fs::exists(folder / "sweep.json")) {
     const SweepIdentity known = LoadIdentity(folder);
@@ -167,7 +161,7 @@ SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
         continue;
       }
       for (const auto& [name, text] : files)
-        if (TextOf(folder / entry.name / name) != text)
+        if (ReadWholeFile(folder / entry.name / name) != text)
           throw InputError(
               fmt::format("differs from {}, which was planned before; plan into another folder",
                           (folder / entry.name / name).string()));

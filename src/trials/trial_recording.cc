@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 #include "core/atomic_file.h"
+#include "core/text_file.h"
 #include "geometry/embedding.h"
 #include "scan/random_bits.h"
 #include "scan/scan_writer.h"
@@ -146,9 +146,8 @@ void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motio
   object.density = kTrialDensity;
   WriteScan(folder, object, surfaces, times, PlaceCameras(ring), scanner, ScanOutput::kPoints);
   std::filesystem::remove_all(folder / "truth");
-  std::ifstream written(folder / "recording.yaml");
-  const std::string yaml{std::istreambuf_iterator<char>(written), {}};
-  WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
+  const std::filesystem::path description = folder / "recording.yaml";
+  WriteFileAtomically(description, ReadWholeFile(description) + ShapeAndClamp());
 }
 
 }  // namespace

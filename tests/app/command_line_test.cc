@@ -96,8 +96,7 @@ TEST(CommandLine, ValidatesTheBundledExperimentsAndScenes) {
 
 TEST(CommandLine, ValidateRefusesWhatAFitWould) {
   const TemporaryFolder folder;
-  std::ifstream stream(Experiment("hidden_effect.yaml"));
-  std::string text(std::istreambuf_iterator<char>(stream), {});
+  std::string text = FileContent(Experiment("hidden_effect.yaml"));
   const auto replace = [&text](const std::string& from, const std::string& to) {
     for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
       text.replace(at, from.size(), to);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include "core/parallel.h"
@@ -206,8 +205,7 @@ TEST(CalibrationProblem, DoesNotUseWhatIsHeldOut) {
 
 // As if marker m7 were 1.5 mm nearer to the clamp than it is.
 void Misplace(const std::filesystem::path& file) {
-  std::ifstream before(file);
-  std::string text{std::istreambuf_iterator<char>(before), {}};
+  std::string text = FileContent(file);
   const std::string place = "m7, position: [0.08 m";
   ASSERT_NE(text.find(place), std::string::npos) << text;
   text.replace(text.find(place), place.size(), "m7, position: [0.0785 m");
@@ -340,8 +338,7 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
       testing::HasSubstr("hold of bar"));
   EXPECT_EQ(MessageOf(ReadBarStudy(folder.Path())), "nothing was refused");
   const auto message_with_clamp = [&](const std::string& regions) {
-    std::ifstream stream(folder / "recording.yaml");
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text = FileContent(folder / "recording.yaml");
     const size_t first = text.find("fixed: [") + 8;
     text.replace(first, text.find("]\n", first) - first, regions);
     std::ofstream(folder / "recording.yaml") << text;
@@ -358,8 +355,7 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
                                  "normal: [-1, 0, 0]}}"),
               testing::HasSubstr("region \"all\" holds all of the object"));
   WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
-  std::ifstream stream(folder / "recording.yaml");
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text = FileContent(folder / "recording.yaml");
   const size_t place = text.find("[", text.find("name: m2")) + 1;
   text.replace(place, text.find(" m", place) - place, "0.5");
   std::ofstream(folder / "recording.yaml") << text;

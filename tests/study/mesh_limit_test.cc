@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "study/calibration_fits.h"
@@ -33,8 +32,7 @@ struct BarFit {
 
 void ReplaceInFile(const std::filesystem::path& file, const std::string& from,
                    const std::string& to) {
-  std::ifstream before(file);
-  std::string text{std::istreambuf_iterator<char>(before), {}};
+  std::string text = FileContent(file);
   ASSERT_NE(text.find(from), std::string::npos);
   text.replace(text.find(from), from.size(), to);
   std::ofstream(file) << text;

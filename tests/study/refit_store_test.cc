@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "study/calibration_fits.h"
@@ -16,11 +15,6 @@ namespace lacuna {
 namespace {
 
 using nlohmann::json;
-
-std::string TextOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 TEST(RefitStore, GivesBackWhatWasKeptToTheLastBit) {
   const TemporaryFolder folder;
@@ -57,7 +51,7 @@ TEST(RefitStore, HasNothingOfAnotherFitOrOfADamagedFile) {
   EXPECT_EQ(RefitStore(file, {{"fit", "a"}}).Find("key"), nullptr);
   RefitStore(file, {{"fit", "a"}}).Keep("key", {});
   EXPECT_EQ(RefitStore(file, {{"fit", "b"}}).Find("key"), nullptr);
-  const std::string text = TextOf(file);
+  const std::string text = FileContent(file);
   std::ofstream(file) << text.substr(0, text.size() / 2);
   EXPECT_EQ(RefitStore(file, {{"fit", "a"}}).Find("key"), nullptr);
   json changed = json::parse(text);
@@ -90,17 +84,17 @@ TEST(RefitStore, ADiagnosisThatWasStoppedGoesOnToTheSameResult) {
     RefitStore kept(file, {{"of", "bar"}});
     SaveDiagnosis(Diagnose(problem, fit.parameters, {.refits = 1, .without = {}}, &progress, &kept),
                   folder / name);
-    return TextOf(folder / name);
+    return FileContent(folder / name);
   };
   const std::string whole = diagnose("whole.json");
-  json all = json::parse(TextOf(file));
+  json all = json::parse(FileContent(file));
   const size_t fits = all.at("fits").size();
   ASSERT_GT(fits, 2u);
   all["fits"].erase(all["fits"].begin());
   const json part = all;
   std::ofstream(file) << part;
   EXPECT_EQ(diagnose("resumed.json"), whole);
-  all = json::parse(TextOf(file));
+  all = json::parse(FileContent(file));
   EXPECT_EQ(all.at("fits").size(), fits) << "what was kept is found again";
   // What is found there is not fitted again.
   for (auto& [key, kept] : all["fits"].items())
