@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/fit_report.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "effects/catalogue.h"
@@ -18,50 +19,50 @@
 namespace lacuna {
 namespace {
 
-const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& type) {
+[[noreturn]] void Refuse(const std::string& type, const std::string& why) {
+  throw InputError(fmt::format(
+      "{} cannot be added by itself: {}; write it into the experiment's `effects`", type, why));
+}
+
+// What can be told before the computation.
+void RequireAddable(const std::string& type, const PredictionStudy& study) {
   std::vector<std::string> known;
-  for (const ScoredEffect& effect : ranking.effects) {
-    if (effect.candidate.type == type) return effect;
-    known.push_back(effect.candidate.type);
-  }
-  for (const UntriedEffect& effect : ranking.untried)
-    if (effect.type == type)
-      throw InputError(
-          fmt::format("{} cannot be added by itself: {}; write it into the experiment's `effects`",
-                      type, effect.why));
-  if (FindEntry(type) == nullptr) {
+  for (const OwnLaw& law : study.candidates) known.push_back(law.name);
+  if (std::count(known.begin(), known.end(), type) > 0) return;
+  const CatalogueEntry* entry = FindEntry(type);
+  if (entry == nullptr) {
+    for (const CatalogueEntry& other : Catalogue()) known.push_back(other.card->type);
     throw InputError(fmt::format("no effect is called \"{}\"{}; `lacuna effects` lists them", type,
                                  Suggestion(type, known)));
   }
-  throw InputError(
-      fmt::format("{} cannot be added by itself: the model has it already, or its size has no null "
-                  "value; write "
-                  "it into the experiment's `effects`",
-                  type));
-}
-
-// An effect that the model has, and could not have twice, is told before the computation.
-void RequireRoomFor(const std::string& type, const CalibrationProblem& problem) {
-  const PredictionStudy& study = problem.study();
   const bool is_there =
       std::any_of(study.effects.begin(), study.effects.end(),
                   [&](const auto& effect) { return effect->Card().type == type; });
-  if (!is_there) return;
-  const std::vector<CandidateEffect> candidates =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), {}});
-  if (std::none_of(candidates.begin(), candidates.end(),
-                   [&](const CandidateEffect& candidate) { return candidate.type == type; }))
-    FindScored({}, type);
+  if (is_there && !entry->card->repeatable)
+    throw InputError(fmt::format("{}: the model has it already", type));
+  if (entry->make == nullptr)
+    throw InputError(fmt::format(
+        "{} is not one effect: write a law of your own into the experiment's `candidates`, and add "
+        "it by its name (docs/expression.md)",
+        type));
+}
+
+const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& type) {
+  for (const ScoredEffect& effect : ranking.effects)
+    if (effect.candidate.type == type) return effect;
+  for (const UntriedEffect& effect : ranking.untried)
+    if (effect.type == type) Refuse(type, effect.why);
+  Refuse(type, "its size has no null value");
 }
 
 int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const FittedRun fitted = OpenRun(run);
-  if (FindEntry(type) == nullptr) FindScored({}, type);  // told before the computation
+  RequireAddable(type, fitted.study);
+  MakeFolder(run / "..");  // one that cannot be written into is told before the computation, too
   Progress progress;
-  std::optional<ScoredEffect> diagnosed = FindDiagnosed(run, type);
+  std::optional<ScoredEffect> diagnosed = FindDiagnosed(fitted, run, type);
   if (!diagnosed) {
     const CalibrationProblem problem(fitted.study, fitted.mesh);
-    RequireRoomFor(type, problem);
     diagnosed = FindScored(RankEffects(problem, fitted.values, &progress), type);
   }
   const ScoredEffect& effect = *diagnosed;
@@ -87,9 +88,10 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
 void AddAdd(CLI::App* app, std::function<int()>* command) {
   CLI::App* add = app->add_subcommand("add", "A fitted model with one more effect, fitted again");
   add->footer(
-      "Writes the experiment RUN+EFFECT.yaml beside RUN, which starts from RUN's fitted values, "
-      "and\n"
-      "runs it: errors before and after, on fitted and on held-out frames. An elasticity law takes "
+      "Writes an experiment, NAME+EFFECT.yaml for one called NAME, beside RUN. It starts from "
+      "RUN's\n"
+      "fitted values. Runs it: errors before and after, on fitted and on held-out frames. An "
+      "elasticity law takes "
       "the\n"
       "place of the model's.");
   auto run = std::make_shared<std::string>();

@@ -72,7 +72,7 @@ void AddDiagnose(CLI::App* app, std::function<int()>* command) {
   auto arguments = std::make_shared<DiagnoseArguments>();
   diagnose->add_option("run", arguments->run, "The run's folder")->required();
   diagnose->add_option("--refits", arguments->refits, "How many effects to fit")
-      ->check(CLI::Range(0, 50));
+      ->check(CLI::Range(1, 50));
   CLI::Option* until_done = diagnose->add_flag("--until-done", arguments->until_done,
                                                "Add what is missing, fit, diagnose again");
   diagnose

@@ -23,9 +23,11 @@ int Fit(const std::string& file) {
   if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
   fmt::print(
       "\nThe run lies in {}\n"
-      "  calibration/calibration.json   parameters with intervals, errors\n"
-      "  calibration/misfit.csv         each marker, or patch of a surface, of each frame\n",
+      "  calibration/calibration.json   parameters with intervals, errors\n",
       study.output.string());
+  if (std::filesystem::exists(study.output / "calibration/misfit.csv"))
+    fmt::print(
+        "  calibration/misfit.csv         each marker, or patch of a surface, of each frame\n");
   return record.usable ? 0 : 1;
 }
 

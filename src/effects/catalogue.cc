@@ -131,6 +131,13 @@ std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material)
   return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material);
 }
 
+std::shared_ptr<Effect> WithParameters(const Effect& effect, const Eigen::VectorXd& parameters) {
+  const CatalogueEntry* entry = FindEntry(effect.Card().type);
+  CHECK(entry != nullptr) << effect.Card().type;
+  return entry->make != nullptr ? entry->make(parameters)
+                                : entry->with_parameters(effect, parameters);
+}
+
 std::shared_ptr<Effect> MakeMaterial(const Config& config) {
   return MakeOfKind(CatalogueEntry::Kind::kMaterial, "law", config, nullptr);
 }

@@ -32,6 +32,11 @@ struct CatalogueEntry {
   // In place of `make` and `read`, which are then null: an effect that is more than its numbers and
   // whose card is its own, of the same type as `card`.
   std::shared_ptr<Effect> (*make_from_yaml)(const Config& config) = nullptr;
+  // Of such an effect: the same with other parameter values, and the mapping that is read back to
+  // it.
+  std::shared_ptr<Effect> (*with_parameters)(const Effect& effect,
+                                             const Eigen::VectorXd& parameters) = nullptr;
+  std::string (*format)(const Effect& effect) = nullptr;
 };
 
 // Every entry, elasticity laws first.
@@ -56,6 +61,10 @@ std::shared_ptr<Effect> MakeMaterial(const Config& config);
 // without value, is our own mistake (CHECK).
 std::shared_ptr<Effect> MakeEffect(const std::string& type,
                                    const std::map<std::string, double>& parameters);
+
+// The same effect with other parameter values, in the order of its card; of an effect that the
+// catalogue makes.
+std::shared_ptr<Effect> WithParameters(const Effect& effect, const Eigen::VectorXd& parameters);
 
 // The usual `make`, for a class that is made from its parameters.
 template <typename Type>

@@ -1,6 +1,7 @@
 #include "effects/effect_text.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <cmath>
 
@@ -26,7 +27,9 @@ bool CanBeWritten(const Eigen::VectorXd& values, const ParameterCard& parameter)
 std::optional<std::string> FormatEffect(const Effect& effect) {
   const EffectCard& card = effect.Card();
   const CatalogueEntry* entry = FindEntry(card.type);
-  if (entry == nullptr || entry->make == nullptr) return std::nullopt;
+  if (entry == nullptr) return std::nullopt;
+  if (entry->format != nullptr) return entry->format(effect);
+  CHECK(entry->make != nullptr) << card.type;
   const Eigen::VectorXd values = effect.Parameters();
   std::string text = fmt::format(
       "{{{}: {}", entry->kind == CatalogueEntry::Kind::kMaterial ? "law" : "type", card.type);

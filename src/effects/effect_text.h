@@ -16,8 +16,8 @@ namespace lacuna {
 // of length 0, is left out where it is the default. Parameters must be within the card's bounds, or
 // they are refused when they are read.
 //
-// Nothing for an effect that the catalogue does not make from its parameters (an expression, a
-// measured force) or one with such a value that is not the default.
+// Nothing for an effect that is not the catalogue's (a measured force) or one with such a value
+// that is not the default.
 std::optional<std::string> FormatEffect(const Effect& effect);
 
 }  // namespace lacuna

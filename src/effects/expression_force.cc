@@ -69,6 +69,7 @@ class ExpressionForceEffect final : public Effect {
  public:
   explicit ExpressionForceEffect(ExpressionLaw law) : law_(std::move(law)) {}
 
+  const ExpressionLaw& Law() const { return law_; }
   const EffectCard& Card() const override { return law_.card; }
   Eigen::VectorXd Parameters() const override { return law_.parameters; }
   void SetParameters(const Eigen::VectorXd& values) override {
@@ -274,12 +275,26 @@ std::shared_ptr<Effect> MakeExpressionForce(const Config& config) {
   return std::make_shared<ExpressionForceEffect>(ReadExpressionLaw(config, TheCard()));
 }
 
+std::shared_ptr<Effect> WithOtherParameters(const Effect& effect,
+                                            const Eigen::VectorXd& parameters) {
+  const auto copy = std::make_shared<ExpressionForceEffect>(
+      static_cast<const ExpressionForceEffect&>(effect).Law());
+  copy->SetParameters(parameters);
+  return copy;
+}
+
+std::string Format(const Effect& effect) {
+  return FormatExpressionLaw(static_cast<const ExpressionForceEffect&>(effect).Law());
+}
+
 }  // namespace
 
 CatalogueEntry ExpressionForce() {
   CatalogueEntry entry;
   entry.card = &TheCard();
   entry.make_from_yaml = &MakeExpressionForce;
+  entry.with_parameters = &WithOtherParameters;
+  entry.format = &Format;
   return entry;
 }
 

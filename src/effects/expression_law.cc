@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <utility>
 
@@ -187,7 +188,46 @@ void CheckAmplitude(const Config& config, const Law& law) {
   }
 }
 
+// In quotes, as YAML and JSON have them alike.
+std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+std::string FormatParameter(const ParameterCard& card, double value) {
+  const std::string unit = card.dimension.unit;
+  const auto quantity = [&](double number) {
+    return fmt::format("{}{}{}", number, unit.empty() ? "" : " ", unit);
+  };
+  std::string text = "{value: " + quantity(value);
+  if (card.setting)
+    text += ", setting: true";
+  else
+    text += fmt::format(", plausible: [{}, {}]", quantity(card.plausible_min),
+                        quantity(card.plausible_max));
+  if (std::isfinite(card.bounds.min) && !card.bounds.open_min)
+    text += ", min: " + quantity(card.bounds.min);
+  if (std::isfinite(card.bounds.max)) text += ", max: " + quantity(card.bounds.max);
+  if (!std::isnan(card.null_value)) text += ", null_value: " + quantity(card.null_value);
+  if (card.log_scale) text += ", log_scale: true";
+  return text + ", meaning: " + Quoted(card.meaning) + "}";
+}
+
 }  // namespace
+
+std::string FormatExpressionLaw(const ExpressionLaw& law) {
+  const char* per = law.per == Measure::kMass     ? "mass"
+                    : law.per == Measure::kVolume ? "volume"
+                                                  : "area";
+  std::string text = fmt::format(
+      "{{type: {}, name: {}, per: {}, force: [{}, {}, {}], amplitude: {}, citation: {}, "
+      "parameters: {{",
+      law.card.type, Quoted(law.name), per, Quoted(law.force[0].text()),
+      Quoted(law.force[1].text()), Quoted(law.force[2].text()), law.card.parameters.front().name,
+      Quoted(law.card.citation));
+  for (size_t k = 0; k < law.card.parameters.size(); ++k)
+    text += fmt::format(
+        "{}{}: {}", k == 0 ? "" : ", ", law.card.parameters[k].name,
+        FormatParameter(law.card.parameters[k], law.parameters[static_cast<Eigen::Index>(k)]));
+  return text + "}}";
+}
 
 std::string ExpressionLaw::NameOf(int variable) const {
   return variable < kVariables ? kVariableNames[variable]

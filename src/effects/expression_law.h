@@ -44,6 +44,9 @@ struct ExpressionLaw {
 // a force that does not vanish with its amplitude, or not in proportion to it.
 ExpressionLaw ReadExpressionLaw(const Config& config, const EffectCard& card);
 
+// The flow mapping that is read back to the same law, with its present parameter values.
+std::string FormatExpressionLaw(const ExpressionLaw& law);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_EFFECTS_EXPRESSION_LAW_H_

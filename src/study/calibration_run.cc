@@ -134,7 +134,25 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
   return stage.record;
 }
 
+void RefuseOtherRuns(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(run))
+    throw InputError({run.string()}, "there is no such file or folder");
+  if (!std::filesystem::exists(run / "manifest.json")) {
+    throw InputError({run.string()},
+                     "is not a run: it holds no manifest.json; lacuna fit EXPERIMENT makes one");
+  }
+  const Manifest manifest = LoadManifest(run / "manifest.json");
+  if (manifest.stages.contains("calibration") || manifest.configuration.contains("recordings"))
+    return;  // FinishedStage says what is wrong with it, if anything
+  throw InputError({run.string()},
+                   manifest.configuration.contains("recording")
+                       ? "is a run of `lacuna reconstruct`, which fits forces until the model "
+                         "follows; needed is a prediction, a run of `lacuna fit`"
+                       : "is no run of `lacuna fit`");
+}
+
 FittedRun OpenRun(const std::filesystem::path& run) {
+  RefuseOtherRuns(run);
   FittedRun opened;
   opened.record = LoadCalibration(run);
   if (!opened.record.usable) {

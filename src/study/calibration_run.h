@@ -27,9 +27,11 @@ struct FittedRun {
   TetMesh mesh;
   Eigen::VectorXd values;  // of all parameters
 };
-// Throws InputError when the run is not finished or its fit not usable, or when the experiment or
-// a recording has changed since.
+// Throws InputError when the folder is not that of a `lacuna fit`, the run is not finished or its
+// fit not usable, or when the experiment or a recording has changed since.
 FittedRun OpenRun(const std::filesystem::path& run);
+// Throws InputError when the folder is not there, no run, or one of another command.
+void RefuseOtherRuns(const std::filesystem::path& run);
 
 }  // namespace lacuna
 

@@ -344,6 +344,12 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       candidates.back().known = PlacesOn(setting.body);
     }
   }
+  for (const OwnLaw& law : setting.laws) {
+    if (std::count(setting.without.begin(), setting.without.end(), law.name) > 0) continue;
+    Eigen::VectorXd values = law.effect->Parameters();
+    values[0] = law.effect->Card().parameters[0].null_value;
+    candidates.push_back({law.name, "", WithParameters(*law.effect, values), {0}});
+  }
   return candidates;
 }
 

@@ -11,6 +11,7 @@
 
 #include "fem/body.h"
 #include "fem/model.h"
+#include "study/physics.h"
 
 namespace lacuna {
 
@@ -69,11 +70,12 @@ struct CandidateSetting {
   double time_step = 0;  // s: of the simulation,
   double duration = 0;   // s: and of the recording; relaxation times lie between them
   std::vector<std::string> without = {};  // types that are not wanted
+  std::vector<OwnLaw> laws = {};          // the user's, tried like the catalogue's
 };
 
-// All effects of the catalogue whose size has a null value and that the model does not have yet.
-// Contact, which has no derivative at its null value (pilot_hypotheses.h), and effects that only
-// YAML describes are not among them.
+// All effects of the catalogue whose size has a null value and that the model does not have yet,
+// and the user's laws. Contact, which has no derivative at its null value (pilot_hypotheses.h), is
+// not among them.
 std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting);
 
 }  // namespace lacuna

@@ -28,23 +28,6 @@ constexpr int kFewestOfSpan = 3;       // bad frames that make a span of time
 constexpr double kLargestGap = 0.05;   // of the frames, within such a span
 constexpr double kLargestDelay = 0.1;  // s, between two recordings' clocks beyond their release
 
-void RefuseOtherRuns(const std::filesystem::path& run) {
-  if (!std::filesystem::exists(run))
-    throw InputError({run.string()}, "there is no such file or folder");
-  if (!std::filesystem::exists(run / "manifest.json")) {
-    throw InputError({run.string()},
-                     "is not a run: it holds no manifest.json; lacuna fit EXPERIMENT makes one");
-  }
-  const Manifest manifest = LoadManifest(run / "manifest.json");
-  if (manifest.stages.contains("calibration") || manifest.configuration.contains("recordings"))
-    return;  // FinishedStage says what is wrong with it, if anything
-  throw InputError({run.string()},
-                   manifest.configuration.contains("recording")
-                       ? "is a run of `lacuna reconstruct`, which fits forces until the model "
-                         "follows; compare needs a prediction, a run of `lacuna fit`"
-                       : "is no run of `lacuna fit`");
-}
-
 const Eigen::VectorXd& Column(const CsvTable& table, const std::string& name,
                               const std::filesystem::path& file) {
   for (const CsvColumn& column : table)

@@ -56,6 +56,19 @@ json SettingsOf(const Diagnosis& diagnosis) {
   return settings;
 }
 
+// An effect of the catalogue, or one of the user's laws; null: there is none with such values.
+std::shared_ptr<Effect> MadeFrom(const PredictionStudy& study, const std::string& type,
+                                 const Eigen::VectorXd& values) {
+  const auto fits = [&](const EffectCard& card) {
+    return static_cast<Eigen::Index>(card.parameters.size()) == values.size();
+  };
+  for (const OwnLaw& law : study.candidates)
+    if (law.name == type && fits(law.effect->Card())) return WithParameters(*law.effect, values);
+  const CatalogueEntry* entry = FindEntry(type);
+  return entry != nullptr && entry->make != nullptr && fits(*entry->card) ? entry->make(values)
+                                                                          : nullptr;
+}
+
 // Null where the file is not there or is none.
 json Parsed(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -100,9 +113,9 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   return ReadDiagnosisFile(ResultFile(run));
 }
 
-ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEffect& effect) {
+ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::path& run,
+                             const RecordedEffect& effect) {
   const json origin = Parsed(OriginFile(run));
-  const CatalogueEntry* entry = FindEntry(effect.type);
   try {
     const json& settings = origin.at("settings").at(effect.type);
     const std::vector<double> values = settings.at("values");
@@ -117,10 +130,10 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
     candidate.replaces_material = settings.at("replaces_material");
     const std::string other =
         OriginFile(run).string() + ": is of another catalogue; diagnose again";
-    if (entry == nullptr || values.size() != entry->card->parameters.size())
-      throw InputError(other);
-    candidate.effect = entry->make(
+    candidate.effect = MadeFrom(
+        fitted.study, effect.type,
         Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    if (candidate.effect == nullptr) throw InputError(other);
     if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
     Score& score = scored.score;
     score.size.setOnes(static_cast<Eigen::Index>(effect.sizes.size()));  // of a pilot
@@ -138,13 +151,13 @@ ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEff
   }
 }
 
-std::optional<ScoredEffect> FindDiagnosed(const std::filesystem::path& run,
+std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,
                                           const std::string& type) {
   const json stands = OriginOfWhatStands(run), expected = OriginOf(run, {});
   for (const char* what : {"version", "fit", "fit_key"})
     if (!stands.contains(what) || stands.at(what) != expected.at(what)) return std::nullopt;
   for (const RecordedEffect& effect : ReadDiagnosisFile(ResultFile(run)).ranking)
-    if (effect.type == type) return DiagnosedEffect(run, effect);
+    if (effect.type == type) return DiagnosedEffect(fitted, run, effect);
   return std::nullopt;
 }
 

@@ -25,10 +25,11 @@ bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& optio
 
 // An effect of the ranking that RunDiagnosis left in this folder, where its refit ended, or as
 // first order expects it. Throws InputError when it is not there.
-ScoredEffect DiagnosedEffect(const std::filesystem::path& run, const RecordedEffect& effect);
+ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::path& run,
+                             const RecordedEffect& effect);
 
 // The same of a diagnosis of this fit with whatever options; nothing where none has the effect.
-std::optional<ScoredEffect> FindDiagnosed(const std::filesystem::path& run,
+std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,
                                           const std::string& type);
 
 }  // namespace lacuna

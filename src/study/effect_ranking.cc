@@ -108,8 +108,8 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
     : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
   const PredictionStudy& study = problem.study();
   problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
-  candidates_ =
-      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without});
+  candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
+                                without, study.candidates});
   const GripNuisances grips(problem);
   std::vector<MisfitDirection> directions = DirectionsOf(candidates_);
   const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());

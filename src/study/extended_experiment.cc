@@ -1,6 +1,7 @@
 #include "study/extended_experiment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -59,6 +60,11 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
       Written(*study.effects.front(), experiment));
   for (size_t k = 1; k < study.effects.size(); ++k)
     text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
+  std::vector<std::string> candidates;  // that are none yet
+  for (const OwnLaw& law : study.candidates)
+    if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
+  if (!study.candidates.empty())
+    text += fmt::format("candidates: [{}]\n", fmt::join(candidates, ", "));
   text += "fit:\n  parameters:\n";
   for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);
   const std::filesystem::path file = parent / (name + ".yaml");

@@ -59,7 +59,7 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
 
     const std::string effect = diagnosis.effects.front();
     const std::filesystem::path file =
-        WriteExtendedExperiment(fitted, at, DiagnosedEffect(at, Named(diagnosis, at)));
+        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, Named(diagnosis, at)));
     const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
     const CalibrationRecord record = RunCalibration(study, progress);
     at = study.output;

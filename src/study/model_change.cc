@@ -83,7 +83,7 @@ PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffec
 
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored) {
   CandidateEffect own = scored.candidate;
-  own.effect = FindEntry(own.type)->make(StartOf(scored));
+  own.effect = WithParameters(*own.effect, StartOf(scored));
   PredictionStudy with = WithCandidate(study, own);
   if (own.replaces_material) return with;
   for (ModelParameter& parameter : ModelParameters(with.effects)) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "core/expression.h"
 #include "effects/catalogue.h"
 
 namespace lacuna {
@@ -32,6 +33,25 @@ std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config) {
       item.Fail("type", fmt::format("{} is listed twice", card.type));
   }
   return effects;
+}
+
+std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material) {
+  std::vector<OwnLaw> laws;
+  for (const Config& item : config.Items("candidates")) {
+    const std::string type = item.Text("type");
+    if (FindEntry(type) != nullptr && FindEntry(type)->make != nullptr)
+      item.Fail("type", fmt::format("a diagnosis tries {} anyway; candidates are laws of your own, "
+                                    "of type expression",
+                                    type));
+    const OwnLaw law{item.Text("name", ""), MakeEffect(item, material)};
+    if (!Expression::IsName(law.name))
+      item.Fail("name", "a candidate's is of letters, digits and underscores");
+    if (FindEntry(law.name) != nullptr) item.Fail("name", "is that of an effect of the catalogue");
+    for (const OwnLaw& other : laws)
+      if (other.name == law.name) item.Fail("name", "is that of another candidate");
+    laws.push_back(law);
+  }
+  return laws;
 }
 
 std::vector<std::string> ImplausibleParameters(

@@ -33,6 +33,11 @@ Hold ReadHold(const Config& config, const Recording& recording) {
     config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
                                        recording.times.back()));
   }
+  if (hold.release < recording.times.front()) {
+    config.Fail("release", fmt::format("lies before the recording's first frame, at {:g} s: no "
+                                       "frame shows the object held",
+                                       recording.times.front()));
+  }
   return hold;
 }
 
@@ -127,8 +132,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
   item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
   item.fitted = config.Flag("fitted", true);
-  item.fit_until =
-      config.Has("fit_until") ? config.Quantity("fit_until", kTime, kAnyValue) : kForever;
+  item.fit_until = config.Quantity("fit_until", kTime, kAnyValue, kForever);
   item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
   if (const auto registration = config.OptionalChild("registration")) {
     if (item.scans != nullptr)
@@ -357,6 +361,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.mesh = ReadMeshSettings(mesh);
   study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
   study.effects = ReadEffects(config);
+  study.candidates = ReadCandidates(config, study.effects.front().get());
   const std::optional<Config> motion = config.OptionalChild("motion");
   if (motion) study.scheme = ReadTimeScheme(*motion, "two_step");
   study.chooses_time_step = !motion || !motion->Has("time_step");

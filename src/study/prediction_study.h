@@ -81,6 +81,7 @@ struct PredictionStudy {
   // different meshes are compared.
   SurfacePatches patches;
   std::vector<ModelParameter> fitted;
+  std::vector<OwnLaw> candidates;  // that a diagnosis tries besides the catalogue
   std::vector<PredictedRecording> recordings;
   nlohmann::json configuration;  // resolved, SI
 };

@@ -95,12 +95,40 @@ TEST(EffectText, LeavesOutADirectionThatIsNone) {
   ExpectRoundTrip(*FindEntry("pressure"), everywhere->Parameters());
 }
 
-TEST(EffectText, IsNothingWhereYamlCannotSayIt) {
+TEST(EffectText, ReadsALawOfTheUsersOwnBack) {
   const Config law = Config::Parse(
-      "{type: expression, name: push, per: mass, force: [\"k\", \"0\", \"0\"],"
-      " parameters: {k: {value: 1 N/kg, plausible: [0 N/kg, 2 N/kg]}}}\n",
+      "{type: expression, name: \"a \\\"pull\\\": #1\", per: area,\n"
+      " force: [\"k * max(x - x0, 0)\", \"0\", \"-k * exp(-abs(z)/d)\"], amplitude: k,\n"
+      " parameters: {d: {value: 5 mm, plausible: [1 mm, 50 mm], log_scale: true},\n"
+      "              x0: {value: 3 cm, setting: true},\n"
+      "              k: {value: 0.1 kPa, plausible: [-1 kPa, 2 kPa], min: -3 kPa,\n"
+      "                  meaning: \"pull, in all\"}}}\n",
       "a.yaml");
-  EXPECT_EQ(FormatEffect(*MakeEffect(law)), std::nullopt);
+  const auto made = MakeEffect(law);
+  const auto moved = WithParameters(*made, Eigen::Vector3d(1.0 / 3, 0.007, 0.03));
+  EXPECT_EQ(made->Parameters(), Eigen::Vector3d(100, 0.005, 0.03));
+  const std::optional<std::string> text = FormatEffect(*moved);
+  ASSERT_TRUE(text.has_value());
+  SCOPED_TRACE(*text);
+  const auto read = ReadBack(*text, CatalogueEntry::Kind::kEffect);
+  EXPECT_EQ(read->Parameters(), moved->Parameters());
+  EXPECT_EQ(FormatEffect(*read), text);
+  EXPECT_EQ(read->Card().title, made->Card().title);
+  EXPECT_EQ(read->Card().equation, made->Card().equation);
+  for (size_t k = 0; k < 3; ++k) {
+    const ParameterCard &got = read->Card().parameters[k], &expected = made->Card().parameters[k];
+    EXPECT_EQ(got.name, expected.name);
+    EXPECT_EQ(got.meaning, expected.meaning);
+    EXPECT_EQ(got.setting, expected.setting);
+    EXPECT_EQ(got.log_scale, expected.log_scale);
+    EXPECT_EQ(got.bounds.min, expected.bounds.min);
+    EXPECT_EQ(got.bounds.open_min, expected.bounds.open_min);
+    EXPECT_EQ(got.plausible_min, expected.plausible_min);
+    EXPECT_EQ(got.plausible_max, expected.plausible_max);
+  }
+}
+
+TEST(EffectText, IsNothingWhereYamlCannotSayIt) {
   EXPECT_EQ(FormatEffect(PrescribedForce(Eigen::VectorXd::Ones(1),
                                          [](double) { return Eigen::Vector3d(0, 0, 1); })),
             std::nullopt);

@@ -270,16 +270,17 @@ TEST(ExpressionForce, IsDocumentedWithLawsThatWork) {
     } else if (line == "```" && inside) {
       inside = false;
       const Config config = Config::Parse(yaml, "expression.md");
-      for (const Config& item : config.Items("effects")) {
-        EXPECT_EQ(MakeEffect(item)->Card().type, "expression");
-        ++laws;
-      }
+      for (const char* list : {"effects", "candidates"})
+        for (const Config& item : config.Items(list)) {
+          EXPECT_EQ(MakeEffect(item)->Card().type, "expression");
+          ++laws;
+        }
       config.RefuseUnknownKeys();
     } else if (inside) {
       yaml += line + "\n";
     }
   }
-  EXPECT_EQ(laws, 4);
+  EXPECT_EQ(laws, 5);
   const std::string piece = std::string(LACUNA_SOURCE_DIR) + "/configs/effects/magnet.yaml";
   EXPECT_THAT(MakeEffect(Config::Load(piece))->Card().title, HasSubstr("magnet"));
 }

@@ -1,8 +1,10 @@
 #include "study/extended_experiment.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -16,11 +18,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A run of the bar's study without its damping.
-std::filesystem::path FitBar(const std::filesystem::path& folder) {
+// A run of the bar's study without its damping; `more`: keys of its experiment.
+std::filesystem::path FitBar(const std::filesystem::path& folder, const std::string& more = "") {
   WriteBarRecording(folder, FilmHeldBar({}));
   std::ofstream(folder / "bar.yaml") << BarExperiment(
-      folder, {{"name: bar", "name: bar\noutput: runs/bar"},
+      folder, {{"name: bar", "name: bar\noutput: runs/bar" + more},
                {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
                {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
                {", {name: mass_damping.alpha}", ""}});
@@ -69,6 +71,49 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(alpha.prior_deviation, expected.prior_deviation);
   EXPECT_EQ(alpha.max, expected.max);
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
+}
+
+// Mass damping, written as a law of the user's own beside another one: it is scored as the
+// catalogue's, and the experiment that adds it has the rest of the candidates.
+TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
+  const TemporaryFolder folder;
+  const ParameterCard& alpha = FindEntry("mass_damping")->card->parameters[0];
+  const std::string damping = fmt::format(
+      "{{type: expression, name: my_damping, per: mass, force: [-k*vx, -k*vy, -k*vz], parameters: "
+      "{{k: {{value: 1 1/s, plausible: [{} 1/s, {} 1/s], min: {} 1/s}}}}}}",
+      alpha.plausible_min, alpha.plausible_max, alpha.bounds.min);
+  const std::string push =
+      "{type: expression, name: push, per: mass, force: [a, 0, 0], parameters: "
+      "{a: {value: 1 m/s^2, plausible: [-9 m/s^2, 9 m/s^2]}}}";
+  const std::filesystem::path run =
+      FitBar(folder.Path(), "\ncandidates:\n  - " + damping + "\n  - " + push);
+  const FittedRun fitted = OpenRun(run);
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRanking ranking =
+      RankEffects(CalibrationProblem(fitted.study, fitted.mesh), fitted.values, &progress);
+  const auto scored = [&](const std::string& type) {
+    const auto found =
+        std::find_if(ranking.effects.begin(), ranking.effects.end(),
+                     [&](const ScoredEffect& effect) { return effect.candidate.type == type; });
+    EXPECT_NE(found, ranking.effects.end()) << type;
+    return *found;
+  };
+  const ScoredEffect own = scored("my_damping"), built_in = scored("mass_damping");
+  EXPECT_GT(own.score.evidence, 5);
+  EXPECT_NEAR(own.score.evidence, built_in.score.evidence, 1e-3 * built_in.score.evidence);
+  EXPECT_NEAR(own.score.size[0], built_in.score.size[0], 1e-3 * built_in.score.size[0]);
+  EXPECT_LT(scored("push").score.evidence, own.score.evidence);
+
+  const std::filesystem::path file = WriteExtendedExperiment(fitted, run, own);
+  EXPECT_EQ(file.filename(), "bar+my_damping.yaml");
+  const PredictionStudy extended = ReadPredictionStudy(Config::Load(file));
+  EXPECT_EQ(extended.effects.back()->Card().title, "my_damping, a force law of the user's own");
+  EXPECT_EQ(extended.effects.back()->Parameters()[0], own.score.size[0]);
+  EXPECT_EQ(extended.fitted.back().prior.name, "expression.k");
+  ASSERT_EQ(extended.candidates.size(), 1u);
+  EXPECT_EQ(extended.candidates[0].name, "push");
 }
 
 TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {

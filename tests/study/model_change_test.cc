@@ -66,8 +66,9 @@ TEST(WithEffect, LetsAnAngleTurnPastTheEndOfItsRange) {
       EXPECT_NEAR(prior.max, 0.9 * end + range, 1e-12);
       ++angles;
     }
-    if (prior.name.ends_with("modulus"))
+    if (prior.name.ends_with("modulus")) {
       EXPECT_LT(prior.max, 2 * card.parameters[parameter.places.front().second].plausible_max);
+    }
   }
   EXPECT_EQ(angles, 1);
 }

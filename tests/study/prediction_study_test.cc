@@ -209,6 +209,29 @@ TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
               HasSubstr("starts at 150000 Pa, outside 200000 to"));
 }
 
+TEST_F(ReadingAPredictionStudy, RefusesCandidatesThatCouldNotBeAddedByName) {
+  const auto message = [&](const std::string& name, const std::string& more = "") {
+    return MessageAfter(
+        {{"name: bar\n",
+          "name: bar\ncandidates:\n  - {type: expression, name: " + name +
+              ", per: mass, force: [a, 0, 0], parameters: {a: {value: 1 m/s^2, plausible: "
+              "[-9 m/s^2, 9 m/s^2]}}}\n" +
+              more}});
+  };
+  EXPECT_EQ(message("push"), "nothing was refused");
+  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: a candidate's is of letters"));
+  EXPECT_THAT(message("drag"), HasSubstr("candidates[0].name: is that of an effect of the cat"));
+  EXPECT_THAT(message("push", "  - {type: drag, coefficient: 1}\n"),
+              HasSubstr("candidates[1].type: a diagnosis tries drag anyway"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAReleaseThatNoFrameComesBefore) {
+  EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: -1 s"}}),
+              HasSubstr("hold.release: lies before the recording's first frame, at 0 s"));
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    fit_untl"}}),
+              HasSubstr("did you mean \"fit_until\""));
+}
+
 TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
   WriteBarRecording(folder_.Path(), Moving(0.001));
   const std::vector<ModelParameter> fitted =
