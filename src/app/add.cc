@@ -12,7 +12,6 @@
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "effects/catalogue.h"
-#include "study/candidates.h"
 #include "study/diagnosis_run.h"
 #include "study/extended_experiment.h"
 
