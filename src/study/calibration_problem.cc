@@ -242,7 +242,10 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   Prediction all;
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) {
-    if (!part.usable) return part;
+    if (!part.usable) {
+      if (seek) correspondences->clear();  // to be found by a prediction that gets to the end
+      return part;
+    }
     rows += part.residual.size();
   }
   all.usable = true;

@@ -85,7 +85,8 @@ class CalibrationProblem {
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
                      double horizon = std::numeric_limits<double>::infinity()) const;
 
-  // Of each fitted recording, what its frames are compared with; empty: found while predicting.
+  // Of each fitted recording, what its frames are compared with; empty: found while predicting, and
+  // left empty by a prediction that is not usable.
   using Correspondences = std::vector<std::vector<Observed>>;
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
                      Correspondences* correspondences) const;

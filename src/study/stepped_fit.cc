@@ -43,7 +43,7 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   constexpr double kWhole = std::numeric_limits<double>::infinity();
   CalibrationProblem::Correspondences same;
   const Prediction now = problem.Predict(values, false, kWhole, &same);
-  const Prediction then = refined.Predict(values, false, kWhole, &same);
+  const Prediction then = now.usable ? refined.Predict(values, false, kWhole, &same) : now;
   StepCheck check;
   check.order = OrderOf(half.scheme);
   if (now.usable && then.usable && now.residual.size() == then.residual.size()) {

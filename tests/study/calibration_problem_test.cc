@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <random>
 
 #include "core/parallel.h"
@@ -78,6 +79,23 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
 }
 
 // Softer across is, to first order, much like stiffer along; a refit tries both.
+// What a prediction that breaks off would have been compared with binds no later one.
+TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, StudyMesh());
+  constexpr double kWhole = std::numeric_limits<double>::infinity();
+  CalibrationProblem::Correspondences compared;
+  Eigen::VectorXd liquid = problem.Start();
+  liquid[0] = 1;  // Pa
+  EXPECT_FALSE(problem.Predict(liquid, false, kWhole, &compared).usable);
+  EXPECT_TRUE(compared.empty());
+  const Prediction after = problem.Predict(problem.Start(), false, kWhole, &compared);
+  ASSERT_TRUE(after.usable) << after.message;
+  EXPECT_EQ(after.residual, problem.Predict(problem.Start(), false).residual);
+}
+
 TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   const TemporaryFolder folder;
   HeldBarTruth truth;
