@@ -57,7 +57,8 @@ const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& 
 int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const FittedRun fitted = OpenRun(run);
   RequireAddable(type, fitted.study);
-  MakeFolder(run / "..");  // one that cannot be written into is told before the computation, too
+  // One that cannot be written into is told before the computation, too.
+  MakeFolder(std::filesystem::absolute(run / "..").lexically_normal());
   Progress progress;
   std::optional<ScoredEffect> diagnosed = FindDiagnosed(fitted, run, type);
   if (!diagnosed) {
@@ -87,16 +88,16 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
 void AddAdd(CLI::App* app, std::function<int()>* command) {
   CLI::App* add = app->add_subcommand("add", "A fitted model with one more effect, fitted again");
   add->footer(
-      "Writes an experiment, NAME+EFFECT.yaml for one called NAME, beside RUN. It starts from "
-      "RUN's\n"
-      "fitted values. Runs it: errors before and after, on fitted and on held-out frames. An "
-      "elasticity law takes "
-      "the\n"
+      "Writes an experiment, NAME+EFFECT.yaml for one called NAME, beside RUN, which starts from\n"
+      "RUN's fitted values, and runs it: errors before and after, on fitted and on held-out\n"
+      "frames. EFFECT is of the catalogue or a law of your own among the experiment's\n"
+      "`candidates`. An elasticity law takes the\n"
       "place of the model's.");
   auto run = std::make_shared<std::string>();
   auto effect = std::make_shared<std::string>();
   add->add_option("run", *run, "The folder of a finished `lacuna fit`")->required();
-  add->add_option("effect", *effect, "Its name; `lacuna effects` lists them")->required();
+  add->add_option("effect", *effect, "Its name; `lacuna effects` lists the catalogue's")
+      ->required();
   add->callback(
       [command, run, effect] { *command = [run, effect] { return RunAdd(*run, *effect); }; });
 }
