@@ -349,10 +349,11 @@ std::vector<std::string> ComparisonInWords(const Comparison& comparison) {
   }
   for (const ComparedPair& pair : comparison.pairs) {
     sentences.push_back(fmt::format(
-        "{} and {} differ by {} rms as measured, over {} frames and with {} {:.4f} s later: if "
+        "{} and {} differ by {} rms as measured, over {} frames and with {} {:.4f} s {}: if "
         "they are repeats, no model can come nearer to either than {}.",
         pair.first, pair.second, Millimetres(pair.repeatability.distance),
-        pair.repeatability.frames, pair.second, pair.repeatability.delay,
+        pair.repeatability.frames, pair.second, std::abs(pair.repeatability.delay),
+        pair.repeatability.delay < 0 ? "earlier" : "later",
         Millimetres(pair.repeatability.distance / std::sqrt(2.0))));
   }
   return sentences;
