@@ -10,9 +10,10 @@
 
 namespace lacuna {
 
-// Writes <run>+<effect>.yaml beside the run's folder: it uses the run's experiment, starts from the
-// fitted values, has the effect at its expected size and all of its parameters fitted (an
-// elasticity law: the moduli that were fitted before), and puts its results into <run>+<effect>.
+// Writes <name>+<effect>.yaml, of an experiment called so, beside the run's folder: it uses the
+// run's experiment, starts from the fitted values, has the effect at its expected size and all of
+// its parameters fitted (an elasticity law: the moduli that were fitted before), and puts its
+// results into <name>+<effect>.
 // Returns the file. Throws InputError when an effect of the model has a value that YAML cannot say.
 std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
                                               const std::filesystem::path& run,

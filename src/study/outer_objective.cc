@@ -29,14 +29,11 @@ std::vector<int> ModuliOf(const EffectCard& card) {
 // The study's elasticity law with other moduli.
 std::shared_ptr<Effect> WithModuli(const Effect& material, double young_modulus,
                                    double poisson_ratio) {
-  const EffectCard& card = material.Card();
   Eigen::VectorXd values = material.Parameters();
-  const std::vector<int> moduli = ModuliOf(card);
+  const std::vector<int> moduli = ModuliOf(material.Card());
   values[moduli[0]] = young_modulus;
   values[moduli[1]] = poisson_ratio;
-  const CatalogueEntry* entry = FindEntry(card.type);
-  CHECK(entry != nullptr && entry->make != nullptr) << card.type;
-  return entry->make(values);
+  return WithParameters(material, values);
 }
 
 ReferenceBody MakeTurnedBody(const OuterProblem& problem, const ReconstructionStudy& study) {

@@ -78,7 +78,6 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
             1e-6 * fitted.jacobian.norm());
 }
 
-// Softer across is, to first order, much like stiffer along; a refit tries both.
 // What a prediction that breaks off would have been compared with binds no later one.
 TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   const TemporaryFolder folder;
@@ -96,6 +95,7 @@ TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   EXPECT_EQ(after.residual, problem.Predict(problem.Start(), false).residual);
 }
 
+// Softer across is, to first order, much like stiffer along; a refit tries both.
 TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   const TemporaryFolder folder;
   HeldBarTruth truth;

@@ -10,13 +10,25 @@
 namespace lacuna {
 namespace {
 
-TEST(WithEffect, LooksForAPlaceOnTheBody) {
+PredictionStudy ElasticBar() {
   PredictionStudy study;
   study.effects = {MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
+  return study;
+}
+
+// The last of its variants.
+CandidateEffect CandidateFor(const PredictionStudy& study, const std::string& type) {
   const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
-  ScoredEffect scored;
+  CandidateEffect found;
   for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
-    if (candidate.type == "attached_mass") scored.candidate = candidate;
+    if (candidate.type == type) found = candidate;
+  return found;
+}
+
+TEST(WithEffect, LooksForAPlaceOnTheBody) {
+  const PredictionStudy study = ElasticBar();
+  ScoredEffect scored;
+  scored.candidate = CandidateFor(study, "attached_mass");
   ASSERT_NE(scored.candidate.effect, nullptr);
   scored.score.size = Eigen::VectorXd::Constant(1, 0.001);
 
@@ -42,12 +54,9 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
 // An angle may turn past the end of its range, as the directions there are each other's neighbours;
 // a size may not leave what is plausible.
 TEST(WithEffect, LetsAnAngleTurnPastTheEndOfItsRange) {
-  PredictionStudy study;
-  study.effects = {MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
-  const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
+  const PredictionStudy study = ElasticBar();
   ScoredEffect scored;
-  for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
-    if (candidate.type == "fibre_stiffness") scored.candidate = candidate;
+  scored.candidate = CandidateFor(study, "fibre_stiffness");
   ASSERT_NE(scored.candidate.effect, nullptr);
   const EffectCard& card = scored.candidate.effect->Card();
   const int azimuth = ParameterIndex(card, "azimuth");
