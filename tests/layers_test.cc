@@ -21,10 +21,11 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::map<std::string, int> kLayers = {
-    {"core", 1},    {"geometry", 2},     {"search", 2}, {"scan", 3},  {"surface", 3},
-    {"meshing", 3}, {"registration", 3}, {"record", 3}, {"fem", 4},   {"analysis", 4},
-    {"effects", 5}, {"fit", 5},          {"report", 5}, {"study", 6}, {"sweep", 7},
-    {"trials", 7},  {"app", 8},
+    {"core", 1},       {"geometry", 2},     {"search", 2}, {"scan", 3},       {"surface", 3},
+    {"meshing", 3},    {"registration", 3}, {"record", 3}, {"fem", 4},        {"analysis", 4},
+    {"effects", 5},    {"fit", 5},          {"report", 5}, {"experiment", 6}, {"reconstruction", 7},
+    {"prediction", 7}, {"calibration", 8},  {"paper", 8},  {"diagnosis", 9},  {"comparison", 9},
+    {"sweep", 10},     {"trials", 10},      {"app", 11},
 };
 
 // Yesterday's run can be explained without running it again.

@@ -1,5 +1,5 @@
 // lacuna ablation [FOLDER]
-#include "study/ablation.h"
+#include "paper/ablation.h"
 
 #include <fmt/format.h>
 

@@ -11,9 +11,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/suggestion.h"
+#include "diagnosis/diagnosis_run.h"
+#include "diagnosis/extended_experiment.h"
 #include "effects/catalogue.h"
-#include "study/diagnosis_run.h"
-#include "study/extended_experiment.h"
+#include "prediction/prediction_study_reader.h"
 
 namespace lacuna {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "app/commands.h"
+#include "comparison/comparison.h"
 #include "core/progress.h"
-#include "study/comparison.h"
 
 namespace lacuna {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "app/commands.h"
 #include "app/diagnosis_report.h"
-#include "study/diagnosis_run.h"
-#include "study/extension_rounds.h"
-#include "study/recorded_motion.h"
+#include "diagnosis/diagnosis_run.h"
+#include "diagnosis/extension_rounds.h"
+#include "prediction/recorded_motion.h"
 
 namespace lacuna {
 namespace {

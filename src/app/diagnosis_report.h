@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "study/diagnosis_record.h"
+#include "diagnosis/diagnosis_record.h"
 
 namespace lacuna {
 

@@ -11,8 +11,8 @@
 #include "app/commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "study/drop_figure.h"
-#include "study/table1_figures.h"
+#include "paper/drop_figure.h"
+#include "paper/table1_figures.h"
 
 namespace lacuna {
 namespace {

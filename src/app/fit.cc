@@ -7,8 +7,9 @@
 
 #include "app/commands.h"
 #include "app/fit_report.h"
-#include "study/calibration_run.h"
-#include "study/recorded_motion.h"
+#include "calibration/calibration_run.h"
+#include "prediction/prediction_study_reader.h"
+#include "prediction/recorded_motion.h"
 
 namespace lacuna {
 namespace {

@@ -2,7 +2,7 @@
 #ifndef LACUNA_APP_FIT_REPORT_H_
 #define LACUNA_APP_FIT_REPORT_H_
 
-#include "study/calibration_run.h"
+#include "calibration/calibration_run.h"
 
 namespace lacuna {
 

@@ -8,6 +8,7 @@
 
 #include "app/commands.h"
 #include "app/fit_report.h"
+#include "calibration/calibration_run.h"
 #include "core/error.h"
 #include "geometry/mesh_io.h"
 #include "geometry/surface_check.h"
@@ -16,7 +17,6 @@
 #include "record/run_directory.h"
 #include "record/run_record.h"
 #include "scan/recording.h"
-#include "study/calibration_run.h"
 
 namespace lacuna {
 namespace {

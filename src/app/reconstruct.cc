@@ -6,7 +6,8 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "study/reconstruction.h"
+#include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_study.h"
 
 namespace lacuna {
 namespace {

@@ -7,9 +7,9 @@
 #include "app/commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "experiment/scene.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
-#include "study/scene.h"
 
 namespace lacuna {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/commands.h"
 #include "app/table1_arguments.h"
-#include "study/table1_report.h"
+#include "paper/table1_report.h"
 
 namespace lacuna {
 namespace {

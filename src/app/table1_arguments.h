@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "study/table1.h"
+#include "paper/table1.h"
 
 namespace CLI {
 class App;

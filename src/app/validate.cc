@@ -6,13 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "calibration/calibration_problem.h"
+#include "experiment/reference_body.h"
+#include "experiment/scene.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study.h"
+#include "prediction/prediction_study_reader.h"
+#include "prediction/recorded_motion.h"
+#include "reconstruction/reconstruction_study.h"
 #include "scan/recording.h"
-#include "study/calibration_problem.h"
-#include "study/prediction_study.h"
-#include "study/reconstruction.h"
-#include "study/recorded_motion.h"
-#include "study/reference.h"
-#include "study/scene.h"
 
 namespace lacuna {
 namespace {

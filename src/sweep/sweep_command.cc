@@ -5,10 +5,12 @@
 
 #include <algorithm>
 
+#include "calibration/calibration_run.h"
 #include "core/error.h"
-#include "study/calibration_run.h"
-#include "study/reconstruction.h"
-#include "study/table1_report.h"
+#include "paper/table1_report.h"
+#include "prediction/prediction_study_reader.h"
+#include "reconstruction/reconstruction.h"
+#include "reconstruction/reconstruction_study.h"
 
 namespace lacuna {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "diagnosis/candidates.h"
 #include "effects/catalogue.h"
 #include "scan/random_bits.h"
-#include "study/candidates.h"
 
 namespace lacuna {
 namespace {

@@ -9,13 +9,15 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "calibration/stepped_fit.h"
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
-#include "study/diagnosis_record.h"
-#include "study/reference.h"
-#include "study/stepped_fit.h"
+#include "diagnosis/diagnosis_record.h"
+#include "experiment/reference_body.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
 
 namespace lacuna {
 namespace {

@@ -8,15 +8,17 @@
 #include <functional>
 #include <vector>
 
+#include "calibration/calibration_fits.h"
 #include "core/blas_kernels.h"
 #include "core/error.h"
 #include "core/logging.h"
-#include "study/calibration_fits.h"
-#include "study/candidates.h"
-#include "study/effect_ranking.h"
-#include "study/nuisance_candidates.h"
-#include "study/pilot_hypotheses.h"
-#include "study/reference.h"
+#include "diagnosis/candidates.h"
+#include "diagnosis/effect_ranking.h"
+#include "diagnosis/nuisance_candidates.h"
+#include "diagnosis/pilot_hypotheses.h"
+#include "experiment/reference_body.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
 
 namespace lacuna {
 namespace {

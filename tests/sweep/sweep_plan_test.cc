@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "reconstruction/reconstruction_study.h"
 #include "small_sweep.h"
-#include "study/reconstruction.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {

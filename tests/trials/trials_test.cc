@@ -4,11 +4,13 @@
 #include <cmath>
 #include <fstream>
 
+#include "calibration/calibration_problem.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "experiment/reference_body.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
 #include "scan/recording.h"
-#include "study/calibration_problem.h"
-#include "study/reference.h"
 #include "support/temporary_folder.h"
 #include "trials/trial_film.h"
 #include "trials/trial_report.h"

@@ -1,0 +1,218 @@
+#include "calibration/calibration_fits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lacuna {
+namespace {
+
+// Share of the fitted time in which the object moves that is fitted first.
+constexpr double kShortHorizon = 0.25;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+// A fit that may be astray is tried from these parts of the moduli's start values.
+constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
+// Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
+// wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
+// its posterior deviation.
+constexpr int kIterationsOfRound = 12;
+constexpr double kSettled = 0.1;
+
+// Of any parameter, in parts of its posterior deviation.
+double LargestChange(const std::vector<CalibratedParameter>& parameters,
+                     const Calibration& calibration, const Eigen::VectorXd& from) {
+  double largest = 0;
+  for (size_t k = 0; k < parameters.size(); ++k)
+    largest = std::max(
+        largest, std::abs(DeviationsTo(from[static_cast<Eigen::Index>(k)], calibration.estimates[k],
+                                       parameters[k].log_scale)));
+  return largest;
+}
+
+// s after its start: when the last fitted frame is that hardly differs from the first. Rest tells
+// nothing of what moves. Of scans, whose points are others in every frame, the start.
+double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& frames) {
+  constexpr double kHardly = 0.03;  // of the largest difference
+  if (model.Markers() == nullptr) return 0;
+  const Recording& recording = model.item().recording;
+  const Eigen::Matrix3Xd& first = recording.markers.positions[frames.front()];
+  std::vector<double> moved;  // of the marker that moved farthest, m
+  for (const int frame : frames) {
+    double most = 0;
+    for (const double distance : (recording.markers.positions[frame] - first).colwise().norm())
+      if (distance > most) most = distance;  // not one that was not seen
+    moved.push_back(most);
+  }
+  const double least = kHardly * *std::max_element(moved.begin(), moved.end());
+  const auto moving =
+      std::find_if(moved.begin(), moved.end(), [&](double distance) { return distance > least; });
+  if (moving == moved.begin() || moving == moved.end()) return 0;
+  const int last = frames[static_cast<size_t>(moving - moved.begin()) - 1];
+  return std::max(0.0, recording.times[last] - model.item().StartTime());
+}
+
+double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  const Prediction prediction = problem.Predict(values, /*with_jacobian=*/false);
+  return prediction.usable ? RootMeanSquare(prediction.residual) : kUnlimited;
+}
+
+// Stages of one fit, whose predictions are counted together.
+class Fitter {
+ public:
+  Fitter(const CalibrationProblem& problem, Progress* progress)
+      : problem_(problem), progress_(*progress) {}
+
+  Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start,
+                    const CalibrationOptions& options) {
+    progress_.Begin(name, 0);
+    Calibration calibration =
+        problem_.HasScans() ? FitScans(horizon, start, options) : FitOnce(horizon, start, options);
+    progress_.Report(evaluations_, calibration.rms);  // not of the last values tried
+    progress_.End(calibration.message);
+    calibration.predictions = evaluations_;
+    return calibration;
+  }
+
+  Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
+    return Stage(name, ShortHorizon(problem_), start, {});
+  }
+
+  Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
+    const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
+    Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kMayBeAstray});
+    // "Before" is where the caller started, not where the first part ended.
+    calibration.start_rms = Left(problem_, start);
+    problem_.SetModel(calibration.parameters.size() > 0 ? calibration.parameters : near);
+    return calibration;
+  }
+
+  void CountAlso(int evaluations) { evaluations_ += evaluations; }
+  int evaluations() const { return evaluations_; }
+
+ private:
+  Calibration FitOnce(double horizon, const Eigen::VectorXd& start,
+                      const CalibrationOptions& options) {
+    std::vector<CalibratedParameter> parameters = problem_.parameters();
+    for (size_t k = 0; k < parameters.size(); ++k)
+      parameters[k].start =
+          std::clamp(start[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
+    CalibrationProblem::Correspondences correspondences;
+    return Calibrate(
+        parameters,
+        [&](const Eigen::VectorXd& at, bool with_jacobian) {
+          const Prediction prediction =
+              problem_.Predict(at, with_jacobian, horizon, &correspondences);
+          progress_.Report(++evaluations_,
+                           prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+          return prediction;
+        },
+        options);
+  }
+
+  Calibration FitScans(double horizon, const Eigen::VectorXd& start,
+                       const CalibrationOptions& options) {
+    Calibration calibration;
+    Eigen::VectorXd values = start;
+    CalibrationOptions of_round = options;
+    for (int iterations = 0; iterations < options.max_iterations;) {
+      of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
+      calibration = FitOnce(horizon, values, of_round);
+      if (calibration.estimates.empty()) return calibration;
+      const double moved = LargestChange(problem_.parameters(), calibration, values);
+      values = calibration.parameters;
+      if (moved < kSettled) {
+        // A round need not have converged to the last digit when all of it changed so little.
+        calibration.usable = true;
+        calibration.message.clear();
+        return calibration;
+      }
+      iterations += std::max(calibration.iterations, 1);
+    }
+    calibration.usable = false;
+    calibration.message =
+        "scanned points and places of the surface did not settle: start nearer to the solution, "
+        "fit "
+        "less at once, or give scan.reach a smaller value";
+    return calibration;
+  }
+
+  const CalibrationProblem& problem_;
+  Progress& progress_;
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+double ShortHorizon(const CalibrationProblem& problem) {
+  double longest = 0;
+  for (const RecordingModel& model : problem.models()) {
+    const std::vector<int> frames = model.FittedFrames();
+    if (frames.empty()) continue;
+    const double rest = BeginningOfMotion(model, frames);
+    const double whole = model.item().recording.times[frames.back()] - model.item().StartTime();
+    longest = std::max(longest, rest + kShortHorizon * (whole - rest));
+  }
+  return longest;
+}
+
+Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                         Progress* progress) {
+  const Calibration calibration = Fitter(problem, progress).Beginning("fit, first part", start);
+  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
+  return calibration;
+}
+
+Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                    Progress* progress) {
+  Fitter fitter(problem, progress);
+  return fitter.Whole(start, fitter.Beginning("fit, first part", start));
+}
+
+Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
+                  Progress* progress) {
+  const Calibration calibration =
+      Fitter(problem, progress).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
+  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
+  return calibration;
+}
+
+Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
+                         const Calibration* beginning) {
+  Fitter fitter(problem, progress);
+  if (beginning != nullptr) fitter.CountAlso(beginning->predictions);
+  const Eigen::VectorXd start = problem.Start();
+  Calibration calibration = fitter.Whole(
+      start, beginning != nullptr ? *beginning : fitter.Beginning("fit, first part", start));
+  if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;
+
+  const std::vector<ModelParameter>& fitted = problem.study().fitted;
+  double least = calibration.usable ? calibration.rms : kUnlimited;
+  Calibration nearest;
+  for (const double factor : kOtherStarts) {
+    Eigen::VectorXd other = start;
+    for (size_t k = 0; k < fitted.size(); ++k)
+      if (problem.parameters()[k].log_scale && fitted[k].unit == "Pa")
+        other[static_cast<Eigen::Index>(k)] *= factor;
+    if (other == start) return calibration;
+    Calibration first =
+        fitter.Beginning(fmt::format("fit, moduli from {:g} of their start", factor), other);
+    const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
+    if (left >= least) continue;
+    least = left;
+    nearest = std::move(first);
+  }
+  if (nearest.parameters.size() > 0) {
+    Calibration other = fitter.Whole(nearest.parameters, nearest);
+    if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
+      other.start_rms = calibration.start_rms;
+      calibration = std::move(other);
+    }
+  }
+  calibration.predictions = fitter.evaluations();
+  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
+  return calibration;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,336 @@
+#include "calibration/calibration_problem.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/parallel.h"
+#include "prediction/own_nuisance.h"
+#include "prediction/recorded_motion.h"
+
+namespace lacuna {
+namespace {
+
+// Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
+constexpr double kFewestMatched = 0.5;
+
+std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters) {
+  std::vector<MisfitDirection> directions;
+  for (const ModelParameter& parameter : parameters)
+    for (const auto& [effect, index] : parameter.places)
+      directions.push_back({.perturbation = {.effect = effect, .parameter = index}});
+  return directions;
+}
+
+// Columns of one parameter's places added up.
+Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
+                              const Eigen::MatrixXd& by) {
+  Eigen::MatrixXd sum =
+      Eigen::MatrixXd::Zero(by.rows(), static_cast<Eigen::Index>(parameters.size()));
+  Eigen::Index column = 0;
+  for (size_t k = 0; k < parameters.size(); ++k)
+    for (size_t place = 0; place < parameters[k].places.size(); ++place)
+      sum.col(static_cast<Eigen::Index>(k)) += by.col(column++);
+  return sum;
+}
+
+// Why the correspondences of a scan mean nothing; empty: they do.
+std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
+  const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
+  if (2 * lost <= misfit.frames.size()) return "";
+  return fmt::format(
+      "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
+      "surface: start nearer to the solution, or enlarge the reach",
+      lost, misfit.frames.size());
+}
+
+bool HasTheSameMarkers(const Recording& a, const Recording& b) {
+  return a.markers.names == b.markers.names && a.marker_places == b.marker_places;
+}
+
+}  // namespace
+
+CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
+    : study_(study),
+      body_(std::make_shared<const Body>(MakeBody(mesh, study.density))),
+      patches_(study.patches),
+      noise_(study.noise) {
+  for (const ModelParameter& parameter : study.fitted) {
+    parameters_.push_back(parameter.prior);
+    units_.push_back(parameter.unit);
+  }
+  const bool has_scans =
+      std::any_of(study.recordings.begin(), study.recordings.end(),
+                  [](const PredictedRecording& item) { return item.scans != nullptr; });
+  if (has_scans && patches_.Count() == 0)
+    patches_ = DivideSurface(body_->boundary.surface, study.scan.patches);
+  double of_markers = 0, of_scans = 0;
+  bool has_markers = false;
+  for (const PredictedRecording& item : study.recordings) {
+    models_.emplace_back(study, item, mesh, body_, patches_);
+    first_nuisance_.push_back(item.fitted ? static_cast<Eigen::Index>(parameters_.size()) : -1);
+    if (item.fitted)
+      for (const auto& nuisance : models_.back().nuisances()) {
+        parameters_.push_back(nuisance.prior);
+        units_.push_back(nuisance.unit);
+      }
+    has_markers = has_markers || item.scans == nullptr;
+    double& largest = item.scans != nullptr ? of_scans : of_markers;
+    largest = std::max(largest, EstimateRecordingNoise(item, models_.back().FittedFrames()));
+  }
+  for (CalibratedParameter& parameter : parameters_)
+    if (std::isnan(parameter.prior_mean)) parameter.prior_mean = parameter.start;
+  estimates_noise_ = !has_scans && (noise_ == 0 || study.noise_is_estimated);
+  if (noise_ == 0 || !has_markers) noise_ = of_markers;
+  if (has_markers && !(noise_ > 0)) {
+    throw InputError(
+        fmt::format("{}: noise: cannot be estimated (the markers do not move at all); give it",
+                    study.file.string()));
+  }
+  if (!has_scans) return;
+  scan_noise_ = study.scan.noise > 0 ? study.scan.noise : of_scans;
+  if (!(scan_noise_ > 0)) {
+    throw InputError(fmt::format(
+        "{}: scan.noise: cannot be estimated (no scan is fitted, or its points lie on planes); "
+        "give it",
+        study.file.string()));
+  }
+}
+
+MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) const {
+  return model.item().scans != nullptr ? MeasurementErrors{scan_noise_, study_.scan.shape_deviation}
+                                       : MeasurementErrors{noise_, study_.place_deviation};
+}
+
+PredictionStudy CalibrationProblem::AsChosen() const {
+  PredictionStudy given = study_;
+  given.noise = noise_;
+  given.noise_is_estimated = estimates_noise_;
+  given.scan.noise = scan_noise_;
+  given.patches = patches_;
+  return given;
+}
+
+Eigen::VectorXd CalibrationProblem::Start() const {
+  Eigen::VectorXd start(static_cast<Eigen::Index>(parameters_.size()));
+  for (size_t k = 0; k < parameters_.size(); ++k)
+    start[static_cast<Eigen::Index>(k)] = parameters_[k].start;
+  return start;
+}
+
+void CalibrationProblem::SetModel(const Eigen::VectorXd& values) const {
+  for (size_t k = 0; k < study_.fitted.size(); ++k)
+    SetParameter(study_.fitted[k], values[static_cast<Eigen::Index>(k)]);
+}
+
+Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
+                                               const Eigen::VectorXd& values) const {
+  const RecordingModel& model = models_[recording];
+  if (first_nuisance_[recording] >= 0)
+    return values.segment(first_nuisance_[recording],
+                          static_cast<Eigen::Index>(model.nuisances().size()));
+  return OwnNuisance(model, ErrorsOf(model), PlacesFromFitted(recording, values));
+}
+
+std::optional<size_t> CalibrationProblem::PlacesToldBy(size_t recording) const {
+  if (models_[recording].Markers() == nullptr || first_nuisance_[recording] >= 0)
+    return std::nullopt;
+  for (size_t r = 0; r < models_.size(); ++r)
+    if (first_nuisance_[r] >= 0 && models_[r].Markers() != nullptr &&
+        HasTheSameMarkers(models_[recording].item().recording, models_[r].item().recording))
+      return r;
+  return std::nullopt;
+}
+
+std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
+    size_t recording, const Eigen::VectorXd& values) const {
+  const std::optional<size_t> teller = PlacesToldBy(recording);
+  if (!teller) return std::nullopt;
+  const RecordingModel& fitted = models_[*teller];
+  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values), {});
+  if (!misfit.summary.IsUsable()) return std::nullopt;
+  return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
+                     std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
+}
+
+Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                                       double horizon) const {
+  Correspondences found;
+  return Predict(values, with_jacobian, horizon, &found);
+}
+
+std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
+    size_t recording, const std::vector<MisfitDirection>& further) const {
+  std::vector<MisfitDirection> directions = DirectionsOf(study_.fitted);
+  directions.insert(directions.end(), further.begin(), further.end());
+  for (const auto& nuisance : models_[recording].nuisances())
+    directions.push_back(nuisance.direction);
+  return directions;
+}
+
+Eigen::MatrixXd CalibrationProblem::ColumnsOf(size_t recording,
+                                              const Eigen::Ref<const Eigen::MatrixXd>& by,
+                                              Eigen::Index further) const {
+  const Eigen::Index own = static_cast<Eigen::Index>(models_[recording].nuisances().size());
+  const Eigen::Index places = by.cols() - further - own;
+  Eigen::MatrixXd columns =
+      Eigen::MatrixXd::Zero(by.rows(), static_cast<Eigen::Index>(parameters_.size()) + further);
+  columns.leftCols(static_cast<Eigen::Index>(study_.fitted.size())) =
+      SumOverPlaces(study_.fitted, by.leftCols(places));
+  columns.rightCols(further) = by.middleCols(places, further);
+  columns.middleCols(first_nuisance_[recording], own) = by.rightCols(own);
+  return columns;
+}
+
+std::vector<size_t> CalibrationProblem::FittedRecordings() const {
+  std::vector<size_t> fitted;
+  for (size_t r = 0; r < models_.size(); ++r)
+    if (first_nuisance_[r] >= 0) fitted.push_back(r);
+  return fitted;
+}
+
+Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd& values,
+                                                bool with_jacobian, double horizon,
+                                                const std::vector<Observed>* compared_with,
+                                                std::vector<Observed>* observed) const {
+  const RecordingModel& model = models_[r];
+  std::vector<int> frames = model.FittedFrames();
+  const std::vector<double>& times = model.item().recording.times;
+  const double start = model.item().StartTime();
+  std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
+  std::vector<MisfitDirection> directions;
+  if (with_jacobian) directions = DirectionsFor(r, {});
+  Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions, compared_with);
+  Prediction part;
+  part.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
+  part.usable = part.message.empty();
+  if (!part.usable) {
+    part.message = model.item().name + ": " + part.message;
+    return part;
+  }
+  const auto whitened = [&](const Eigen::MatrixXd& what) {
+    return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
+  };
+  part.residual = whitened(misfit.residual);
+  const Eigen::Index rows = part.residual.size();
+  const Eigen::Index series = rows / static_cast<Eigen::Index>(std::max<size_t>(1, frames.size()));
+  for (Eigen::Index row = 0; row < rows; ++row)
+    part.before.push_back(row < series ? -1 : row - series);
+  if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.by, 0));
+  *observed = std::move(misfit.observed);
+  return part;
+}
+
+Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
+                                       double horizon, Correspondences* correspondences) const {
+  ThrowIfInterrupted();
+  SetModel(values);
+  const bool seek = correspondences->empty();
+  if (seek) correspondences->resize(models_.size());
+  const std::vector<size_t> fitted = FittedRecordings();
+  std::vector<Prediction> parts(fitted.size());
+  ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
+    const size_t r = fitted[static_cast<size_t>(k)];
+    std::vector<Observed> observed;
+    parts[static_cast<size_t>(k)] = PredictRecording(
+        r, values, with_jacobian, horizon, seek ? nullptr : &(*correspondences)[r], &observed);
+    if (seek) (*correspondences)[r] = std::move(observed);
+  });
+  Prediction all;
+  Eigen::Index rows = 0;
+  for (const Prediction& part : parts) {
+    if (!part.usable) {
+      if (seek) correspondences->clear();  // to be found by a prediction that gets to the end
+      return part;
+    }
+    rows += part.residual.size();
+  }
+  all.usable = true;
+  all.residual.resize(rows);
+  if (with_jacobian) all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size()));
+  Eigen::Index row = 0;
+  for (const Prediction& part : parts) {
+    all.residual.segment(row, part.residual.size()) = part.residual;
+    if (with_jacobian) all.jacobian.middleRows(row, part.residual.size()) = part.jacobian;
+    for (const Eigen::Index before : part.before)
+      all.before.push_back(before < 0 ? before : row + before);
+    row += part.residual.size();
+  }
+  return all;
+}
+
+CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
+    size_t r, const Eigen::VectorXd& values, bool with_jacobian,
+    const std::vector<MisfitDirection>& directions,
+    const std::vector<Observed>* compared_with) const {
+  const RecordingModel& model = models_[r];
+  const PredictedRecording& item = model.item();
+  // The clock comes last: its derivative is the speed, with the sign turned.
+  std::vector<MisfitDirection> wanted;
+  if (with_jacobian) wanted = DirectionsFor(r, directions);
+  wanted.push_back({MisfitDirection::Of::kClock});
+  Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted, compared_with);
+  LinearisedRecording linearised;
+  if (!misfit.summary.IsUsable()) {
+    linearised.message = item.name + ": " + misfit.summary.message;
+    return linearised;
+  }
+  LinearisedMisfit::Part& part = linearised.part;
+  part.recording = r;
+  part.errors = ErrorsOf(model);
+  const Eigen::Index components = model.observer().Components();
+  part.layout.series = static_cast<int>(components) * model.PointCount();
+  for (const int frame : misfit.frames) {
+    part.layout.times.push_back(item.recording.times[frame]);
+    part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
+  }
+  for (const int count : misfit.count)
+    part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
+  part.layout.deformation = std::move(misfit.deformation);
+  part.observed = std::move(misfit.observed);
+  part.speed = -misfit.by.rightCols<1>();
+  if (with_jacobian)
+    linearised.by = ColumnsOf(r, misfit.by.leftCols(misfit.by.cols() - 1),
+                              static_cast<Eigen::Index>(directions.size()));
+  linearised.residual = std::move(misfit.residual);
+  return linearised;
+}
+
+LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bool with_jacobian,
+                                               const std::vector<MisfitDirection>& directions,
+                                               const LinearisedMisfit* same) const {
+  ThrowIfInterrupted();
+  SetModel(values);
+  const std::vector<size_t> fitted = FittedRecordings();
+  std::vector<LinearisedRecording> recordings(fitted.size());
+  ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
+    const size_t k = static_cast<size_t>(at);
+    recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions,
+                                       same != nullptr ? &same->parts[k].observed : nullptr);
+  });
+  LinearisedMisfit all;
+  Eigen::Index rows = 0;
+  for (LinearisedRecording& recording : recordings) {
+    all.message = recording.message;
+    if (!all.message.empty()) return all;
+    recording.part.first_row = rows;
+    rows += recording.residual.size();
+  }
+  all.residual.resize(rows);
+  if (with_jacobian)
+    all.by.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
+  for (LinearisedRecording& recording : recordings) {
+    const Eigen::Index first = recording.part.first_row, count = recording.residual.size();
+    all.residual.segment(first, count) = recording.residual;
+    if (with_jacobian) all.by.middleRows(first, count) = recording.by;
+    all.parts.push_back(std::move(recording.part));
+  }
+  all.usable = true;
+  return all;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,183 @@
+#include "calibration/calibration_record.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+using Verdict = ParameterEstimate::Verdict;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
+  static const std::vector<std::pair<Verdict, std::string>> names{
+      {Verdict::kPinnedDown, "pinned down"},
+      {Verdict::kDead, "dead"},
+      {Verdict::kFlat, "flat"},
+      {Verdict::kTradedOff, "traded off"},
+      {Verdict::kAtBound, "at its bound"}};
+  return names;
+}
+
+// JSON has neither infinity nor NaN: null.
+json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+double FromNumber(const json& value, double otherwise) {
+  return value.is_null() ? otherwise : value.get<double>();
+}
+
+json MeasureToJson(const MisfitMeasure& measure) {
+  return {{"frames", measure.frames},
+          {"points", measure.points},
+          {"rms_m", measure.rms},
+          {"largest_m", measure.largest},
+          {"in_noise", measure.in_noise}};
+}
+
+MisfitMeasure MeasureFromJson(const json& value) {
+  return {value.at("frames"), value.at("points"), value.at("rms_m"), value.at("largest_m"),
+          value.at("in_noise")};
+}
+
+json ScanToJson(const FittedScan& scan) {
+  json places = json::array();
+  for (Eigen::Index c = 0; c < scan.places.cols(); ++c)
+    places.push_back({scan.places(0, c), scan.places(1, c), scan.places(2, c)});
+  return {
+      {"patch_places_m", places}, {"patch_noise_m", scan.patch_noise}, {"used_share", scan.used}};
+}
+
+FittedScan ScanFromJson(const json& value) {
+  const json& places = value.at("patch_places_m");
+  FittedScan scan{Eigen::Matrix3Xd(3, places.size()), value.at("patch_noise_m"),
+                  value.at("used_share")};
+  for (size_t c = 0; c < places.size(); ++c)
+    for (int axis = 0; axis < 3; ++axis)
+      scan.places(axis, static_cast<Eigen::Index>(c)) = places[c].at(axis).get<double>();
+  return scan;
+}
+
+json ToJson(const CalibrationRecord& record) {
+  json parameters = json::array();
+  for (const FittedParameter& parameter : record.parameters) {
+    parameters.push_back(
+        {{"name", parameter.name}, {"unit", parameter.unit}, {"log_scale", parameter.log_scale}});
+    parameters.back().update(EstimateToJson(parameter.estimate));
+    if (parameter.with_finest_mesh)
+      parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
+  }
+  json recordings = json::array();
+  for (const FittedRecording& recording : record.recordings) {
+    json entry = {{"name", recording.name},
+                  {"fitted", recording.fitted},
+                  {"noise_m", recording.noise},
+                  {"in_fit", MeasureToJson(recording.in_fit)},
+                  {"held_out", MeasureToJson(recording.held_out)}};
+    if (recording.scan) entry["scan"] = ScanToJson(*recording.scan);
+    for (const OwnValue& own : recording.own)
+      entry["own"].push_back({{"name", own.name}, {"unit", own.unit}, {"value", own.value}});
+    recordings.push_back(entry);
+  }
+  json all = {{"schema_version", 1},
+              {"experiment", record.experiment.generic_string()},
+              {"usable", record.usable},
+              {"message", record.message},
+              {"noise_m", record.noise},
+              {"time_step_s", record.time_step},
+              {"step_error_in_noise", Number(record.step_error)},
+              {"rms_before", Number(record.start_rms)},
+              {"rms_after", Number(record.rms)},
+              {"predictions", record.predictions},
+              {"parameters", parameters},
+              {"recordings", recordings},
+              {"strains", record.strains}};
+  if (record.scan_noise > 0) all["scan_noise_m"] = record.scan_noise;
+  return all;
+}
+
+CalibrationRecord FromJson(const json& value) {
+  CalibrationRecord record;
+  record.experiment = value.at("experiment").get<std::string>();
+  record.usable = value.at("usable");
+  record.message = value.at("message");
+  record.noise = value.at("noise_m");
+  record.time_step = value.at("time_step_s");
+  record.step_error = FromNumber(value.at("step_error_in_noise"), kInfinity);
+  record.start_rms = FromNumber(value.at("rms_before"), kInfinity);
+  record.rms = FromNumber(value.at("rms_after"), kInfinity);
+  record.predictions = value.at("predictions");
+  for (const json& entry : value.at("parameters")) {
+    FittedParameter parameter;
+    parameter.name = entry.at("name");
+    parameter.unit = entry.at("unit");
+    parameter.log_scale = entry.at("log_scale");
+    parameter.estimate = EstimateFromJson(entry);
+    if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
+    record.parameters.push_back(parameter);
+  }
+  record.scan_noise = value.value("scan_noise_m", 0.0);
+  for (const json& entry : value.at("recordings")) {
+    record.recordings.push_back({entry.at("name"), entry.at("fitted"), entry.at("noise_m"),
+                                 MeasureFromJson(entry.at("in_fit")),
+                                 MeasureFromJson(entry.at("held_out")), std::nullopt});
+    if (entry.contains("scan")) record.recordings.back().scan = ScanFromJson(entry.at("scan"));
+    for (const json& own : entry.value("own", json::array()))
+      record.recordings.back().own.push_back({own.at("name"), own.at("unit"), own.at("value")});
+  }
+  record.strains = value.at("strains").get<std::vector<std::string>>();
+  return record;
+}
+
+}  // namespace
+
+json EstimateToJson(const ParameterEstimate& estimate) {
+  return {{"value", estimate.value},
+          {"low_95", Number(estimate.low)},
+          {"high_95", Number(estimate.high)},
+          {"deviation_from_data", Number(estimate.deviation)},
+          {"deviation", Number(estimate.posterior_deviation)},
+          {"verdict", VerdictName(estimate.verdict)},
+          {"most_correlated_with", estimate.traded_with},
+          {"correlation", estimate.correlation}};
+}
+
+ParameterEstimate EstimateFromJson(const json& value) {
+  ParameterEstimate estimate;
+  estimate.value = value.at("value");
+  estimate.low = FromNumber(value.at("low_95"), -kInfinity);
+  estimate.high = FromNumber(value.at("high_95"), kInfinity);
+  estimate.deviation = FromNumber(value.at("deviation_from_data"), kInfinity);
+  estimate.posterior_deviation = FromNumber(value.at("deviation"), kInfinity);
+  for (const auto& [verdict, name] : VerdictNames())
+    if (name == value.at("verdict")) estimate.verdict = verdict;
+  estimate.traded_with = value.at("most_correlated_with");
+  estimate.correlation = value.at("correlation");
+  return estimate;
+}
+
+std::string VerdictName(Verdict verdict) {
+  for (const auto& [value, name] : VerdictNames())
+    if (value == verdict) return name;
+  return "";
+}
+
+void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem::path& file) {
+  WriteFileAtomically(file, ToJson(record).dump(2) + "\n");
+}
+
+CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  try {
+    return FromJson(json::parse(stream));
+  } catch (const json::exception& problem) {
+    throw InputError(file.string() + ": is no record of a calibration: " + problem.what());
+  }
+}
+
+}  // namespace lacuna

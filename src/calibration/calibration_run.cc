@@ -1,0 +1,195 @@
+#include "calibration/calibration_run.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "calibration/mesh_limit.h"
+#include "calibration/misfit_report.h"
+#include "calibration/stepped_fit.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
+#include "prediction/recorded_motion.h"
+#include "record/csv_table.h"
+#include "record/run_stage.h"
+
+namespace lacuna {
+namespace {
+
+// Raised when the stage's code changes so that its result does.
+constexpr int kMeshVersion = 1;
+constexpr int kCalibrationVersion = 13;
+
+struct CalibrationStage {
+  CalibrationRecord record;
+  CsvTable misfit;
+};
+
+CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
+                            Progress* progress) {
+  const SteppedFit fit = FitWithItsStep(reference.mesh, &study, progress);
+  const Calibration& calibration = fit.calibration;
+  const CalibrationProblem problem(study, reference.mesh);
+  CalibrationStage stage;
+  CalibrationRecord& record = stage.record;
+  // So that the folder of runs can be moved together with the experiments.
+  record.experiment =
+      std::filesystem::absolute(study.file)
+          .lexically_normal()
+          .lexically_proximate(std::filesystem::absolute(study.output).lexically_normal());
+  record.usable = calibration.usable;
+  record.message = calibration.message;
+  record.noise = problem.noise();
+  record.scan_noise = problem.scan_noise();
+  record.time_step = study.time_step;
+  record.step_error = fit.step_error;
+  record.start_rms = calibration.start_rms;
+  record.rms = calibration.rms;
+  record.predictions = calibration.predictions;
+  for (size_t k = 0; k < calibration.estimates.size(); ++k) {
+    const CalibratedParameter& prior = problem.parameters()[k];
+    record.parameters.push_back(
+        {prior.name, problem.UnitOf(k), prior.log_scale, calibration.estimates[k], std::nullopt});
+  }
+  if (calibration.estimates.size() != problem.parameters().size()) return stage;  // no prediction
+  progress->Begin("predict", 0);
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, calibration.parameters);
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const PredictedRecording& item = study.recordings[r];
+    record.recordings.push_back({misfits[r].name, item.fitted,
+                                 EstimateRecordingNoise(item, item.frames), misfits[r].in_fit,
+                                 misfits[r].held_out, std::nullopt});
+    const auto& own = problem.models()[r].nuisances();
+    for (size_t k = 0; k < own.size() && !item.fitted; ++k)
+      record.recordings.back().own.push_back(
+          {own[k].prior.name, own[k].unit, misfits[r].nuisance[static_cast<Eigen::Index>(k)]});
+    if (item.scans != nullptr)
+      record.recordings.back().scan =
+          DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
+  }
+  record.strains = Strains(problem, misfits);
+  stage.misfit = MisfitTable(problem, misfits);
+  progress->End();
+  if (calibration.rms <= kFarOff) {
+    progress->Begin("finer elements", 0);
+    if (const auto limit = AtMeshLimit(problem, calibration.parameters))
+      for (size_t k = 0; k < record.parameters.size(); ++k) {
+        FittedParameter& parameter = record.parameters[k];
+        parameter.with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
+        CountModelError(problem.parameters()[k], *parameter.with_finest_mesh, &parameter.estimate);
+      }
+    progress->End();
+  }
+  return stage;
+}
+
+// Of the recordings' files, by their names in them.
+std::map<std::string, std::string> InputHashes(const PredictionStudy& study) {
+  std::map<std::string, std::string> hashes;
+  for (const PredictedRecording& item : study.recordings)
+    for (const std::filesystem::path& file : RecordingFiles(item.recording))
+      hashes[item.name + "/" +
+             file.lexically_proximate(item.recording.file.parent_path()).generic_string()] =
+          HashFile(file);
+  return hashes;
+}
+
+}  // namespace
+
+CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress) {
+  RunDirectory run(study.output);
+  const std::map<std::string, std::string> inputs = InputHashes(study);
+  run.Begin(study.configuration, inputs, 0);
+
+  nlohmann::json behind_mesh = study.configuration.at("mesh");
+  if (study.recordings.front().recording.reference.source == ReferenceSource::kFirstFrame) {
+    behind_mesh["scan"] = study.configuration.value("scan", nlohmann::json::object());
+    behind_mesh["first_frame"] = study.recordings.front().frames.front();
+  }
+  const auto reference = RunStage<ReferenceBody>(
+      &run, {"mesh", kMeshVersion, behind_mesh, inputs}, progress,
+      [&] {
+        progress->Begin("mesh", 0);
+        ReferenceBody body = MakeReferenceBody(study);
+        progress->End(
+            fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
+        return body;
+      },
+      SaveReferenceBody, ReadReferenceBody);
+
+  std::map<std::string, std::string> behind = inputs;
+  behind["mesh"] = run.ResultHash("mesh");
+  CalibrationStage stage = RunStage<CalibrationStage>(
+      &run, {"calibration", kCalibrationVersion, study.configuration, behind}, progress,
+      [&] { return Calibrated(study, reference, progress); },
+      [](const CalibrationStage& value, const std::filesystem::path& folder) {
+        WriteCalibrationFile(value.record, folder / "calibration.json");
+        if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
+      },
+      [](const std::filesystem::path& folder) {
+        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}};
+      });
+  run.Finish();
+  stage.record.mesh = reference.quality;
+  stage.record.mesh_notes = reference.notes;
+  return stage.record;
+}
+
+void RefuseOtherRuns(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(run))
+    throw InputError({run.string()}, "there is no such file or folder");
+  if (!std::filesystem::exists(run / "manifest.json")) {
+    throw InputError({run.string()},
+                     "is not a run: it holds no manifest.json; lacuna fit EXPERIMENT makes one");
+  }
+  const Manifest manifest = LoadManifest(run / "manifest.json");
+  if (manifest.stages.contains("calibration") || manifest.configuration.contains("recordings"))
+    return;  // FinishedStage says what is wrong with it, if anything
+  throw InputError({run.string()},
+                   manifest.configuration.contains("recording")
+                       ? "is a run of `lacuna reconstruct`, which fits forces until the model "
+                         "follows; needed is a prediction, a run of `lacuna fit`"
+                       : "is no run of `lacuna fit`");
+}
+
+FittedRun OpenRun(const std::filesystem::path& run) {
+  RefuseOtherRuns(run);
+  FittedRun opened;
+  opened.record = LoadCalibration(run);
+  if (!opened.record.usable) {
+    throw InputError(
+        fmt::format("{}: its fit is not usable: {}", run.string(), opened.record.message));
+  }
+  const std::filesystem::path experiment = (run / opened.record.experiment).lexically_normal();
+  opened.study = ReadPredictionStudy(Config::Load(experiment));
+  const Manifest manifest = LoadManifest(run / "manifest.json");
+  const auto changed = [&](const std::string& what) {
+    return InputError(
+        fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(), what));
+  };
+  // As text: a bound that is infinite is null in the file.
+  if (opened.study.configuration.dump() != manifest.configuration.dump())
+    throw changed(experiment.string());
+  const std::map<std::string, std::string> inputs = InputHashes(opened.study);
+  for (const auto& [file, hash] : inputs) {
+    const auto then = manifest.inputs.find(file);
+    if (then == manifest.inputs.end() || then->second != hash) throw changed(file);
+  }
+  if (inputs.size() != manifest.inputs.size()) throw changed("the list of its recordings' files");
+  opened.study.time_step = opened.record.time_step;
+  opened.mesh = ReadReferenceBody(FinishedStage(run, "mesh")).mesh;
+  opened.values.resize(static_cast<Eigen::Index>(opened.record.parameters.size()));
+  for (size_t k = 0; k < opened.record.parameters.size(); ++k)
+    opened.values[static_cast<Eigen::Index>(k)] = opened.record.parameters[k].estimate.value;
+  for (size_t k = 0; k < opened.study.fitted.size(); ++k)
+    SetParameter(opened.study.fitted[k], opened.values[static_cast<Eigen::Index>(k)]);
+  return opened;
+}
+
+CalibrationRecord LoadCalibration(const std::filesystem::path& run) {
+  return ReadCalibrationFile(FinishedStage(run, "calibration") / "calibration.json");
+}
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+#include "calibration/linear_misfit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/series_noise.h"
+
+namespace lacuna {
+
+std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
+                                     const Eigen::VectorXd& values) {
+  std::vector<LinearPrior> priors;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const CalibratedParameter& parameter = parameters[k];
+    const double value = values[static_cast<Eigen::Index>(k)];
+    const double mean = std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+    const double unit = parameter.log_scale ? value : 1;
+    const double change = parameter.log_scale ? std::log(mean / value) : mean - value;
+    priors.push_back({unit * change, unit * parameter.prior_deviation, false});
+  }
+  return priors;
+}
+
+Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
+                        const Eigen::VectorXd& values, const Eigen::VectorXd& change) {
+  Eigen::VectorXd moved = values;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    const double by = change[at];
+    moved[at] = std::clamp(
+        parameters[k].log_scale ? values[at] * std::exp(by / values[at]) : values[at] + by,
+        parameters[k].min, parameters[k].max);
+  }
+  return moved;
+}
+
+Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
+                             double correlation_time, bool fitted_only) {
+  Eigen::MatrixXd white(rows.rows(), rows.cols());
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const Eigen::Index count = part.layout.Rows();
+    white.middleRows(part.first_row, count) =
+        Whitened(rows.middleRows(part.first_row, count), part.layout,
+                 {part.errors.noise, correlation_time, part.errors.common},
+                 fitted_only ? part.fitted : std::vector<char>{});
+  }
+  return white;
+}
+
+NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
+                   Eigen::Index parameters, double least) {
+  NoiseLevel level;
+  const auto pooled = [&](const Eigen::VectorXd& rows) {
+    SeriesStatistics mean{0, 0, 0};
+    for (const LinearisedMisfit::Part& part : misfit.parts) {
+      const SeriesStatistics own =
+          Statistics(rows.segment(part.first_row, part.layout.Rows()), part.layout);
+      const double share = 1.0 / static_cast<double>(misfit.parts.size());
+      mean.lag_one += share * own.lag_one;
+      mean.spacing += share * own.spacing;
+      mean.long_run += share * own.long_run;
+    }
+    return mean;
+  };
+  level.correlation_time = CorrelationTime(pooled(WhitenedRows(left, misfit, 0, false)));
+  const Eigen::VectorXd white = WhitenedRows(left, misfit, level.correlation_time, false);
+  const double freedom =
+      static_cast<double>(std::max<Eigen::Index>(1, ObservedRows(misfit) - parameters));
+  level.variance = std::max(least, white.squaredNorm() / freedom) * pooled(white).long_run;
+  return level;
+}
+
+Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
+  Eigen::Index observed = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    observed += std::count_if(part.layout.count.begin(), part.layout.count.end(),
+                              [](int count) { return count > 0; });
+  return observed;
+}
+
+double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  double squares[2] = {0, 0}, rows[2] = {0, 0};
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    for (Eigen::Index row = 0; row < part.layout.Rows(); ++row) {
+      if (part.layout.count[row] == 0) continue;
+      const bool fitted = part.fitted[row / part.layout.series];
+      squares[fitted] += std::pow(whitened[part.first_row + row], 2);
+      ++rows[fitted];
+    }
+  }
+  const bool which = rows[0] == 0;
+  return rows[which] > 0 ? std::sqrt(squares[which] / rows[which]) : 0;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,157 @@
+#include "calibration/mesh_limit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "analysis/linear_evidence.h"
+#include "calibration/linear_misfit.h"
+#include "core/error.h"
+#include "experiment/reference_body.h"
+#include "prediction/predicted_body.h"
+
+namespace lacuna {
+namespace {
+
+// How much smaller elements are looked at, and how their error, of quadratic ones, goes beside a
+// clamped edge: with their volume to the power of about this.
+constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+constexpr double kVolumePower = 0.7;
+// Parameters are sought with time steps so many times as long on both meshes.
+constexpr double kLongSteps = 3;
+constexpr int kMostSteps = 4;
+constexpr double kSettled = 1;             // of ‖difference‖², σ²: a step gains no more
+constexpr double kShortestStep = 1.0 / 4;  // of a whole one
+
+// As few times as a study of the mesh needs.
+double RatioFor(const CalibrationProblem& problem) {
+  const double elements = static_cast<double>(problem.body()->ElementCount());
+  return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
+}
+
+// What a mesh may change of the parameters: about a part of each, or of what is known of it before,
+// as directions that the motion leaves open would go astray; and no farther than `most`, part of
+// the way to its bounds, beside which a body that cannot be compressed moves in no bearable time.
+struct ChangePrior {
+  std::vector<LinearPrior> priors;
+  std::vector<double> most;
+};
+ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+  constexpr double kOfValue = 0.1, kOfPrior = 0.03, kMostOfValue = 0.5, kMostOfRoom = 0.5;
+  ChangePrior prior{PriorsAbout(problem.parameters(), values), {}};
+  for (size_t k = 0; k < prior.priors.size(); ++k) {
+    const CalibratedParameter& parameter = problem.parameters()[k];
+    const double value = values[static_cast<Eigen::Index>(k)];
+    const double known = prior.priors[k].deviation;
+    double about = kOfValue * std::abs(value), most = kMostOfValue * std::abs(value);
+    if (!parameter.log_scale) {
+      if (std::isfinite(known)) about += kOfPrior * known;
+      most = kMostOfRoom * std::min(value - parameter.min, parameter.max - value);
+    }
+    prior.priors[k] = {0, std::min(known, about), false};
+    prior.most.push_back(most);
+  }
+  return prior;
+}
+
+// With the least ‖left + by (change − at)‖² and prior; what would go too far stays there. `model`:
+// of any residual and `by`.
+Eigen::VectorXd BestChange(const LinearModel& model, const Eigen::VectorXd& left,
+                           const Eigen::MatrixXd& by, const Eigen::VectorXd& at,
+                           const ChangePrior& prior) {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());  // of those that have gone too far
+  std::vector<int> free(prior.priors.size());
+  std::iota(free.begin(), free.end(), 0);
+  for (;;) {
+    const Eigen::VectorXd best =
+        model.WithResidual(left + by * (change - at), by).Fit(free, 1).change;
+    std::vector<int> within;
+    for (size_t k = 0; k < free.size(); ++k) {
+      const double here = best[static_cast<Eigen::Index>(k)], most = prior.most[free[k]];
+      if (std::abs(here) > most)
+        change[free[k]] = std::copysign(most, here);
+      else
+        within.push_back(free[k]);
+    }
+    if (within.size() == free.size()) {
+      change(free) = best;
+      return change;
+    }
+    free = std::move(within);
+  }
+}
+
+}  // namespace
+
+double FinerMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
+double FinerMesh::ToRatio(double other) const {
+  return (1 - std::pow(other, -kVolumePower)) * ToLimit();
+}
+
+std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
+                                                            double ratio) {
+  PredictionStudy fine = study;
+  fine.mesh.tets.max_volume /= ratio;
+  try {
+    return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(fine).mesh);
+  } catch (const InputError&) {
+    return nullptr;  // a shape that cannot be meshed more finely says nothing about its mesh
+  }
+}
+
+std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values,
+                                       const LinearisedMisfit& misfit, bool fitted_only) {
+  PredictionStudy study = problem.AsChosen();
+  study.time_step *= kLongSteps;
+  const double ratio = RatioFor(problem);
+  const auto fine_problem = WithFinerElements(study, ratio);
+  if (fine_problem == nullptr) return std::nullopt;
+  FinerMesh finer{ratio, fine_problem->body()->mesh, Eigen::VectorXd::Zero(values.size())};
+  const Eigen::VectorXd coarse =
+      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
+  // Whitened; empty where it cannot be had.
+  const auto difference = [&](const Eigen::VectorXd& change) -> Eigen::VectorXd {
+    const Eigen::VectorXd fine =
+        fine_problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
+    if (fine.size() != misfit.residual.size() || coarse.size() != fine.size() || fine == coarse)
+      return {};
+    return WhitenedRows(fine - coarse, misfit, 0, fitted_only);
+  };
+  const Eigen::MatrixXd by =
+      WhitenedRows(misfit.by.leftCols(values.size()), misfit, 0, fitted_only);
+  const ChangePrior prior = PriorOfChange(problem, values);
+  Eigen::VectorXd left = difference(finer.change);
+  const bool is_finer = left.size() > 0;
+  const LinearModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
+  double length = 1;
+  for (int step = 0; step < kMostSteps && left.size() > 0 && length >= kShortestStep; ++step) {
+    const Eigen::VectorXd way = BestChange(model, left, by, finer.change, prior) - finer.change;
+    const double promised = left.squaredNorm() - (left + by * way).squaredNorm();
+    if (!(promised > kSettled)) break;
+    const Eigen::VectorXd there = difference(finer.change + length * way);
+    if (there.size() > 0 && there.squaredNorm() < left.squaredNorm()) {
+      finer.change += length * way;
+      left = there;
+      length = 1;
+    } else {
+      length /= 2;
+    }
+  }
+  problem.SetModel(values);  // other models share its effects
+  if (!is_finer) return std::nullopt;
+  return finer;
+}
+
+std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
+                                           const Eigen::VectorXd& values) {
+  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  if (!misfit.usable) return std::nullopt;
+  const std::optional<FinerMesh> finer =
+      MakeFinerMesh(problem, values, misfit, /*fitted_only=*/true);
+  if (!finer) return std::nullopt;
+  return MovedBy(problem.parameters(), values, finer->ToLimit() * finer->change);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,91 @@
+#include "calibration/recording_misfit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel.h"
+#include "prediction/own_nuisance.h"
+
+namespace lacuna {
+namespace {
+
+MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double noise) {
+  MisfitMeasure measure;
+  const Misfit& misfit = recording.misfit;
+  const Eigen::Index components = misfit.Components();
+  const Eigen::VectorXd residual = misfit.ResidualWithout(recording.place_offset);
+  double squares = 0, weighted = 0;
+  for (size_t f = 0; f < recording.fitted.size(); ++f) {
+    if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
+    ++measure.frames;
+    for (int point = 0; point < misfit.points; ++point) {
+      const Eigen::Index at = static_cast<Eigen::Index>(f) * misfit.points + point;
+      if (misfit.count[at] == 0) continue;
+      const double distance = residual.segment(components * at, components).norm();
+      squares += distance * distance;
+      weighted += misfit.count[at] * distance * distance;
+      measure.largest = std::max(measure.largest, distance);
+      ++measure.points;
+    }
+  }
+  if (measure.points == 0) return measure;
+  measure.rms = std::sqrt(squares / measure.points);
+  measure.in_noise =
+      std::sqrt(weighted / measure.points) / (std::sqrt(static_cast<double>(components)) * noise);
+  return measure;
+}
+
+// The model as it is set. `places`: the markers' offsets, where another recording tells them.
+RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
+                         const std::optional<Eigen::MatrixXd>& places) {
+  const RecordingModel& model = problem.models()[r];
+  const PredictedRecording& item = model.item();
+  const MeasurementErrors errors = problem.ErrorsOf(model);
+  RecordingMisfit recording;
+  recording.name = item.name;
+  recording.nuisance =
+      item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, places);
+  recording.misfit = model.Predict(item.frames, recording.nuisance, {});
+  // Of a recording that is not fitted, only what it shows before it moves tells the places, where
+  // no fitted one does.
+  std::vector<char> tells_places;
+  for (const int frame : recording.misfit.frames) {
+    const double time = item.recording.times[frame];
+    recording.fitted.push_back(item.fitted && time <= item.fit_until);
+    tells_places.push_back(item.fitted ? recording.fitted.back() : time <= item.StartTime());
+  }
+  recording.has_own_places = !places;
+  recording.place_offset = places ? *places
+                                  : CommonError(recording.misfit.residual, recording.misfit.count,
+                                                recording.misfit.points, errors, tells_places,
+                                                recording.misfit.deformation);
+  recording.in_fit = Measure(recording, true, errors.noise);
+  recording.held_out = Measure(recording, false, errors.noise);
+  return recording;
+}
+
+}  // namespace
+
+std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values) {
+  problem.SetModel(values);
+  std::vector<RecordingMisfit> all(problem.models().size());
+  // Those first that tell the others where their markers are.
+  for (const bool is_told : {false, true}) {
+    std::vector<size_t> some;
+    for (size_t r = 0; r < all.size(); ++r)
+      if (problem.PlacesToldBy(r).has_value() == is_told) some.push_back(r);
+    ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
+      const size_t r = some[static_cast<size_t>(k)];
+      std::optional<Eigen::MatrixXd> places;
+      if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
+          teller && all[*teller].misfit.summary.IsUsable())
+        places = all[*teller].place_offset;
+      all[r] = MisfitOf(problem, values, r, places);
+    });
+  }
+  return all;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,42 @@
+// How far a fitted model is from each of its recordings, fitted or not.
+#ifndef LACUNA_CALIBRATION_RECORDING_MISFIT_H_
+#define LACUNA_CALIBRATION_RECORDING_MISFIT_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_problem.h"
+
+namespace lacuna {
+
+// How far predictions are from measurements in a set of frames. Distances are of markers, or of
+// patches of a surface along its normal, after the part of a point's error that is its place on the
+// object (or the object's shape) has been taken away.
+struct MisfitMeasure {
+  int frames = 0;
+  int points = 0;       // markers or patches seen, over all frames
+  double rms = 0;       // m, of the distances
+  double largest = 0;   // m
+  double in_noise = 0;  // rms of the components, each in standard deviations of its noise
+};
+
+// The misfit of one recording, all frames.
+struct RecordingMisfit {
+  std::string name;
+  Misfit misfit;
+  Eigen::VectorXd nuisance;        // in the order of RecordingModel::nuisances
+  std::vector<char> fitted;        // per frame of the misfit
+  Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
+  bool has_own_places = true;      // false: they are those that fitted recordings tell
+  MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
+};
+
+// Of every recording at these values of the problem's parameters; of one that is not fitted, as
+// CalibrationProblem::NuisanceOf and PlacesToldBy have it.
+std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
+                                       const Eigen::VectorXd& values);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_CALIBRATION_RECORDING_MISFIT_H_

@@ -1,0 +1,77 @@
+#include "comparison/smooth_force.h"
+
+#include <glog/logging.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "fem/prescribed_force.h"
+
+namespace lacuna {
+
+SmoothForce::Between SmoothForce::At(double time) const {
+  const double at = std::clamp((time - start) / spacing, 0.0, KnotCount() - 1.0);
+  const int knot = std::min(static_cast<int>(at), KnotCount() - 2);
+  return {knot, at - knot};
+}
+
+Eigen::VectorXd SmoothForce::AmplitudesAt(double time) const {
+  const Between at = At(time);
+  return (1 - at.next) * amplitudes.col(at.knot) + at.next * amplitudes.col(at.knot + 1);
+}
+
+Eigen::Matrix3Xd SmoothForce::DensityAt(double time) const {
+  return density * AmplitudesAt(time).reshaped(3, kModes) * modes.transpose();
+}
+
+Eigen::MatrixXd SmoothForce::Shapes() const {
+  Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(3 * modes.rows(), kShapes);
+  for (Eigen::Index i = 0; i < modes.rows(); ++i)
+    for (int c = 0; c < kModes; ++c)
+      for (int axis = 0; axis < 3; ++axis)
+        shapes(3 * i + axis, 3 * c + axis) = node_mass[i] * modes(i, c);
+  return shapes;
+}
+
+std::vector<std::shared_ptr<Effect>> SmoothForce::Effects() const {
+  std::vector<std::shared_ptr<Effect>> effects;
+  for (int c = 0; c < kModes; ++c)
+    effects.push_back(std::make_shared<PrescribedForce>(
+        node_mass.cwiseProduct(modes.col(c)), [force = *this, c](double time) -> Eigen::Vector3d {
+          return force.AmplitudesAt(time).segment<3>(3 * c);
+        }));
+  return effects;
+}
+
+SmoothForce MakeSmoothForce(const Model& model, double start, double end, int knots) {
+  CHECK_GE(knots, 2);
+  CHECK_GT(end, start);
+  const Body& body = *model.body;
+  SmoothForce force;
+  force.node_mass = body.node_mass;
+  force.density = body.density;
+  force.start = start;
+  force.spacing = (end - start) / (knots - 1);
+  force.amplitudes.setZero(SmoothForce::kShapes, knots);
+
+  const std::vector<char> held = GrippedNodes(model);
+  Eigen::VectorXd mass = body.node_mass;
+  for (Eigen::Index i = 0; i < mass.size(); ++i)
+    if (held[i]) mass[i] = 0;
+  const Eigen::Vector3d centre = body.mesh.nodes * mass / mass.sum();
+  const Eigen::Matrix3Xd arm = body.mesh.nodes.colwise() - centre;
+  const Eigen::Matrix3d moments = arm * mass.asDiagonal() * arm.transpose() / mass.sum();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(moments);
+  force.modes.setZero(mass.size(), SmoothForce::kModes);
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    if (held[i]) continue;
+    force.modes(i, 0) = 1;
+    // Eigenvalues ascend.
+    force.modes(i, 1) =
+        principal.eigenvectors().col(2).dot(arm.col(i)) / std::sqrt(principal.eigenvalues()[2]);
+  }
+  return force;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,356 @@
+#include "diagnosis/candidates.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "effects/catalogue.h"
+#include "geometry/farthest_first.h"
+#include "record/effect_card.h"
+
+namespace lacuna {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+struct Variant {
+  std::string name;
+  Values values;
+  VariantPosition position = {};
+};
+
+// The object's shape in a few numbers.
+struct Extent {
+  Eigen::Vector3d centre;
+  Eigen::Matrix3d axis;    // columns: longest first, each pointing to its larger coordinate
+  Eigen::Vector3d length;  // along them
+  // Of a body that is no bar: in the middle of parts of about equal volume, and how far these are
+  // from one another, m; none: a place along a bar is told by a number.
+  Eigen::Matrix3Xd places;
+  double spacing = 0;
+};
+
+// Centres of parts of about equal volume, each in the body (Lloyd, IEEE Trans. Inf. Theory 28,
+// 1982).
+Eigen::Matrix3Xd EvenPlaces(const Body& body, const Eigen::Vector3d& first, int most) {
+  constexpr int kRounds = 30;
+  const int count = std::min(most, static_cast<int>(body.point.cols()));
+  const auto nearest_to = [&](const Eigen::Vector3d& place) {
+    Eigen::Index nearest;
+    (body.point.colwise() - place).colwise().squaredNorm().minCoeff(&nearest);
+    return nearest;
+  };
+  Eigen::Matrix3Xd places = body.point(
+      Eigen::all, FarthestFirst(static_cast<int>(body.point.cols()),
+                                static_cast<int>(nearest_to(first)), count, [&](int a, int b) {
+                                  return (body.point.col(a) - body.point.col(b)).squaredNorm();
+                                }));
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, count);
+    Eigen::VectorXd volume = Eigen::VectorXd::Zero(count);
+    for (Eigen::Index q = 0; q < body.point.cols(); ++q) {
+      const Eigen::Vector3d point = body.point.col(q);
+      Eigen::Index part;
+      (places.colwise() - point).colwise().squaredNorm().minCoeff(&part);
+      sum.col(part) += body.weight[q] * point;
+      volume[part] += body.weight[q];
+    }
+    for (int k = 0; k < count; ++k)
+      if (volume[k] > 0) places.col(k) = sum.col(k) / volume[k];
+  }
+  for (int k = 0; k < count; ++k) places.col(k) = body.point.col(nearest_to(places.col(k))).eval();
+  return places;
+}
+
+Extent Measure(const Body& body) {
+  Extent extent;
+  const Eigen::VectorXd& mass = body.node_mass;
+  extent.centre = body.mesh.nodes * mass / mass.sum();
+  const Eigen::Matrix3Xd from = body.mesh.nodes.colwise() - extent.centre;
+  const Eigen::Matrix3d inertia = from * mass.asDiagonal() * from.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(inertia);
+  // Only the longest axis means something where a section is square or round; the others are taken
+  // near those of the coordinates then.
+  constexpr double kDistinct = 1.1;
+  const Eigen::Vector3d moment = eigen.eigenvalues();
+  Eigen::Vector3d longest = eigen.eigenvectors().col(2);
+  if (moment[2] < kDistinct * moment[1]) longest = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d second = eigen.eigenvectors().col(1);
+  if (moment[1] < kDistinct * moment[0] || moment[2] < kDistinct * moment[1]) {
+    Eigen::Index least;
+    longest.cwiseAbs().minCoeff(&least);
+    second = Eigen::Vector3d::Unit(least);
+    second = (second - longest.dot(second) * longest).normalized();
+  }
+  extent.axis << longest, second, longest.cross(second);
+  for (int k = 0; k < 3; ++k) {
+    Eigen::Vector3d axis = extent.axis.col(k);
+    Eigen::Index largest;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis[largest] < 0) axis = -axis;
+    extent.axis.col(k) = axis;
+    const Eigen::RowVectorXd along = axis.transpose() * from;
+    extent.length[k] = along.maxCoeff() - along.minCoeff();
+  }
+  // Wider than this part of its length, it is no bar.
+  constexpr double kBar = 0.4;
+  constexpr int kPlaces = 16;
+  if (extent.length[1] > kBar * extent.length[0]) {
+    extent.places = EvenPlaces(body, extent.centre, kPlaces);
+    constexpr double kNear = 1.5;  // parts that share a side are so many of their widths apart
+    extent.spacing = kNear * std::cbrt(body.weight.sum() / kPlaces);
+  }
+  return extent;
+}
+
+void SetVector(const std::string& name, const Eigen::Vector3d& vector, Values* values) {
+  (*values)[name + "_x"] = vector.x();
+  (*values)[name + "_y"] = vector.y();
+  (*values)[name + "_z"] = vector.z();
+}
+
+std::string AxisName(const Eigen::Vector3d& axis) {
+  return fmt::format("along ({:.2g}, {:.2g}, {:.2g})", axis.x() + 0.0, axis.y() + 0.0,
+                     axis.z() + 0.0);
+}
+
+Variant AtPlace(const Eigen::Vector3d& place, double radius, std::string name) {
+  Variant variant;
+  variant.name = std::move(name);
+  for (const char* of : {"centre", "point"}) SetVector(of, place, &variant.values);
+  variant.values["radius"] = radius;
+  return variant;
+}
+
+// Along the object's longest axis, at these shares of its length.
+std::vector<Variant> PlacesAlong(const Extent& extent, const std::vector<double>& shares,
+                                 double radius_share) {
+  std::vector<Variant> variants;
+  for (const double share : shares) {
+    variants.push_back(AtPlace(
+        extent.centre + (share - 0.5) * extent.length[0] * extent.axis.col(0),
+        radius_share * extent.length[0], fmt::format("at {:.0f} % of the length", 100 * share)));
+    variants.back().position = {.line = 1, .number = static_cast<int>(variants.size())};
+  }
+  return variants;
+}
+
+// Everywhere; along a bar, at these shares of its length.
+std::vector<Variant> Places(const Extent& extent, const std::vector<double>& shares,
+                            double radius_share) {
+  if (extent.places.cols() == 0) return PlacesAlong(extent, shares, radius_share);
+  std::vector<Variant> variants;
+  for (Eigen::Index k = 0; k < extent.places.cols(); ++k) {
+    const Eigen::Vector3d place = extent.places.col(k);
+    variants.push_back(AtPlace(place, radius_share * extent.length[0],
+                               fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * place.x() + 0.0,
+                                           1e3 * place.y() + 0.0, 1e3 * place.z() + 0.0)));
+    variants.back().position = {.place = place, .spacing = extent.spacing};
+  }
+  return variants;
+}
+
+Variant AlongDirection(const Eigen::Vector3d& axis) {
+  Variant variant;
+  variant.name = AxisName(axis);
+  SetVector("axis", axis, &variant.values);
+  variant.values["azimuth"] = std::atan2(axis.y(), axis.x());
+  variant.values["inclination"] = std::asin(std::clamp(axis.z(), -1.0, 1.0));
+  return variant;
+}
+
+// Along its length; of what is no bar, its width, too.
+std::vector<Variant> Gradients(const Extent& extent) {
+  std::vector<Variant> variants;
+  for (int axis = 0; axis < (extent.places.cols() > 0 ? 2 : 1); ++axis) {
+    variants.push_back(AlongDirection(extent.axis.col(axis)));
+    SetVector("origin", extent.centre, &variants.back().values);
+    variants.back().values["length"] = extent.length[axis];
+  }
+  return variants;
+}
+
+// The object's axes, and the diagonals between two and all of them: none is farther than 28° from
+// one of these.
+std::vector<Variant> Directions(const Extent& extent) {
+  std::vector<Variant> variants;
+  for (int code = 1; code < 27; ++code) {
+    const Eigen::Vector3d steps((code + 1) % 3 - 1, (code / 3 + 1) % 3 - 1, (code / 9 + 1) % 3 - 1);
+    // Of two opposite ones, the one whose last step is forwards.
+    const double last = steps[2] != 0 ? steps[2] : steps[1] != 0 ? steps[1] : steps[0];
+    if (last <= 0) continue;
+    const Eigen::Vector3d axis = (extent.axis * steps).normalized();
+    variants.push_back(AlongDirection(axis));
+    variants.back().position.axis = axis;
+  }
+  return variants;
+}
+
+std::vector<Variant> Numbers(const std::string& parameter, const std::string& symbol,
+                             const std::string& unit, const std::vector<double>& numbers) {
+  std::vector<Variant> variants;
+  for (const double number : numbers)
+    variants.push_back(
+        {fmt::format("{} = {:.2g}{}{}", symbol, number, unit.empty() ? "" : " ", unit),
+         {{parameter, number}},
+         {.line = 1, .number = static_cast<int>(variants.size())}});
+  return variants;
+}
+
+// The whole surface, or near an end or the middle of the length.
+std::vector<Variant> Supports(const Extent& extent) {
+  std::vector<Variant> variants = PlacesAlong(extent, {0.05, 0.5, 0.95}, 0.1);
+  variants.insert(variants.begin(), {"of the whole surface", {}});
+  return variants;
+}
+
+std::vector<Variant> SlippingSupports(const Extent& extent) {
+  std::vector<Variant> variants;
+  int line = 0;
+  for (const double share : {0.002, 0.02}) {
+    ++line;
+    const double distance = share * extent.length[0];
+    for (Variant variant : Supports(extent)) {
+      variant.name += fmt::format(", sliding at {:.2g} mm", 1e3 * distance);
+      variant.values["slip_distance"] = distance;
+      if (variant.position.line > 0) variant.position.line = line;
+      variants.push_back(std::move(variant));
+    }
+  }
+  return variants;
+}
+
+std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
+  std::vector<double> times;
+  for (double time = std::max(4 * setting.time_step, 0.003 * setting.duration);
+       time <= setting.duration; time *= 4)
+    times.push_back(time);
+  if (times.empty()) times.push_back(setting.duration);
+  return times;
+}
+
+// Of the length: the places from which that of a mass or a force is sought.
+const std::vector<double> kAlongLength = {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
+
+std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
+                                const CandidateSetting& setting) {
+  if (type == "inclusion") return Places(extent, {0.1, 0.25, 0.4, 0.55, 0.7, 0.85}, 0.15);
+  if (type == "attached_mass") return Places(extent, kAlongLength, 0.05);
+  if (type == "point_force" || type == "follower_force") return Places(extent, kAlongLength, 0.1);
+  if (type == "fibre_stiffness" || type == "active_contraction") return Directions(extent);
+  if (type == "stiffness_gradient" || type == "density_gradient") return Gradients(extent);
+  if (type == "viscoelastic_branch")
+    return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
+  if (type == "elastoplastic_branch")
+    return Numbers("yield_strain", "yield at a strain", "", {0.01, 0.05});
+  if (type == "elastic_support") return Supports(extent);
+  if (type == "slipping_support") return SlippingSupports(extent);
+  if (type == "softening") return Numbers("softening_strain", "κ₀", "", {0.1});
+  return {{"", {}}};
+}
+
+Eigen::Vector3d GravityOf(const std::vector<std::shared_ptr<Effect>>& effects) {
+  for (const auto& effect : effects)
+    if (effect->Card().type == "gravity") return effect->Parameters();
+  return Eigen::Vector3d::Zero();
+}
+
+// Where a place on the body can be.
+std::map<std::string, CandidateEffect::Range> PlacesOn(const Body& body) {
+  std::map<std::string, CandidateEffect::Range> ranges;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::RowVectorXd along = body.mesh.nodes.row(axis);
+    ranges[fmt::format("centre_{}", "xyz"[axis])] = {along.minCoeff(), along.maxCoeff()};
+  }
+  return ranges;
+}
+
+// The first parameter, or three where it begins a vector.
+std::vector<int> AmplitudeOf(const EffectCard& card) {
+  const bool is_vector = card.parameters[0].name.ends_with("_x");
+  return is_vector ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
+}
+
+// The card's parameters, from the variant, the model, the defaults; NaN where none tells.
+Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
+                         const CandidateSetting& setting) {
+  Values known = variant.values;
+  SetVector("gravity", GravityOf(setting.effects), &known);
+  const Effect& material = *setting.effects.front();
+  for (size_t m = 0; m < material.Card().parameters.size(); ++m)
+    known.try_emplace(material.Card().parameters[m].name,
+                      material.Parameters()[static_cast<Eigen::Index>(m)]);
+  Eigen::VectorXd values(card.parameters.size());
+  for (size_t k = 0; k < card.parameters.size(); ++k) {
+    const auto found = known.find(card.parameters[k].name);
+    values[static_cast<Eigen::Index>(k)] =
+        found != known.end() ? found->second : card.parameters[k].default_value;
+  }
+  for (const int k : AmplitudeOf(card)) values[k] = card.parameters[k].null_value;
+  return values;
+}
+
+}  // namespace
+
+bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
+  // Of the object's axes and their diagonals, an axis and the diagonals beside it.
+  constexpr double kNeighbourAngle = 1;  // rad
+  const bool in_line = a.line > 0 && a.line == b.line && std::abs(a.number - b.number) == 1;
+  const bool is_near =
+      a.spacing > 0 && b.spacing > 0 && (a.place - b.place).norm() < std::min(a.spacing, b.spacing);
+  return in_line || is_near || std::abs(a.axis.dot(b.axis)) > std::cos(kNeighbourAngle);
+}
+
+double PlausibleScale(const ParameterCard& card) {
+  return std::max(std::abs(card.plausible_min), std::abs(card.plausible_max));
+}
+
+std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate) {
+  if (candidate.IsPilot()) return {{"share", "", 1, true}};
+  std::vector<CandidateAmount> amounts;
+  for (const int index : candidate.amplitude) {
+    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    amounts.push_back({parameter.name, parameter.dimension.unit, PlausibleScale(parameter),
+                       parameter.bounds.min >= parameter.null_value});
+  }
+  return amounts;
+}
+
+std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
+  const Extent extent = Measure(setting.body);
+  std::vector<CandidateEffect> candidates;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const EffectCard& card = *entry.card;
+    if (entry.kind != CatalogueEntry::Kind::kEffect || entry.make == nullptr) continue;
+    if (card.parameters.empty() || std::isnan(card.parameters[0].null_value)) continue;
+    if (card.type == "plane_contact" ||
+        std::count(setting.without.begin(), setting.without.end(), card.type) > 0)
+      continue;
+    const bool present =
+        std::any_of(setting.effects.begin(), setting.effects.end(),
+                    [&](const auto& effect) { return effect->Card().type == card.type; });
+    if (present && !card.repeatable) continue;
+    for (const Variant& variant : VariantsOf(card.type, extent, setting)) {
+      const Eigen::VectorXd values = ValuesOf(card, variant, setting);
+      CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
+      candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
+      candidates.back().position = variant.position;
+      candidates.back().known = PlacesOn(setting.body);
+    }
+  }
+  for (const OwnLaw& law : setting.laws) {
+    if (std::count(setting.without.begin(), setting.without.end(), law.name) > 0) continue;
+    Eigen::VectorXd values = law.effect->Parameters();
+    values[0] = law.effect->Card().parameters[0].null_value;
+    candidates.push_back({law.name, "", WithParameters(*law.effect, values), {0}});
+  }
+  return candidates;
+}
+
+}  // namespace lacuna

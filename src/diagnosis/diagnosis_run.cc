@@ -1,0 +1,164 @@
+#include "diagnosis/diagnosis_run.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "effects/catalogue.h"
+#include "record/run_directory.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+// Raised when the diagnosis changes so that its result does.
+constexpr int kDiagnosisVersion = 28;
+
+std::filesystem::path ResultFile(const std::filesystem::path& run) {
+  return run / "diagnosis" / "diagnosis.json";
+}
+std::filesystem::path OriginFile(const std::filesystem::path& run) {
+  return run / "diagnosis" / "of_fit.json";
+}
+
+json OriginOf(const std::filesystem::path& run, const DiagnosisOptions& options) {
+  return {{"version", kDiagnosisVersion},
+          {"fit", HashFile(FinishedStage(run, "calibration") / "calibration.json")},
+          {"fit_key", LoadManifest(run / "manifest.json").stages.at("calibration").key},
+          {"refits", options.refits},
+          {"without", options.without}};
+}
+
+json SettingsOf(const Diagnosis& diagnosis) {
+  json settings = json::object();
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    const CandidateEffect& candidate = effect.scored.candidate;
+    Eigen::VectorXd values = effect.values;
+    if (values.size() == 0) {
+      values = candidate.effect->Parameters();
+      for (size_t k = 0; k < candidate.amplitude.size(); ++k)
+        values[candidate.amplitude[k]] = effect.scored.score.size[static_cast<Eigen::Index>(k)];
+    }
+    json known = json::object();
+    for (const auto& [name, range] : candidate.known) known[name] = {range.min, range.max};
+    settings[candidate.type] = {{"values", std::vector<double>(values.begin(), values.end())},
+                                {"amplitude", candidate.amplitude},
+                                {"refined", candidate.refined},
+                                {"known", known},
+                                {"replaces_material", candidate.replaces_material}};
+  }
+  return settings;
+}
+
+// An effect of the catalogue, or one of the user's laws; null: there is none with such values.
+std::shared_ptr<Effect> MadeFrom(const PredictionStudy& study, const std::string& type,
+                                 const Eigen::VectorXd& values) {
+  const auto fits = [&](const EffectCard& card) {
+    return static_cast<Eigen::Index>(card.parameters.size()) == values.size();
+  };
+  for (const OwnLaw& law : study.candidates)
+    if (law.name == type && fits(law.effect->Card())) return WithParameters(*law.effect, values);
+  const CatalogueEntry* entry = FindEntry(type);
+  return entry != nullptr && entry->make != nullptr && fits(*entry->card) ? entry->make(values)
+                                                                          : nullptr;
+}
+
+// Null where the file is not there or is none.
+json Parsed(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return json::parse(stream, nullptr, /*allow_exceptions=*/false);
+}
+
+// OriginOf() as it was for the diagnosis that stands there; null: there is none, or it was changed.
+json OriginOfWhatStands(const std::filesystem::path& run) {
+  const json origin = Parsed(OriginFile(run));
+  if (!origin.is_object() || !std::filesystem::exists(ResultFile(run)) ||
+      origin.value("diagnosis", "") != HashFile(ResultFile(run)))
+    return {};
+  return origin.value("of", json());
+}
+
+}  // namespace
+
+bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options) {
+  return OriginOfWhatStands(run) == OriginOf(run, options);
+}
+
+DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::path& run,
+                             const DiagnosisOptions& options, Progress* progress) {
+  if (IsDiagnosed(run, options)) {
+    progress->Begin("diagnosis of " + fitted.study.name, 0);
+    DiagnosisRecord record = ReadDiagnosisFile(ResultFile(run));
+    progress->End("read back");
+    return record;
+  }
+  const CalibrationProblem problem(fitted.study, fitted.mesh);
+  MakeFolder(ResultFile(run).parent_path());
+  RefitStore kept(ResultFile(run).parent_path() / "refits.json", OriginOf(run, options));
+  const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept);
+  SaveDiagnosis(diagnosis, ResultFile(run));
+  const json origin = {{"schema_version", 2},
+                       {"of", OriginOf(run, options)},
+                       {"diagnosis", HashFile(ResultFile(run))},
+                       {"settings", SettingsOf(diagnosis)}};
+  WriteFileAtomically(OriginFile(run), origin.dump(2) + "\n");
+  kept.Drop();
+  problem.SetModel(fitted.values);
+  return ReadDiagnosisFile(ResultFile(run));
+}
+
+ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::path& run,
+                             const RecordedEffect& effect) {
+  const json origin = Parsed(OriginFile(run));
+  try {
+    const json& settings = origin.at("settings").at(effect.type);
+    const std::vector<double> values = settings.at("values");
+    ScoredEffect scored;
+    CandidateEffect& candidate = scored.candidate;
+    candidate.type = effect.type;
+    candidate.variant = effect.variant;
+    candidate.amplitude = settings.at("amplitude").get<std::vector<int>>();
+    candidate.refined = settings.at("refined").get<std::map<std::string, double>>();
+    for (const auto& [name, range] : settings.at("known").items())
+      candidate.known[name] = {range.at(0), range.at(1)};
+    candidate.replaces_material = settings.at("replaces_material");
+    const std::string other =
+        OriginFile(run).string() + ": is of another catalogue; diagnose again";
+    candidate.effect = MadeFrom(
+        fitted.study, effect.type,
+        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+    if (candidate.effect == nullptr) throw InputError(other);
+    if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
+    Score& score = scored.score;
+    score.size.setOnes(static_cast<Eigen::Index>(effect.sizes.size()));  // of a pilot
+    score.detectable = score.size;
+    for (size_t k = 0; k < effect.sizes.size(); ++k) {
+      const Eigen::Index at = static_cast<Eigen::Index>(k);
+      if (!candidate.IsPilot())
+        score.size[at] = values[static_cast<size_t>(candidate.amplitude[k])];
+      score.detectable[at] = effect.sizes[k].detectable;
+    }
+    return scored;
+  } catch (const json::exception& problem) {
+    throw InputError(fmt::format("{}: does not tell how {} is set up: {}", OriginFile(run).string(),
+                                 effect.type, problem.what()));
+  }
+}
+
+std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,
+                                          const std::string& type) {
+  const json stands = OriginOfWhatStands(run), expected = OriginOf(run, {});
+  for (const char* what : {"version", "fit", "fit_key"})
+    if (!stands.contains(what) || stands.at(what) != expected.at(what)) return std::nullopt;
+  for (const RecordedEffect& effect : ReadDiagnosisFile(ResultFile(run)).ranking)
+    if (effect.type == type) return DiagnosedEffect(fitted, run, effect);
+  return std::nullopt;
+}
+
+}  // namespace lacuna

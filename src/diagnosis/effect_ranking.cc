@@ -1,0 +1,343 @@
+#include "diagnosis/effect_ranking.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "diagnosis/grip_nuisances.h"
+
+namespace lacuna {
+namespace {
+
+// First order cannot tell effects apart whose derivatives are this parallel.
+constexpr double kLookAlike = 0.95;
+// A nuisance is taken for granted with odds of e⁵, and where no effect explains as much.
+constexpr double kAdopted = 5;
+constexpr int kMostAdopted = 3;
+std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
+  std::vector<int> range(static_cast<size_t>(count));
+  std::iota(range.begin(), range.end(), static_cast<int>(first));
+  return range;
+}
+
+// Columns of all hypotheses, one after another.
+struct Hypotheses {
+  Eigen::MatrixXd by;
+  std::vector<LinearPrior> priors;
+
+  std::vector<int> Add(const Eigen::MatrixXd& columns, const std::vector<LinearPrior>& more) {
+    const Eigen::Index first = by.cols();
+    if (by.rows() == 0) by.resize(columns.rows(), 0);
+    by.conservativeResize(Eigen::NoChange, first + columns.cols());
+    by.rightCols(columns.cols()) = columns;
+    priors.insert(priors.end(), more.begin(), more.end());
+    return Range(first, columns.cols());
+  }
+};
+
+std::vector<LinearPrior> PriorsOf(const CandidateEffect& candidate) {
+  std::vector<LinearPrior> priors;
+  for (const CandidateAmount& amount : AmountsOf(candidate))
+    priors.push_back({0, amount.plausible, amount.is_positive});
+  return priors;
+}
+
+std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& candidates) {
+  std::vector<MisfitDirection> directions;
+  for (const CandidateEffect& candidate : candidates)
+    for (const int parameter : candidate.amplitude)
+      directions.push_back({.perturbation = {.effect = candidate.effect, .parameter = parameter}});
+  return directions;
+}
+
+// All hypotheses along one trajectory, as columns: the model's own parameters, the effects in their
+// variants, the nuisances.
+class HypothesisRanking {
+ public:
+  HypothesisRanking(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                    const std::vector<std::string>& without);
+
+  // Weighs them all. What is certain of the nuisances is taken into the model, and then all are
+  // weighed again.
+  void Weigh();
+  EffectRanking Result();
+
+ private:
+  // One effect.
+  struct Entry {
+    std::vector<size_t> variants = {};  // of candidates_
+    size_t best = 0;                    // of them
+  };
+
+  void AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots);
+  void AddNuisance(NuisanceCandidate candidate, bool adopted);
+  // The residual after a fit of these columns.
+  Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
+  void ScoreDiscretisation();
+  void ScoreEffects(const LinearFit& before);
+  double BestEvidence() const;  // of an effect; 0: none has more
+  bool IsBetterThanNeighbours(size_t candidate) const;
+  // The best nuisance that is not in the model; −1: there is none.
+  int ScoreNuisances(const LinearFit& before);
+  // The entries, with all that is known of them.
+  std::vector<ScoredEffect> ScoredEntries() const;
+  ScoredVariant Variant(size_t candidate) const;
+
+  const Eigen::VectorXd values_;
+  const Eigen::Index known_;  // the problem's parameters
+  std::vector<CandidateEffect> candidates_;
+  LinearisedMisfit misfit_;
+  Hypotheses hypotheses_;
+  std::vector<int> parameters_, base_;  // columns: of the problem's parameters; of the model
+  Eigen::Index always_ = 0;             // columns of nuisances that every model has
+  std::vector<std::vector<int>> of_candidate_, of_nuisance_;
+  EffectRanking ranking_;
+  std::optional<WeighedColumns> weighed_;
+  std::vector<Score> scores_;   // of candidates_
+  std::vector<Entry> entries_;  // the best first
+};
+
+HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
+                                     const Eigen::VectorXd& values,
+                                     const std::vector<std::string>& without)
+    : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
+  const PredictionStudy& study = problem.study();
+  problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
+  candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
+                                without, study.candidates});
+  const GripNuisances grips(problem);
+  std::vector<MisfitDirection> directions = DirectionsOf(candidates_);
+  const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());
+  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  misfit_ = problem.Linearise(values, true, directions);
+  CHECK(misfit_.usable) << "the fitted model could be predicted before: " << misfit_.message;
+
+  parameters_ = base_ =
+      hypotheses_.Add(misfit_.by.leftCols(known_), PriorsAbout(problem.parameters(), values));
+  AddEffects(misfit_.by.middleCols(known_, of_effects),
+             RunPilots(problem, values, misfit_, without));
+  // What a finer discretisation would do is nobody's merit; nor is what the object's dimensions do,
+  // of which bending stiffness goes with the cube.
+  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit_))
+    AddNuisance(std::move(nuisance), true);
+  const Eigen::MatrixXd by_grips = misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects);
+  if (auto jitter = grips.Jitter(problem, misfit_, by_grips)) AddNuisance(*std::move(jitter), true);
+  always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
+
+  // What no effect explains is taken for noise.
+  const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
+  ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols(), problem.LeastNoiseVariance());
+  for (NuisanceCandidate& nuisance : grips.Candidates(by_grips))
+    AddNuisance(std::move(nuisance), false);
+  for (NuisanceCandidate& nuisance : MeasurementNuisances(
+           problem, misfit_,
+           WhitenedRows(LeftBy(base_), misfit_, ranking_.noise.correlation_time, false)))
+    AddNuisance(std::move(nuisance), false);
+  weighed_ =
+      WeighColumns(misfit_, hypotheses_.by, hypotheses_.priors, ranking_.noise.correlation_time);
+}
+
+void HypothesisRanking::AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots) {
+  Eigen::Index column = 0;
+  for (const CandidateEffect& candidate : candidates_) {
+    const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
+    of_candidate_.push_back(hypotheses_.Add(by.middleCols(column, width), PriorsOf(candidate)));
+    column += width;
+  }
+  for (PilotHypothesis& pilot : pilots.tried) {
+    of_candidate_.push_back(hypotheses_.Add(pilot.by, PriorsOf(pilot.candidate)));
+    candidates_.push_back(std::move(pilot.candidate));
+  }
+  ranking_.untried = std::move(pilots.untried);
+}
+
+void HypothesisRanking::AddNuisance(NuisanceCandidate candidate, bool adopted) {
+  of_nuisance_.push_back(hypotheses_.Add(candidate.by, candidate.priors));
+  ranking_.nuisances.push_back({.candidate = std::move(candidate), .adopted = adopted});
+  if (adopted) base_ = Joined(base_, of_nuisance_.back());
+}
+
+Eigen::VectorXd HypothesisRanking::LeftBy(const std::vector<int>& chosen) const {
+  const LinearFit fit =
+      LinearModel(WhitenedRows(misfit_.residual, misfit_, 0, false),
+                  WhitenedRows(hypotheses_.by, misfit_, 0, false), hypotheses_.priors)
+          .Fit(chosen, 1);
+  return misfit_.residual + hypotheses_.by(Eigen::all, chosen) * fit.change;
+}
+
+void HypothesisRanking::Weigh() {
+  ScoreDiscretisation();
+  for (int adopted = 0;; ++adopted) {
+    const LinearFit before = weighed_->all.Fit(base_, ranking_.noise.variance);
+    ScoreEffects(before);
+    const int best = ScoreNuisances(before);
+    const double rival = BestEvidence();
+    if (best < 0 || adopted == kMostAdopted) break;
+    ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
+    if (nuisance.evidence < rival + kAdopted) break;
+    if (adopted == 0) ranking_.instead = ScoredEntries();
+    nuisance.adopted = true;
+    base_ = Joined(base_, of_nuisance_[static_cast<size_t>(best)]);
+  }
+}
+
+void HypothesisRanking::ScoreDiscretisation() {
+  const double variance = ranking_.noise.variance;
+  const LinearFit without = weighed_->all.Fit(parameters_, variance);
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (!nuisance.adopted) continue;
+    const LinearFit with = weighed_->all.Fit(Joined(parameters_, of_nuisance_[k]), variance);
+    nuisance.evidence = with.log_evidence - without.log_evidence;
+    nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
+    if (nuisance.candidate.unknown.cols() == 0) continue;
+    const LinearModel unknown = weighed_->all.WithResidual(
+        WhitenedRows(nuisance.candidate.unknown, misfit_, ranking_.noise.correlation_time, false),
+        weighed_->columns);
+    nuisance.doubt = 0.5 * unknown.Fit(parameters_, variance).misfit / variance;
+  }
+}
+
+void HypothesisRanking::ScoreEffects(const LinearFit& before) {
+  scores_.clear();
+  entries_.clear();
+  for (size_t c = 0; c < candidates_.size(); ++c) {
+    scores_.push_back(
+        ScoreOf(*weighed_, base_, before, of_candidate_[c], ranking_.noise.variance, misfit_));
+    auto same = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+      return candidates_[entry.best].type == candidates_[c].type;
+    });
+    if (same == entries_.end()) same = entries_.insert(entries_.end(), Entry{.best = c});
+    same->variants.push_back(c);
+    if (scores_[c].evidence > scores_[same->best].evidence) same->best = c;
+  }
+  for (const Entry& entry : entries_)
+    for (const size_t c : entry.variants)
+      scores_[c].evidence -= Price(entry.variants.size()) + Price(entries_.size());
+  std::stable_sort(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
+    return scores_[a.best].evidence > scores_[b.best].evidence;
+  });
+}
+
+double HypothesisRanking::BestEvidence() const {
+  return entries_.empty() ? 0 : std::max(0.0, scores_[entries_[0].best].evidence);
+}
+
+bool HypothesisRanking::IsBetterThanNeighbours(size_t candidate) const {
+  const CandidateEffect& own = candidates_[candidate];
+  if (own.position.IsSingle()) return false;
+  for (size_t other = 0; other < candidates_.size(); ++other)
+    if (other != candidate && candidates_[other].type == own.type &&
+        AreNeighbours(own.position, candidates_[other].position) &&
+        scores_[other].evidence >= scores_[candidate].evidence)
+      return false;
+  return true;
+}
+
+int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
+  int best = -1;
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (nuisance.adopted) continue;
+    const LinearFit with =
+        weighed_->all.Fit(Joined(base_, of_nuisance_[k]), ranking_.noise.variance);
+    nuisance.evidence = with.log_evidence - before.log_evidence - nuisance.candidate.price -
+                        Price(ranking_.nuisances.size());
+    nuisance.explained = std::clamp(1 - with.misfit / before.misfit, 0.0, 1.0);
+    if (best < 0 || nuisance.evidence > ranking_.nuisances[static_cast<size_t>(best)].evidence)
+      best = static_cast<int>(k);
+  }
+  return best;
+}
+
+ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
+  const LinearFit fit =
+      weighed_->fitted.Fit(Joined(base_, of_candidate_[candidate]), ranking_.noise.variance);
+  return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_)};
+}
+
+std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
+  std::vector<ScoredEffect> effects;
+  for (const Entry& entry : entries_) {
+    ScoredEffect& scored = effects.emplace_back();
+    static_cast<ScoredVariant&>(scored) = Variant(entry.best);
+    for (const CandidateAmount& amount : AmountsOf(scored.candidate)) {
+      scored.parameters.push_back(amount.name);
+      scored.units.push_back(amount.unit);
+    }
+    for (const Entry& other : entries_)
+      if (&other != &entry &&
+          weighed_->all.Collinearity(base_, of_candidate_[entry.best], of_candidate_[other.best],
+                                     ranking_.noise.variance) > kLookAlike)
+        scored.look_alikes.push_back(candidates_[other.best].type);
+    for (const size_t c : entry.variants)
+      if (c != entry.best && IsBetterThanNeighbours(c)) scored.elsewhere.push_back(Variant(c));
+    std::stable_sort(scored.elsewhere.begin(), scored.elsewhere.end(),
+                     [](const ScoredVariant& a, const ScoredVariant& b) {
+                       return a.score.evidence > b.score.evidence;
+                     });
+  }
+  return effects;
+}
+
+EffectRanking HypothesisRanking::Result() {
+  const double variance = ranking_.noise.variance;
+  ranking_.variants = static_cast<int>(candidates_.size());
+  const std::vector<int> adopted(base_.begin() + known_, base_.end());
+  ranking_.adopted.by = hypotheses_.by(Eigen::all, adopted);
+  ranking_.adopted.always = always_;
+  for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
+  std::vector<int> best_fit = base_;
+  if (BestEvidence() > 0) best_fit = Joined(base_, of_candidate_[entries_[0].best]);
+  ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
+                     Price(candidates_.size());
+  ranking_.effects = ScoredEntries();
+  for (const Entry& entry : entries_)
+    for (const size_t c : entry.variants)
+      ranking_.tried.push_back({candidates_[c].type, hypotheses_.by(Eigen::all, of_candidate_[c]),
+                                PriorsOf(candidates_[c]),
+                                Price(entry.variants.size()) + Price(entries_.size()), false});
+  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
+    const ScoredNuisance& nuisance = ranking_.nuisances[k];
+    if (!nuisance.adopted)
+      ranking_.tried.push_back({nuisance.candidate.name, nuisance.candidate.by,
+                                nuisance.candidate.priors,
+                                nuisance.candidate.price + Price(ranking_.nuisances.size()), true});
+  }
+  misfit_.by.resize(0, 0);
+  ranking_.misfit = std::move(misfit_);
+  return std::move(ranking_);
+}
+
+}  // namespace
+
+double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
+
+AdoptedNuisances AdoptedNuisances::Always() const {
+  return {by.leftCols(always), {priors.begin(), priors.begin() + always}, always};
+}
+
+AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const {
+  AdoptedNuisances with = *this;
+  with.by.conservativeResize(Eigen::NoChange, by.cols() + nuisance.by.cols());
+  with.by.rightCols(nuisance.by.cols()) = nuisance.by;
+  with.priors.insert(with.priors.end(), nuisance.priors.begin(), nuisance.priors.end());
+  return with;
+}
+
+EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                          Progress* progress, const std::vector<std::string>& without) {
+  progress->Begin("score", 0);
+  HypothesisRanking hypotheses(problem, values, without);
+  hypotheses.Weigh();
+  EffectRanking ranking = hypotheses.Result();
+  progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));
+  return ranking;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,97 @@
+#include "diagnosis/extended_experiment.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "diagnosis/model_change.h"
+#include "effects/effect_text.h"
+
+namespace lacuna {
+namespace {
+
+std::string Written(const Effect& effect, const std::filesystem::path& experiment) {
+  if (const auto text = FormatEffect(effect)) return *text;
+  throw InputError(fmt::format(
+      "{}: {} cannot be written down by the program; add the new effect to the file by hand",
+      experiment.string(), effect.Card().type));
+}
+
+std::string FittedEntry(const ModelParameter& parameter) {
+  const CalibratedParameter& prior = parameter.prior;
+  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  std::string entry = fmt::format("    - {{name: {}", prior.name);
+  if (std::isfinite(prior.min)) entry += fmt::format(", min: {}{}", prior.min, unit);
+  if (std::isfinite(prior.max)) entry += fmt::format(", max: {}{}", prior.max, unit);
+  if (std::isfinite(prior.prior_mean))
+    entry += fmt::format(", mean: {}{}, deviation: {}{}", prior.prior_mean, unit,
+                         prior.prior_deviation * (prior.log_scale ? prior.prior_mean : 1), unit);
+  return entry + "}\n";
+}
+
+}  // namespace
+
+std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
+                                              const std::filesystem::path& run,
+                                              const ScoredEffect& effect) {
+  const std::filesystem::path folder = std::filesystem::absolute(run).lexically_normal();
+  const std::filesystem::path parent =
+      folder.filename().empty() ? folder.parent_path().parent_path() : folder.parent_path();
+  const std::filesystem::path experiment =
+      std::filesystem::absolute(fitted.study.file).lexically_normal();
+  const PredictionStudy study = WithEffect(fitted.study, effect);
+  const std::string name = fitted.study.name + "+" + effect.candidate.type;
+
+  std::string text = fmt::format(
+      "# {} with {}{}, from the fit of {}.\n"
+      "use: {}\n"
+      "name: {}\n"
+      "output: {}\n"
+      "material: {}\n"
+      "effects:\n",
+      fitted.study.name, effect.candidate.type,
+      effect.candidate.replaces_material
+          ? " in place of " + fitted.study.effects.front()->Card().type
+          : "",
+      fitted.study.name, experiment.lexically_proximate(parent).generic_string(), name, name,
+      Written(*study.effects.front(), experiment));
+  for (size_t k = 1; k < study.effects.size(); ++k)
+    text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
+  std::vector<std::string> candidates;  // that are none yet
+  for (const OwnLaw& law : study.candidates)
+    if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
+  if (!study.candidates.empty())
+    text += fmt::format("candidates: [{}]\n", fmt::join(candidates, ", "));
+  text += "fit:\n  parameters:\n";
+  for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);
+  const std::filesystem::path file = parent / (name + ".yaml");
+  WriteFileAtomically(file, text);
+  return file;
+}
+
+std::string WhyUnseen(const ScoredEffect& effect) {
+  const std::string& type = effect.candidate.type;
+  const std::vector<CandidateAmount> amounts = AmountsOf(effect.candidate);
+  for (size_t k = 0; k < amounts.size(); ++k)
+    if (effect.score.detectable[static_cast<Eigen::Index>(k)] < amounts[k].plausible) return "";
+  const CandidateAmount& first = amounts.front();
+  const double detectable = effect.score.detectable.minCoeff();
+  if (!std::isfinite(detectable)) {
+    return fmt::format("{} does nothing in these recordings that the fitted parameters cannot do",
+                       type);
+  }
+  if (effect.candidate.IsPilot()) {
+    return fmt::format(
+        "what {} ({}) changes would have to be {:.2g} times as large to show in these recordings",
+        type, effect.candidate.variant, detectable);
+  }
+  return fmt::format(
+      "{} would have to be larger than is plausible to show in these recordings: {} of {:.2g} {}, "
+      "against {:.2g} {} at most",
+      type, first.name, detectable, first.unit, first.plausible, first.unit);
+}
+
+}  // namespace lacuna

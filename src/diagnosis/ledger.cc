@@ -1,0 +1,180 @@
+#include "diagnosis/ledger.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json MeasureToJson(const MisfitMeasure& measure) {
+  return {{"frames", measure.frames}, {"rms_m", measure.rms}, {"in_noise", measure.in_noise}};
+}
+
+json ErrorsToJson(const ModelErrors& errors) {
+  return {{"in_fit_rms_m", errors.in_fit_rms},
+          {"held_out_rms_m", errors.held_out_rms},
+          {"held_out_in_noise", errors.in_noise},
+          {"has_held_out", errors.has_held_out}};
+}
+
+json DiagnosisToJson(const DiagnosisRecord& diagnosis, const std::vector<std::string>& added) {
+  json tried = json::array();
+  for (const RecordedEffect& effect : diagnosis.ranking) {
+    if (!effect.refitted) continue;
+    tried.push_back({{"effect", effect.type},
+                     {"variant", effect.variant},
+                     {"first_order_evidence", effect.evidence},
+                     {"expected_held_out_in_noise", effect.expected_in_noise},
+                     {"message", effect.refit_message},
+                     {"evidence", effect.refit_evidence},
+                     {"errors", ErrorsToJson(effect.errors)},
+                     {"added", std::count(added.begin(), added.end(), effect.type) > 0}});
+  }
+  return {{"verdict", diagnosis.verdict},          {"effects", diagnosis.effects},
+          {"explanation", diagnosis.explanation},  {"experiment", diagnosis.experiment},
+          {"control_evidence", diagnosis.control}, {"tried", tried}};
+}
+
+json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path& folder) {
+  const LedgerModel& model = ledger.models[index];
+  json recordings = json::array();
+  for (const FittedRecording& recording : model.record.recordings)
+    recordings.push_back({{"name", recording.name},
+                          {"fitted", recording.fitted},
+                          {"in_fit", MeasureToJson(recording.in_fit)},
+                          {"held_out", MeasureToJson(recording.held_out)}});
+  json parameters = json::array();
+  for (const ParameterMove& move : model.moves) {
+    json entry = {{"name", move.name},
+                  {"unit", move.unit},
+                  {"value", move.after},
+                  {"low_95", Number(move.low)},
+                  {"high_95", Number(move.high)}};
+    if (!move.added && model.parent >= 0) {
+      entry["before"] = move.before;
+      entry["moved_by_deviations"] = Number(move.in_deviations);
+    }
+    parameters.push_back(entry);
+  }
+  json entry = {{"model", model.name},
+                {"run", model.run.lexically_proximate(folder).generic_string()},
+                {"usable", model.record.usable},
+                {"message", model.record.message},
+                {"noise_m", model.record.noise},
+                {"errors", ErrorsToJson(model.errors)},
+                {"recordings", recordings},
+                {"parameters", parameters}};
+  if (model.record.scan_noise > 0) entry["scan_noise_m"] = model.record.scan_noise;
+  if (model.parent >= 0) {
+    entry["parent"] = ledger.models[static_cast<size_t>(model.parent)].name;
+    entry["added"] = model.added;
+    entry["gain"] = model.gain;
+  }
+  if (model.diagnosis) {
+    std::vector<std::string> added;
+    for (const LedgerModel& other : ledger.models)
+      if (other.parent == static_cast<int>(index)) added.push_back(other.added);
+    entry["diagnosis"] = DiagnosisToJson(*model.diagnosis, added);
+  }
+  return entry;
+}
+
+}  // namespace
+
+const LedgerModel& Ledger::Best() const {
+  CHECK(!models.empty());
+  const LedgerModel* best = &models.front();
+  for (const LedgerModel& model : models)
+    if (model.record.usable && model.errors.in_noise < best->errors.in_noise) best = &model;
+  return *best;
+}
+
+ModelErrors ErrorsOf(const CalibrationRecord& record) {
+  struct Sum {
+    double square = 0, in_noise = 0;
+    int points = 0;
+    void Add(const MisfitMeasure& measure) {
+      square += measure.rms * measure.rms * measure.points;
+      in_noise += measure.in_noise * measure.in_noise * measure.points;
+      points += measure.points;
+    }
+    double Mean(double sum) const { return points > 0 ? std::sqrt(sum / points) : 0; }
+  };
+  Sum in_fit, held_out;
+  for (const FittedRecording& recording : record.recordings) {
+    in_fit.Add(recording.in_fit);
+    held_out.Add(recording.held_out);
+  }
+  const Sum& judged = held_out.points > 0 ? held_out : in_fit;
+  ModelErrors errors;
+  errors.in_fit_rms = in_fit.Mean(in_fit.square);
+  errors.held_out_rms = judged.Mean(judged.square);
+  errors.in_noise = errors.without_nuisances = judged.Mean(judged.in_noise);
+  errors.has_held_out = held_out.points > 0;
+  return errors;
+}
+
+std::vector<ParameterMove> MovesBetween(const CalibrationRecord& before,
+                                        const CalibrationRecord& after) {
+  std::vector<ParameterMove> moves;
+  for (const FittedParameter& parameter : after.parameters) {
+    ParameterMove move;
+    move.name = parameter.name;
+    move.unit = parameter.unit;
+    move.after = parameter.estimate.value;
+    move.low = parameter.estimate.low;
+    move.high = parameter.estimate.high;
+    const auto same =
+        std::find_if(before.parameters.begin(), before.parameters.end(),
+                     [&](const FittedParameter& other) { return other.name == parameter.name; });
+    move.added = same == before.parameters.end();
+    if (!move.added) {
+      move.before = same->estimate.value;
+      move.in_deviations = DeviationsTo(move.after, same->estimate, same->log_scale);
+    }
+    moves.push_back(move);
+  }
+  return moves;
+}
+
+LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& run,
+                            const CalibrationRecord& record, int parent, const std::string& added) {
+  CHECK_LT(parent, static_cast<int>(ledger.models.size()));
+  LedgerModel model;
+  model.run = std::filesystem::absolute(run).lexically_normal();
+  if (model.run.filename().empty()) model.run = model.run.parent_path();
+  model.name = model.run.filename().string();
+  model.parent = parent;
+  model.added = added;
+  model.record = record;
+  if (record.usable) model.errors = ErrorsOf(record);
+  const LedgerModel* before = parent < 0 ? nullptr : &ledger.models[static_cast<size_t>(parent)];
+  model.moves = MovesBetween(before != nullptr ? before->record : CalibrationRecord{}, record);
+  if (before != nullptr && record.usable && before->errors.in_noise > 0)
+    model.gain = 1 - model.errors.in_noise / before->errors.in_noise;
+  return model;
+}
+
+void SaveLedger(const Ledger& ledger, const std::filesystem::path& folder) {
+  const std::filesystem::path from = std::filesystem::absolute(folder).lexically_normal();
+  json models = json::array();
+  for (size_t k = 0; k < ledger.models.size(); ++k) models.push_back(ModelToJson(ledger, k, from));
+  const json all = {{"schema_version", 1},
+                    {"finished", !ledger.ending.empty()},
+                    {"ending", ledger.ending},
+                    {"best", ledger.Best().name},
+                    {"models", models}};
+  WriteFileAtomically(folder / "ledger.json", all.dump(2) + "\n");
+  WriteFileAtomically(folder / "ledger.txt", LedgerInWords(ledger));
+}
+
+}  // namespace lacuna

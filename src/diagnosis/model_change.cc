@@ -1,0 +1,118 @@
+#include "diagnosis/model_change.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// How far beyond the plausible range a fit may go, in parts of that range.
+constexpr double kMargin = 0.1;
+
+void ReplaceMaterial(const std::shared_ptr<Effect>& law, PredictionStudy* study) {
+  const std::shared_ptr<Effect> before = study->effects.front();
+  study->effects.front() = law;
+  for (ModelParameter& parameter : study->fitted) {
+    for (auto& [effect, index] : parameter.places) {
+      if (effect != before) continue;
+      const std::string& name = before->Card().parameters[index].name;
+      index = ParameterIndex(law->Card(), name);
+      CHECK_GE(index, 0) << law->Card().type << " has no " << name;
+      effect = law;
+    }
+  }
+}
+
+// The values that a fit of the effect starts from.
+Eigen::VectorXd StartOf(const ScoredVariant& scored) {
+  const CandidateEffect& candidate = scored.candidate;
+  Eigen::VectorXd values = candidate.effect->Parameters();
+  for (size_t k = 0; k < candidate.amplitude.size(); ++k) {
+    const int index = candidate.amplitude[k];
+    const ParameterCard& parameter = candidate.effect->Card().parameters[index];
+    const double size = scored.score.size[static_cast<Eigen::Index>(k)];
+    // Within what is plausible, and not at the null value, where other parameters have no meaning.
+    double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
+    if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
+    values[index] = start;
+  }
+  return values;
+}
+
+// Where another effect is what is missing, a fit would make this one do its work at any size.
+void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
+  const double range = plausible.plausible_max - plausible.plausible_min;
+  if (plausible.dimension.SameAs(kAngle)) {
+    // No direction is the last one: a range that ended there would shut off its neighbours.
+    prior->min = std::max(prior->min, prior->start - range);
+    prior->max = std::min(prior->max, prior->start + range);
+    return;
+  }
+  const double margin = kMargin * range;
+  // A pilot's place is taken from the recording, wherever that is.
+  const double low = std::min(prior->start, plausible.log_scale && plausible.plausible_min > 0
+                                                ? 0.5 * plausible.plausible_min
+                                                : plausible.plausible_min - margin);
+  const double high = std::max(prior->start, plausible.plausible_max + margin);
+  prior->min = std::max(prior->min, low);
+  prior->max = std::min(prior->max, high);
+}
+
+// Anywhere in a range: the mean and the deviation of an even distribution.
+void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior) {
+  prior->min = std::min(range.min, prior->start);
+  prior->max = std::max(range.max, prior->start);
+  prior->prior_mean = 0.5 * (range.min + range.max);
+  prior->prior_deviation = prior->typical = (range.max - range.min) / std::sqrt(12.0);
+}
+
+}  // namespace
+
+PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate) {
+  PredictionStudy with = study;
+  if (candidate.replaces_material)
+    ReplaceMaterial(candidate.effect, &with);
+  else
+    with.effects.push_back(candidate.effect);
+  return with;
+}
+
+PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored) {
+  CandidateEffect own = scored.candidate;
+  own.effect = WithParameters(*own.effect, StartOf(scored));
+  PredictionStudy with = WithCandidate(study, own);
+  if (own.replaces_material) return with;
+  for (ModelParameter& parameter : ModelParameters(with.effects)) {
+    if (parameter.places.front().first == own.effect) {
+      const int index = parameter.places.front().second;
+      const ParameterCard& card = own.effect->Card().parameters[index];
+      CalibratedParameter& prior = parameter.prior;
+      if (own.IsPilot()) {
+        const auto refined = own.refined.find(card.name);
+        if (refined == own.refined.end()) continue;
+        prior.prior_deviation = refined->second;
+      }
+      const bool is_amplitude = std::count(own.amplitude.begin(), own.amplitude.end(), index) > 0;
+      if (is_amplitude && !prior.log_scale) {
+        prior.prior_mean = card.null_value;
+        prior.prior_deviation = PlausibleScale(card);
+      }
+      if (const auto known = own.known.find(card.name); known != own.known.end())
+        KeepWithin(known->second, &prior);
+      else
+        KeepPlausible(card, &prior);
+      with.fitted.push_back(parameter);
+      continue;
+    }
+    // A modulus that the effect shares with the material moves with it.
+    for (ModelParameter& known : with.fitted)
+      if (known.places.front() == parameter.places.front()) known.places = parameter.places;
+  }
+  return with;
+}
+
+}  // namespace lacuna

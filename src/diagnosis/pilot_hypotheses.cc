@@ -1,0 +1,123 @@
+#include "diagnosis/pilot_hypotheses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "diagnosis/model_change.h"
+#include "diagnosis/plane_proposals.h"
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// m: measured points stand off the body's edges, which sink into the plane.
+constexpr double kOffsetDeviation = 2e-3;
+constexpr size_t kMostPlanes = 3;
+constexpr double kFriction = 0.5;  // coefficient of the pilot that rubs
+// A plane that gives way by a tenth of what an element does is stiff enough.
+constexpr double kStiffer = 10;
+const char kContact[] = "plane_contact";
+
+// NaN: the law has none.
+double ParameterOf(const Effect& effect, const std::string& name) {
+  const int index = ParameterIndex(effect.Card(), name);
+  return index < 0 ? std::nan("") : effect.Parameters()[index];
+}
+
+double ContactStiffness(const Body& body, const Effect& material) {
+  const ParameterCard& card = FindEntry(kContact)->card->parameters.front();
+  const double size = std::cbrt(body.weight.sum() / body.ElementCount());
+  return std::clamp(kStiffer * ParameterOf(material, "young_modulus") / size, card.plausible_min,
+                    card.plausible_max);
+}
+
+CandidateEffect Contact(const ProposedPlane& plane, double stiffness, double friction) {
+  CandidateEffect candidate;
+  candidate.type = kContact;
+  candidate.variant =
+      fmt::format("normal ({:.2g}, {:.2g}, {:.2g}), at {:.1f} mm{}", plane.normal.x() + 0.0,
+                  plane.normal.y() + 0.0, plane.normal.z() + 0.0, 1e3 * plane.offset,
+                  friction > 0 ? ", with friction" : "");
+  candidate.effect = MakeEffect(kContact, {{"stiffness", stiffness},
+                                           {"normal_x", plane.normal.x()},
+                                           {"normal_y", plane.normal.y()},
+                                           {"normal_z", plane.normal.z()},
+                                           {"offset", plane.offset},
+                                           {"friction", friction}});
+  candidate.refined["offset"] = kOffsetDeviation;
+  if (friction > 0) candidate.refined["friction"] = friction;
+  return candidate;
+}
+
+// The other laws that have all of the material's moduli.
+std::vector<CandidateEffect> OtherLaws(const Effect& material) {
+  std::vector<CandidateEffect> laws;
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const EffectCard& card = *entry.card;
+    if (entry.kind != CatalogueEntry::Kind::kMaterial || card.type == material.Card().type)
+      continue;
+    Eigen::VectorXd moduli(card.parameters.size());
+    for (size_t k = 0; k < card.parameters.size(); ++k)
+      moduli[static_cast<Eigen::Index>(k)] = ParameterOf(material, card.parameters[k].name);
+    if (!moduli.allFinite()) continue;
+    CandidateEffect candidate;
+    candidate.type = card.type;
+    candidate.variant = "in place of " + material.Card().type;
+    candidate.effect = entry.make(moduli);
+    candidate.replaces_material = true;
+    laws.push_back(std::move(candidate));
+  }
+  return laws;
+}
+
+}  // namespace
+
+PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                          const LinearisedMisfit& misfit, const std::vector<std::string>& without) {
+  problem.SetModel(values);
+  const PredictionStudy study = problem.AsChosen();
+  const Effect& material = *study.effects.front();
+  const auto is_wanted = [&](const std::string& type) {
+    return std::count(without.begin(), without.end(), type) == 0;
+  };
+  PilotHypotheses pilots;
+  std::vector<CandidateEffect> candidates;
+  for (const CandidateEffect& law : OtherLaws(material))
+    if (is_wanted(law.type)) candidates.push_back(law);
+  if (is_wanted(kContact)) {
+    std::vector<ProposedPlane> planes = ProposePlanes(problem, values, misfit);
+    planes.resize(std::min(planes.size(), kMostPlanes));
+    const double stiffness = ContactStiffness(*problem.body(), material);
+    for (const ProposedPlane& plane : planes) candidates.push_back(Contact(plane, stiffness, 0));
+    if (planes.empty())
+      pilots.untried.push_back(
+          {kContact, "the model crosses no plane that what was measured stays behind"});
+    else
+      candidates.push_back(Contact(planes.front(), stiffness, kFriction));
+  }
+
+  std::map<std::string, std::string> failed;
+  for (CandidateEffect& candidate : candidates) {
+    const PredictionStudy changed = WithCandidate(study, candidate);
+    const CalibrationProblem pilot(changed, problem.body()->mesh);
+    const LinearisedMisfit run = pilot.Linearise(values, false, {}, &misfit);
+    if (!run.usable) {
+      failed.try_emplace(candidate.type, "its pilot cannot be simulated: " + run.message);
+    } else {
+      pilots.tried.push_back({std::move(candidate), run.residual - misfit.residual});
+    }
+  }
+  for (const auto& [type, why] : failed) {
+    const bool tried = std::any_of(
+        pilots.tried.begin(), pilots.tried.end(),
+        [&, type = type](const PilotHypothesis& pilot) { return pilot.candidate.type == type; });
+    if (!tried) pilots.untried.push_back({type, why});
+  }
+  problem.SetModel(values);  // the pilots share its effects
+  return pilots;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,183 @@
+#include "diagnosis/plane_proposals.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fem/prediction.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kSameWay = 0.98;  // cosine of directions that are tried once
+constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+
+// Predicted minus measured, of one recording: 3 × (points·frames), frames outermost; NaN where a
+// point was not seen. What is the same in all frames is the points' own.
+Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
+  const Eigen::Index frames = static_cast<Eigen::Index>(part.observed.size());
+  const Eigen::Index points = part.observed.front().count.size();
+  const Eigen::Index components = part.layout.series / points;
+  std::vector<int> count;
+  for (const Observed& seen : part.observed)
+    count.insert(count.end(), seen.count.begin(), seen.count.end());
+  const Eigen::VectorXd residual = misfit.residual.segment(part.first_row, part.layout.Rows());
+  const Eigen::MatrixXd places =
+      CommonError(residual, count, static_cast<int>(points), part.errors,
+                  std::vector<char>(part.observed.size(), 1), part.layout.deformation);
+  Eigen::Matrix3Xd displacements =
+      Eigen::Matrix3Xd::Constant(3, points * frames, std::numeric_limits<double>::quiet_NaN());
+  for (Eigen::Index f = 0; f < frames; ++f) {
+    const Observed& seen = part.observed[static_cast<size_t>(f)];
+    for (Eigen::Index i = 0; i < points; ++i) {
+      if (seen.count[i] == 0) continue;
+      Eigen::VectorXd own = residual.segment(components * (f * points + i), components);
+      if (part.layout.deformation.empty())
+        own -= places.col(i);
+      else
+        own -= part.layout.deformation[static_cast<size_t>(f * points + i)] * places.col(i);
+      if (components == 3)
+        displacements.col(f * points + i) = own;
+      else
+        displacements.col(f * points + i) = own[0] * seen.normal.col(i);
+    }
+  }
+  return displacements;
+}
+
+// The farthest that the model and the object come in some directions.
+struct Reach {
+  Eigen::MatrixXd way;  // 3 × directions, unit
+  Eigen::VectorXd model, object;
+
+  explicit Reach(Eigen::MatrixXd directions)
+      : way(std::move(directions)),
+        model(Eigen::VectorXd::Constant(way.cols(), kNowhere)),
+        object(model) {}
+  void Add(const Eigen::Vector3d& predicted, const Eigen::Vector3d& displacement) {
+    model = model.cwiseMax(way.transpose() * predicted);
+    object = object.cwiseMax(way.transpose() * (predicted - displacement));
+  }
+};
+
+Eigen::MatrixXd Ways(const PredictionStudy& study, const Eigen::Vector3d& largest_misfit) {
+  std::vector<Eigen::Vector3d> ways;
+  const auto add = [&](const Eigen::Vector3d& way) {
+    const double length = way.norm();
+    if (length == 0) return;
+    const bool known = std::any_of(ways.begin(), ways.end(), [&](const Eigen::Vector3d& other) {
+      return other.dot(way) > kSameWay * length;
+    });
+    if (!known) ways.emplace_back(way / length);
+  };
+  for (const double sign : {1.0, -1.0})
+    for (int axis = 0; axis < 3; ++axis) add(sign * Eigen::Vector3d::Unit(axis));
+  for (const auto& effect : study.effects) {
+    if (effect->Card().type != "gravity") continue;
+    const Eigen::Vector3d gravity = effect->Parameters().head<3>();
+    add(gravity);
+    add(-gravity);
+  }
+  add(largest_misfit);
+  Eigen::MatrixXd all(3, static_cast<Eigen::Index>(ways.size()));
+  for (size_t k = 0; k < ways.size(); ++k) all.col(static_cast<Eigen::Index>(k)) = ways[k];
+  return all;
+}
+
+// For each node, the measured points by their distance at rest, nearest first.
+std::vector<std::vector<int>> PointsNear(const std::vector<int>& nodes,
+                                         const Eigen::Matrix3Xd& rest,
+                                         const Eigen::Matrix3Xd& places) {
+  std::vector<std::vector<int>> near;
+  for (const int node : nodes) {
+    std::vector<std::pair<double, int>> order;
+    for (Eigen::Index i = 0; i < places.cols(); ++i)
+      order.emplace_back((places.col(i) - rest.col(node)).squaredNorm(), static_cast<int>(i));
+    std::sort(order.begin(), order.end());
+    near.emplace_back();
+    for (const auto& [distance, point] : order) near.back().push_back(point);
+  }
+  return near;
+}
+
+void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
+             const Eigen::Matrix3Xd& displacements, Reach* reach) {
+  const Model& model = recording.model();
+  const std::vector<char> gripped = GrippedNodes(model);
+  std::vector<int> nodes;
+  for (const int node : model.body->boundary.node)
+    if (!gripped[static_cast<size_t>(node)]) nodes.push_back(node);
+  const std::vector<std::vector<int>> near =
+      PointsNear(nodes, model.body->mesh.nodes, recording.observer().Places());
+  const Eigen::Index points = recording.PointCount();
+  std::vector<double> times;
+  for (const int frame : recording.item().frames)
+    times.push_back(recording.item().recording.times[frame] - recording.Delay(nuisance));
+  const PredictionSummary summary = Predict(
+      model, recording.Options(nuisance), times, {}, [&](int frame, const PredictedState& state) {
+        for (size_t k = 0; k < nodes.size(); ++k) {
+          for (const int point : near[k]) {
+            const auto displacement = displacements.col(frame * points + point);
+            if (displacement.hasNaN()) continue;
+            reach->Add(state.position.segment<3>(3 * nodes[k]), displacement);
+            break;
+          }
+        }
+      });
+  CHECK(summary.IsUsable()) << "could be predicted before: " << summary.message;
+}
+
+}  // namespace
+
+std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
+                                         const Eigen::VectorXd& values,
+                                         const LinearisedMisfit& misfit) {
+  problem.SetModel(values);
+  std::vector<Eigen::Matrix3Xd> displacements;
+  Eigen::Vector3d largest = Eigen::Vector3d::Zero();
+  double noise = 0;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    displacements.push_back(Displacements(misfit, part));
+    noise = std::max(noise, part.errors.noise);
+    for (const auto& displacement : displacements.back().colwise())
+      if (displacement.norm() > largest.norm()) largest = displacement;
+  }
+
+  // The largest of so many errors is about √(2 ln count) σ: a crossing by less is noise.
+  const double clear =
+      noise * std::sqrt(2 * std::log(static_cast<double>(misfit.residual.size()) + 1));
+
+  // The measured points alone tell where nothing is crossed.
+  Reach of_points(Ways(problem.study(), largest));
+  for (size_t p = 0; p < misfit.parts.size(); ++p) {
+    Eigen::Index column = 0;
+    for (const Observed& seen : misfit.parts[p].observed)
+      for (Eigen::Index i = 0; i < seen.count.size(); ++i, ++column)
+        if (seen.count[i] > 0)
+          of_points.Add(seen.measured.col(i) + displacements[p].col(column),
+                        displacements[p].col(column));
+  }
+  std::vector<int> crossed;
+  for (Eigen::Index k = 0; k < of_points.way.cols(); ++k)
+    if (of_points.model[k] - of_points.object[k] > clear) crossed.push_back(static_cast<int>(k));
+  std::vector<ProposedPlane> planes;
+  if (crossed.empty()) return planes;
+
+  Reach of_body(of_points.way(Eigen::all, crossed));
+  for (size_t p = 0; p < misfit.parts.size(); ++p) {
+    const size_t recording = misfit.parts[p].recording;
+    AddBody(problem.models()[recording], problem.NuisanceOf(recording, values), displacements[p],
+            &of_body);
+  }
+  for (Eigen::Index k = 0; k < of_body.way.cols(); ++k) {
+    const double crossing = of_body.model[k] - of_body.object[k];
+    if (crossing > clear) planes.push_back({-of_body.way.col(k), -of_body.object[k], crossing});
+  }
+  std::stable_sort(planes.begin(), planes.end(),
+                   [](const auto& a, const auto& b) { return a.crossing > b.crossing; });
+  return planes;
+}
+
+}  // namespace lacuna

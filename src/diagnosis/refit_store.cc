@@ -1,0 +1,73 @@
+#include "diagnosis/refit_store.h"
+
+#include <fstream>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "calibration/calibration_record.h"
+#include "core/atomic_file.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+json ToJson(const Calibration& calibration) {
+  json estimates = json::array();
+  for (const ParameterEstimate& estimate : calibration.estimates)
+    estimates.push_back(EstimateToJson(estimate));
+  const Eigen::VectorXd& parameters = calibration.parameters;
+  return {{"usable", calibration.usable},
+          {"message", calibration.message},
+          {"parameters", std::vector<double>(parameters.begin(), parameters.end())},
+          {"estimates", estimates},
+          {"rms", calibration.rms}};
+}
+
+Calibration FromJson(const json& value) {
+  Calibration calibration;
+  calibration.usable = value.at("usable");
+  calibration.message = value.at("message");
+  const std::vector<double> parameters = value.at("parameters");
+  calibration.parameters = Eigen::Map<const Eigen::VectorXd>(
+      parameters.data(), static_cast<Eigen::Index>(parameters.size()));
+  for (const json& estimate : value.at("estimates"))
+    calibration.estimates.push_back(EstimateFromJson(estimate));
+  calibration.rms = value.at("rms");
+  return calibration;
+}
+
+}  // namespace
+
+RefitStore::RefitStore(std::filesystem::path file, json origin)
+    : file_(std::move(file)), content_{{"schema_version", 1}, {"of", std::move(origin)}} {
+  content_["fits"] = json::object();
+  std::ifstream stream(file_);
+  const json there = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  if (!there.is_object() || there.value("of", json()) != content_.at("of")) return;
+  try {
+    for (const auto& [key, fit] : there.at("fits").items()) fits_[key] = FromJson(fit);
+    content_ = there;
+  } catch (const json::exception&) {
+    fits_.clear();  // it was changed by another hand
+  }
+}
+
+const Calibration* RefitStore::Find(const std::string& key) const {
+  const auto found = fits_.find(key);
+  return found != fits_.end() ? &found->second : nullptr;
+}
+
+void RefitStore::Keep(const std::string& key, const Calibration& calibration) {
+  content_["fits"][key] = ToJson(calibration);
+  WriteFileAtomically(file_, content_.dump() + "\n");
+  fits_[key] = calibration;
+}
+
+void RefitStore::Drop() {
+  std::error_code ignored;  // what stays behind is of the same fit, or not read
+  std::filesystem::remove(file_, ignored);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,35 @@
+#include "experiment/known_loads.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "fem/prescribed_force.h"
+
+namespace lacuna {
+
+std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
+                                                     const Model& grips_and_body) {
+  std::vector<std::shared_ptr<Effect>> loads;
+  const Body& body = *grips_and_body.body;
+  const Eigen::VectorXd areas = NodeBoundaryAreas(body);
+  const std::vector<char> gripped = GrippedNodes(grips_and_body);
+  for (const MeasuredForce& force : recording.forces) {
+    const std::string where = recording.file.string() + ": " + force.name;
+    std::vector<int> nodes =
+        NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh.nodes); });
+    std::erase_if(nodes, [&areas](int node) { return areas[node] == 0; });
+    if (nodes.empty())
+      throw InputError(where + " acts on no boundary node: its region is too small");
+    if (std::all_of(nodes.begin(), nodes.end(), [&](int node) { return gripped[node]; }))
+      throw InputError(where + " acts only where the object is held, and would move nothing");
+    const Eigen::VectorXi chosen =
+        Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+    loads.push_back(std::make_shared<PrescribedForce>(
+        BoundaryShares(body, chosen), [force](double time) { return ForceAt(force, time); }));
+  }
+  return loads;
+}
+
+}  // namespace lacuna

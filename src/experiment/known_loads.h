@@ -1,0 +1,21 @@
+// The forces that a recording has measured, as loads on the body.
+#ifndef LACUNA_EXPERIMENT_KNOWN_LOADS_H_
+#define LACUNA_EXPERIMENT_KNOWN_LOADS_H_
+
+#include <memory>
+#include <vector>
+
+#include "fem/model.h"
+#include "scan/recording.h"
+
+namespace lacuna {
+
+// The recording's measured forces as loads on the boundary nodes of their regions. Throws
+// InputError when a region holds no boundary node, or only nodes that a grip holds, where the force
+// would move nothing.
+std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
+                                                     const Model& grips_and_body);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_KNOWN_LOADS_H_

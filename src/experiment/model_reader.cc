@@ -1,0 +1,121 @@
+#include "experiment/model_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "core/expression.h"
+#include "effects/catalogue.h"
+
+namespace lacuna {
+
+MeshSettings ReadMeshSettings(const Config& config) {
+  MeshSettings settings;
+  settings.tets.radius_edge_ratio =
+      config.Number("radius_edge_ratio", {1, 100, true, false}, settings.tets.radius_edge_ratio);
+  settings.tets.max_volume = config.Quantity("max_volume", kVolume, kPositive);
+  settings.tets.preserve_surface = config.Flag("preserve_surface", settings.tets.preserve_surface);
+  settings.order = config.Integer("order", 1, 2, 1);
+  return settings;
+}
+
+std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config) {
+  std::vector<std::shared_ptr<Effect>> effects;
+  effects.push_back(MakeMaterial(config.Child("material")));
+  std::set<std::string> listed;
+  for (const Config& item : config.Items("effects")) {
+    effects.push_back(MakeEffect(item, effects.front().get()));
+    const EffectCard& card = effects.back()->Card();
+    if (!listed.insert(card.type).second && !card.repeatable)
+      item.Fail("type", fmt::format("{} is listed twice", card.type));
+  }
+  return effects;
+}
+
+std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material) {
+  std::vector<OwnLaw> laws;
+  for (const Config& item : config.Items("candidates")) {
+    const std::string type = item.Text("type");
+    if (FindEntry(type) != nullptr && FindEntry(type)->make != nullptr)
+      item.Fail("type", fmt::format("a diagnosis tries {} anyway; candidates are laws of your own, "
+                                    "of type expression",
+                                    type));
+    const OwnLaw law{item.Text("name", ""), MakeEffect(item, material)};
+    if (!Expression::IsName(law.name))
+      item.Fail("name", "a candidate's is of letters, digits and underscores");
+    if (FindEntry(law.name) != nullptr) item.Fail("name", "is that of an effect of the catalogue");
+    for (const OwnLaw& other : laws)
+      if (other.name == law.name) item.Fail("name", "is that of another candidate");
+    laws.push_back(law);
+  }
+  return laws;
+}
+
+std::vector<std::string> ImplausibleParameters(
+    const std::vector<std::shared_ptr<Effect>>& effects) {
+  constexpr double kFar = 10;  // times beyond the plausible range
+  std::vector<std::string> warnings;
+  for (const auto& effect : effects) {
+    const EffectCard& card = effect->Card();
+    const Eigen::VectorXd values = effect->Parameters();
+    for (size_t k = 0; k < card.parameters.size(); ++k) {
+      const ParameterCard& parameter = card.parameters[k];
+      const double value = values[static_cast<Eigen::Index>(k)];
+      const bool too_small =
+          parameter.log_scale && value > 0 && value < parameter.plausible_min / kFar;
+      const bool too_large = std::abs(value) > kFar * std::max(std::abs(parameter.plausible_min),
+                                                               std::abs(parameter.plausible_max));
+      if (!too_small && !too_large) continue;
+      warnings.push_back(fmt::format("{}.{} is {:g} {}; {:g} to {:g} is usual for soft objects",
+                                     card.type, parameter.name, value, parameter.dimension.unit,
+                                     parameter.plausible_min, parameter.plausible_max));
+    }
+  }
+  return warnings;
+}
+
+TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name) {
+  return config.Choice<TimeScheme>("scheme",
+                                   {{"quasi_static", TimeScheme::kQuasiStatic},
+                                    {"implicit_euler", TimeScheme::kImplicitEuler},
+                                    {"bdf2", TimeScheme::kBdf2},
+                                    {"two_step", TimeScheme::kTwoStep}},
+                                   default_name);
+}
+
+double Profile::At(double time) const {
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (after == times.begin()) return values.front();
+  if (after == times.end()) return values.back();
+  const size_t i = static_cast<size_t>(after - times.begin());
+  const double share = (time - times[i - 1]) / (times[i] - times[i - 1]);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+Profile ReadProfile(const Config& config) {
+  const std::optional<Config> entry = config.OptionalChild("profile");
+  if (!entry) return {{0.0}, {1.0}};
+  Profile profile;
+  profile.times = entry->Quantities("times", kTime, kAnyValue);
+  profile.values = entry->Quantities("values", kDimensionless, kAnyValue);
+  if (profile.times.empty()) entry->Fail("times", "expected a list of times, e.g. [0 s, 0.5 s]");
+  if (profile.values.size() != profile.times.size()) {
+    entry->Fail("values", "expected as many values as times");
+  }
+  for (size_t i = 1; i < profile.times.size(); ++i) {
+    if (!(profile.times[i] > profile.times[i - 1]))
+      entry->Fail("times", "expected ascending times");
+  }
+  return profile;
+}
+
+Eigen::VectorXi NodesIn(const Region& region, const Eigen::Matrix3Xd& nodes) {
+  const std::vector<int> selected = SelectNodes(region, nodes);
+  return Eigen::Map<const Eigen::VectorXi>(selected.data(),
+                                           static_cast<Eigen::Index>(selected.size()));
+}
+
+}  // namespace lacuna

@@ -1,0 +1,52 @@
+#include "experiment/observer.h"
+
+#include "geometry/embedding.h"
+
+namespace lacuna {
+
+Eigen::MatrixXd LinearRows::operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const {
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(Count(), nodal.cols());
+  for (Eigen::Index k = 0; k < nodal.cols(); ++k)
+    for (int row = 0; row < Count(); ++row)
+      for (int entry = begin[row]; entry < begin[row + 1]; ++entry)
+        product(row, k) += weight[entry] * nodal(column[entry], k);
+  return product;
+}
+
+MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
+    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.marker_places)) {
+  LinearRows rows;
+  for (Eigen::Index m = 0; m < places_.tet.size(); ++m) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (Eigen::Index a = 0; a < places_.weight.rows(); ++a) {
+        rows.column.push_back(3 * mesh.tets(a, places_.tet[m]) + axis);
+        rows.weight.push_back(places_.weight(a, m));
+      }
+      rows.begin.push_back(static_cast<int>(rows.column.size()));
+    }
+  }
+  rows_ = std::make_shared<const LinearRows>(std::move(rows));
+}
+
+std::vector<Eigen::Matrix3d> MarkerObserver::DeformationAt(const Eigen::VectorXd& position) const {
+  std::vector<Eigen::Matrix3d> deformation;
+  const auto nodes = position.reshaped(3, mesh_.NodeCount());
+  for (Eigen::Index m = 0; m < places_.tet.size(); ++m)
+    deformation.push_back(DeformationGradientAt(places_, m, mesh_, nodes));
+  return deformation;
+}
+
+Observed MarkerObserver::Observe(int frame, const Eigen::VectorXd& position) const {
+  Observed observed;
+  observed.rows = rows_;
+  observed.deformation = DeformationAt(position);
+  observed.measured = recording_.markers.positions[frame];
+  observed.target = observed.measured.reshaped();
+  observed.count.resize(observed.measured.cols());
+  for (Eigen::Index m = 0; m < observed.count.size(); ++m)
+    observed.count[m] = observed.measured.col(m).allFinite() ? 1 : 0;
+  observed.offered = observed.used = observed.count.sum();
+  return observed;
+}
+
+}  // namespace lacuna

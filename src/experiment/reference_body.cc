@@ -1,0 +1,134 @@
+#include "experiment/reference_body.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "geometry/mesh_io.h"
+#include "geometry/sheet.h"
+#include "meshing/tetrahedralize.h"
+
+namespace lacuna {
+namespace {
+
+SheetPosition PositionOf(SheetFace face) {
+  // The scanned side is the one that its normals point to.
+  return face == SheetFace::kFront ? SheetPosition::kTop : SheetPosition::kMiddle;
+}
+
+TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::string>* notes) {
+  const ReferenceShape& reference = request.recording.reference;
+  if (reference.source == ReferenceSource::kMesh) {
+    TriMeshFile given = ReadTriMesh(reference.file);
+    notes->insert(notes->end(), given.notes.begin(), given.notes.end());
+    given.mesh.vertices = reference.world_from_file * given.mesh.vertices;
+    return given.mesh;
+  }
+  if (request.recording.tracked && request.recording.connectivity.cols() > 0) {
+    const Frame frame = LoadFrame(request.recording, request.first_frame);
+    if (frame.cloud.Size() != frame.row_count) {
+      throw InputError(fmt::format("{}: frame {}: the reference frame lacks {} of its {} points",
+                                   request.recording.file.string(), request.first_frame,
+                                   frame.row_count - frame.cloud.Size(), frame.row_count));
+    }
+    return {frame.cloud.points, request.recording.connectivity};
+  }
+  return request.first_surface != nullptr ? *request.first_surface : TriMesh{};
+}
+
+// Regions that list nodes mean the file's numbers; a reader that dropped nodes changed them.
+void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile& given) {
+  bool renumbered = false;
+  for (Eigen::Index i = 0; i < given.node_in_file.size(); ++i)
+    renumbered = renumbered || given.node_in_file[i] != i;
+  if (!renumbered) return;
+  std::vector<Region> regions = request.regions;
+  regions.insert(regions.end(), request.recording.fixed.begin(), request.recording.fixed.end());
+  for (const RecordedGrip& grip : request.recording.grips) regions.push_back(grip.region);
+  for (const Region& region : regions) {
+    if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
+    throw InputError(fmt::format(
+        "{}: has nodes that no tetrahedron uses, so the node numbers of region \"{}\" would shift; "
+        "remove them or describe the region by its shape",
+        request.recording.reference.file.string(), region.name));
+  }
+}
+
+MeshRecord Describe(const TetMesh& mesh) {
+  const TetQuality quality = MeasureTets(mesh);
+  return {.node_count = mesh.NodeCount(),
+          .tet_count = mesh.TetCount(),
+          .order = mesh.Order(),
+          .volume = quality.total_volume,
+          .smallest_angle = quality.min_dihedral_angle,
+          .largest_radius_edge_ratio = quality.radius_edge_ratio.max};
+}
+
+// Told before the memory is gone.
+void RefuseTooManyTets(const ReferenceRequest& request, const TriMesh& surface) {
+  constexpr double kMost = 2e7;
+  if (request.mesh.tets.max_volume == 0) return;
+  const double tets = EnclosedVolume(surface) / request.mesh.tets.max_volume;
+  if (tets <= kMost) return;
+  throw InputError(fmt::format(
+      "{}: mesh.max_volume: {:g} m³ would divide a body of {:.3g} m³ into {:.2g} tetrahedra, more "
+      "than {:g}",
+      request.name, request.mesh.tets.max_volume, EnclosedVolume(surface), tets, kMost));
+}
+
+}  // namespace
+
+ReferenceBody MakeReferenceBody(const ReferenceRequest& request) {
+  const ReferenceShape& reference = request.recording.reference;
+  ReferenceBody body;
+  if (reference.source == ReferenceSource::kTetMesh) {
+    TetMeshFile given = ReadTetMesh(reference.file);
+    given.mesh.nodes = reference.world_from_file * given.mesh.nodes;
+    RefuseRenumberedRegions(request, given);
+    body.mesh = given.mesh;
+    body.notes = given.notes;
+  } else {
+    const TriMesh surface = ReferenceSurface(request, &body.notes);
+    if (surface.triangles.cols() == 0) {
+      throw InputError(
+          fmt::format("{}: the reference shape has no surface; give a mesh under "
+                      "`reference`, or frames that surround the object",
+                      request.recording.file.string()));
+    }
+    if (reference.sheet_thickness > 0) {
+      body.mesh = ThickenToTets(surface, reference.sheet_thickness, request.sheet_layers,
+                                PositionOf(reference.sheet_face));
+    } else {
+      RefuseTooManyTets(request, surface);
+      const MeshResult meshed = MeshTetrahedra(surface, request.mesh.tets);
+      if (!meshed.IsUsable()) {
+        throw InputError(fmt::format("{}: the reference shape cannot be meshed: {}",
+                                     request.recording.file.string(), meshed.message));
+      }
+      body.mesh = meshed.mesh;
+      body.notes.insert(body.notes.end(), meshed.notes.begin(), meshed.notes.end());
+    }
+  }
+  if (request.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);
+  body.quality = Describe(body.mesh);
+  return body;
+}
+
+void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder) {
+  WriteTetMesh(folder / "body.msh", body.mesh);
+  std::string notes;
+  for (const std::string& note : body.notes) notes += note + "\n";
+  WriteFileAtomically(folder / "notes.txt", notes);
+}
+
+ReferenceBody ReadReferenceBody(const std::filesystem::path& folder) {
+  ReferenceBody body;
+  body.mesh = ReadTetMesh(folder / "body.msh").mesh;
+  body.quality = Describe(body.mesh);
+  std::ifstream notes(folder / "notes.txt");
+  for (std::string note; std::getline(notes, note);) body.notes.push_back(note);
+  return body;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,43 @@
+// Stage 4 of the paper: the undeformed body, from the first surface or from a given shape.
+#ifndef LACUNA_EXPERIMENT_REFERENCE_BODY_H_
+#define LACUNA_EXPERIMENT_REFERENCE_BODY_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiment/model_reader.h"
+#include "geometry/tet_mesh.h"
+#include "geometry/tri_mesh.h"
+#include "record/run_record.h"
+#include "scan/recording.h"
+
+namespace lacuna {
+
+struct ReferenceBody {
+  TetMesh mesh;  // of the study's order, world frame, m
+  MeshRecord quality;
+  std::vector<std::string> notes;
+};
+
+// What the undeformed body is made from.
+struct ReferenceRequest {
+  const std::string& name;  // of the study, for messages
+  const Recording& recording;
+  const MeshSettings& mesh;
+  int sheet_layers = 1;
+  int first_frame = 0;
+  const TriMesh* first_surface = nullptr;  // of that frame; null: there is none
+  // Regions of the study, besides the recording's, that may list nodes of a given mesh.
+  std::vector<Region> regions = {};
+};
+
+// Throws InputError when the shape cannot be meshed, saying why and where.
+ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
+
+void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
+ReferenceBody ReadReferenceBody(const std::filesystem::path& folder);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_REFERENCE_BODY_H_

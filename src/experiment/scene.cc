@@ -1,0 +1,211 @@
+#include "experiment/scene.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Geometry>
+
+#include "core/interrupt.h"
+#include "fem/prescribed_force.h"
+#include "geometry/rounded_box.h"
+#include "scan/scan_writer.h"
+
+namespace lacuna {
+namespace {
+
+Eigen::Vector3d ReadAxis(const Config& config, const Eigen::Vector3d& default_axis) {
+  const Eigen::Vector3d axis = config.Vector("axis", kDimensionless, default_axis);
+  if (axis.norm() == 0) config.Fail("axis", "expected a direction other than 0");
+  return axis.normalized();
+}
+
+BarShape ReadBar(const Config& config) {
+  BarShape bar;
+  bar.centre = config.Vector("centre", kLength, bar.centre);
+  bar.size = config.Vector("size", kLength);
+  if (bar.size.minCoeff() <= 0) config.Fail("size", "expected three lengths > 0");
+  bar.edge_radius = config.Quantity("edge_radius", kLength,
+                                    {0, 0.5 * bar.size.minCoeff(), false, false}, bar.edge_radius);
+  bar.edge_length = config.Quantity("edge_length", kLength, {0, bar.size.maxCoeff(), true, false},
+                                    bar.edge_length);
+  bar.axis = ReadAxis(config, bar.axis);
+  bar.angle = config.Quantity("angle", kAngle, kAnyValue, bar.angle);
+  // Not told of a bar at rest, so that results kept under the hash of an older scene stay valid.
+  if (config.Has("velocity")) bar.velocity = config.Vector("velocity", kVelocity);
+  return bar;
+}
+
+TriMesh BarSurface(const BarShape& bar) {
+  TriMesh surface = RoundedBox(bar.centre, bar.size, bar.edge_radius, bar.edge_length);
+  if (bar.angle == 0) return surface;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(bar.angle, bar.axis).toRotationMatrix();
+  surface.vertices = (turn * (surface.vertices.colwise() - bar.centre)).colwise() + bar.centre;
+  return surface;
+}
+
+SceneGrip ReadGrip(const Config& config, int index) {
+  SceneGrip grip;
+  grip.region = ReadRegion(config.Child("region"), {}, fmt::format("grip {}", index));
+  grip.translation = config.Vector("translation", kLength, grip.translation);
+  grip.axis = ReadAxis(config, grip.axis);
+  grip.centre = config.Vector("centre", kLength, grip.centre);
+  grip.angle = config.Quantity("angle", kAngle, kAnyValue, grip.angle);
+  grip.profile = ReadProfile(config);
+  return grip;
+}
+
+Scene::Scanner ReadScanner(const Config& config, const BarShape& bar, uint64_t seed) {
+  Scene::Scanner scanner;
+  CameraRing& ring = scanner.ring;
+  ring.count = config.Integer("cameras", 2, 6, ring.count);
+  ring.center = config.Vector("look_at", kLength, bar.centre);
+  ring.up = config.Vector("up", kDimensionless, ring.up);
+  ring.radius = config.Quantity("distance", kLength, kPositive, ring.radius);
+  ring.elevation = config.Quantity("elevation", kAngle, {0, 1.5, false, false}, ring.elevation);
+  ring.width = config.Integer("width", 16, 4096, ring.width);
+  ring.height = config.Integer("height", 16, 4096, ring.height);
+  ring.field_of_view =
+      config.Quantity("field_of_view", kAngle, {0, 3, true, false}, ring.field_of_view);
+  ScannerOptions& options = scanner.options;
+  options.noise = config.Quantity("noise", kLength, kNotNegative, options.noise);
+  options.noise_growth = config.Number("noise_growth", {0, 4, false, false}, options.noise_growth);
+  options.reference_range =
+      config.Quantity("reference_range", kLength, kPositive, options.reference_range);
+  options.quantum = config.Quantity("quantum", kLength, kNotNegative, options.quantum);
+  options.flying_fraction =
+      config.Number("flying_fraction", {0, 1, false, false}, options.flying_fraction);
+  options.dropout = config.Number("dropout", {0, 1, false, true}, options.dropout);
+  options.seed = seed;
+  return scanner;
+}
+
+// The nodes of a grip at a time: turned and shifted from where they rest.
+std::function<Eigen::Matrix3Xd(double)> Motion(const SceneGrip& grip,
+                                               const Eigen::Matrix3Xd& rest) {
+  return [grip, rest](double time) {
+    const double share = grip.profile.At(time);
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(share * grip.angle, grip.axis).toRotationMatrix();
+    Eigen::Matrix3Xd moved = turn * (rest.colwise() - grip.centre);
+    moved.colwise() += grip.centre + share * grip.translation;
+    return moved;
+  };
+}
+
+bool IsHeld(const SceneGrip& grip) { return grip.translation.norm() == 0 && grip.angle == 0; }
+
+Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
+}
+
+}  // namespace
+
+Scene ReadScene(const Config& config) {
+  Scene scene;
+  config.Integer("schema_version", 1, 1);
+  scene.name = config.Text("name");
+  const int seed = config.Integer("seed", 0, 1 << 30, 1);
+  scene.bar = ReadBar(config.Child("bar"));
+  scene.mesh = ReadMeshSettings(config.Child("mesh"));
+  scene.density = config.Quantity("density", kDensity, kPositive);
+  scene.effects = ReadEffects(config);
+  int index = 0;
+  for (const Config& item : config.Items("grips")) scene.grips.push_back(ReadGrip(item, index++));
+  for (const Config& item : config.Items("loads")) {
+    scene.loads.push_back({ReadRegion(item.Child("region"), {}, "load"),
+                           item.Vector("force", kForce), ReadProfile(item),
+                           item.Flag("measured", false)});
+  }
+  const Config motion = config.Child("motion");
+  scene.step.scheme = ReadTimeScheme(motion, "bdf2");
+  scene.frame_rate = motion.Quantity("frame_rate", kRate, kPositive);
+  scene.frames = motion.Integer("frames", 1, 100000);
+  scene.steps_per_frame = motion.Integer("steps_per_frame", 1, 10000, scene.steps_per_frame);
+  if (const auto scanner = config.OptionalChild("scanner"))
+    scene.scanner = ReadScanner(*scanner, scene.bar, static_cast<uint64_t>(seed));
+  config.RefuseUnknownKeys();
+  return scene;
+}
+
+SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
+  SceneMotion motion;
+  const TriMesh surface = BarSurface(scene.bar);
+  TetOptions tet_options = scene.mesh.tets;
+  tet_options.order = scene.mesh.order;
+  const MeshResult meshed = MeshTetrahedra(surface, tet_options);
+  if (!meshed.IsUsable()) {
+    motion.status = SceneMotion::Status::kMeshFailed;
+    motion.message = meshed.message;
+    return motion;
+  }
+  auto body = std::make_shared<Body>(MakeBody(meshed.mesh, scene.density));
+  motion.body = body;
+
+  Model model{body, scene.effects, {}};
+  for (const SceneGrip& grip : scene.grips) {
+    Grip held{NodesIn(grip.region, body->mesh.nodes), {}};
+    if (!IsHeld(grip)) held.motion = Motion(grip, body->mesh.nodes(Eigen::all, held.nodes));
+    model.grips.push_back(std::move(held));
+  }
+  for (const SceneLoad& load : scene.loads) {
+    model.effects.push_back(std::make_shared<PrescribedForce>(
+        BoundaryShares(*body, NodesIn(load.region, body->mesh.nodes)),
+        [&load](double time) -> Eigen::Vector3d { return load.profile.At(time) * load.force; }));
+  }
+
+  MotionHistory history = RestHistory(model);
+  history.velocity = scene.bar.velocity.replicate(body->NodeCount(), 1);
+  Stepper stepper(model, scene.step);
+  const double time_step = 1 / (scene.frame_rate * scene.steps_per_frame);
+  progress->Begin("simulate", scene.frames);
+  for (int frame = 0; frame < scene.frames; ++frame) {
+    for (int k = 0; frame > 0 && k < scene.steps_per_frame; ++k) {
+      ThrowIfInterrupted();
+      const StepSummary step = stepper.Step(time_step, {}, &history);
+      if (!step.IsUsable()) {
+        motion.status = SceneMotion::Status::kStepFailed;
+        motion.message = fmt::format("frame {}: {}", frame, step.message);
+        return motion;
+      }
+    }
+    Eigen::Vector3d load = Eigen::Vector3d::Zero();
+    for (const SceneLoad& each : scene.loads) load += each.profile.At(history.time) * each.force;
+    motion.times.push_back(frame / scene.frame_rate);
+    motion.positions.push_back(AsPoints(history.position));
+    motion.velocities.push_back(AsPoints(history.velocity));
+    motion.load.push_back(load);
+    progress->Report(frame + 1);
+  }
+  progress->End();
+  motion.status = SceneMotion::Status::kFinished;
+  return motion;
+}
+
+void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
+                         const std::filesystem::path& folder) {
+  CHECK(motion.IsUsable() && scene.scanner.has_value());
+  ScannedObject object;
+  object.name = scene.name;
+  object.density = scene.density;
+  for (const SceneGrip& grip : scene.grips)
+    if (IsHeld(grip)) object.fixed.push_back(grip.region);
+  for (const auto& effect : scene.effects)
+    if (effect->Card().type == "gravity") object.gravity = effect->Parameters();
+  for (const SceneLoad& load : scene.loads) {
+    if (!load.measured) continue;
+    MeasuredForce force{load.region.name, load.region, {}, {}, {}};
+    force.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
+                                                    static_cast<Eigen::Index>(motion.times.size()));
+    force.forces.resize(3, force.times.size());
+    for (Eigen::Index k = 0; k < force.times.size(); ++k)
+      force.forces.col(k) = load.profile.At(force.times[k]) * load.force;
+    object.forces.push_back(force);
+  }
+  std::vector<TriMesh> surfaces;
+  for (const Eigen::Matrix3Xd& nodes : motion.positions)
+    surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
+  WriteScan(folder, object, surfaces, motion.times, PlaceCameras(scene.scanner->ring),
+            scene.scanner->options, ScanOutput::kPoints);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,95 @@
+// A synthetic scene: a soft bar that is held, loaded, moved or dropped, and the scanner that looks.
+//
+// It exists to make recordings whose truth is known. So that a reconstruction never explains data
+// with the code path that made them, a scene takes a finer mesh, higher elements and shorter steps,
+// and what leaves it is an ordinary recording; the truth lies in a folder of its own.
+#ifndef LACUNA_EXPERIMENT_SCENE_H_
+#define LACUNA_EXPERIMENT_SCENE_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/progress.h"
+#include "experiment/model_reader.h"
+#include "fem/simulate.h"
+#include "scan/virtual_scanner.h"
+
+namespace lacuna {
+
+struct BarShape {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();         // m
+  Eigen::Vector3d size = Eigen::Vector3d(0.1, 0.03, 0.03);  // m
+  double edge_radius = 0.004;                               // m
+  double edge_length = 0.006;  // of the surface triangles, m; smaller: finer and slower
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // it is turned about its centre
+  double angle = 0;                                 // rad
+  // Of all its points at the start, m/s; √(2gh) downwards at the end of a fall of h.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+};
+
+// A force spread over the boundary nodes of a region in proportion to area.
+struct SceneLoad {
+  Region region;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in total
+  Profile profile;
+  bool measured = false;  // the recording tells it, as if there had been a load cell
+};
+
+// Nodes held, or moved as a rigid body: turned about an axis and shifted, both times the profile.
+struct SceneGrip {
+  Region region;
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
+  double angle = 0;                                  // rad
+  Profile profile;
+};
+
+struct Scene {
+  std::string name;
+  BarShape bar;
+  MeshSettings mesh;
+  double density = 1000;  // kg/m³
+  std::vector<std::shared_ptr<Effect>> effects;
+  std::vector<SceneGrip> grips;
+  std::vector<SceneLoad> loads;
+  StepOptions step;
+  double frame_rate = 30;   // 1/s
+  int frames = 1;           // the first one at time 0
+  int steps_per_frame = 4;  // larger: more exact in time
+  // What the scanner sees; nothing: the simulation only.
+  struct Scanner {
+    CameraRing ring;
+    ScannerOptions options;
+  };
+  std::optional<Scanner> scanner;
+};
+
+// Throws InputError. Refuses unknown keys.
+Scene ReadScene(const Config& config);
+
+struct SceneMotion {
+  enum class Status { kNotRun, kFinished, kMeshFailed, kStepFailed };
+  Status status = Status::kNotRun;
+  std::string message;
+  std::shared_ptr<const Body> body;
+  std::vector<double> times;                 // s, one per frame
+  std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, one per frame
+  std::vector<Eigen::Matrix3Xd> velocities;  // m/s
+  std::vector<Eigen::Vector3d> load;         // N, the total of the loads, one per frame
+  bool IsUsable() const { return status == Status::kFinished; }
+};
+
+SceneMotion SimulateScene(const Scene& scene, Progress* progress);
+
+// Writes what the scanner sees as a recording into `folder`, with the true surfaces in its truth/
+// (scan/scan_writer.h). A region that moves is not told: the recording knows only what is held.
+void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
+                         const std::filesystem::path& folder);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_SCENE_H_

@@ -1,0 +1,46 @@
+// Scans: the distance of the scanned points from the model's surface, patch by patch.
+#ifndef LACUNA_EXPERIMENT_SURFACE_OBSERVER_H_
+#define LACUNA_EXPERIMENT_SURFACE_OBSERVER_H_
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "experiment/observer.h"
+#include "experiment/scan_frames.h"
+#include "fem/body.h"
+#include "geometry/surface_patches.h"
+
+namespace lacuna {
+
+// Each scanned point p_j goes with the nearest place x_j = Σ_a N_a(ξ_j) x_a of the model's surface,
+// which is curved where the mesh is quadratic, and with the patch that place belongs to. The row of
+// a patch is the mean over its points of
+//   n_j · (x_j − p_j),  n_j the surface's outward normal at x_j,
+// linear in the nodes' positions while ξ_j and n_j are kept (point-to-plane: Chen & Medioni, Image
+// and Vision Computing 10, 1992). Motion of the surface within itself does not show, so that
+// correspondences, which scans do not have, are not made up.
+//
+// Left out are points farther away than the reach, points whose own normal turns more than 60° from
+// the surface's, and points that disagree with the median of their patch by four times its spread
+// (and the noise). A patch with fewer than three points left is not seen.
+class SurfaceObserver : public Observer {
+ public:
+  SurfaceObserver(std::shared_ptr<const ScanFrames> scans, std::shared_ptr<const Body> body,
+                  const SurfacePatches& patches, const ScanSettings& settings);
+  int PointCount() const override { return patches_.Count(); }
+  int Components() const override { return 1; }
+  const Eigen::Matrix3Xd& Places() const override { return patches_.place; }
+  Observed Observe(int frame, const Eigen::VectorXd& position) const override;
+  double Reach() const { return reach_; }  // m
+
+ private:
+  std::shared_ptr<const ScanFrames> scans_;
+  std::shared_ptr<const Body> body_;
+  SurfacePatches patches_;
+  double reach_ = 0;
+  double depth_ = 0;  // m, of the scanned surface below the model's: half a sheet's thickness
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_SURFACE_OBSERVER_H_

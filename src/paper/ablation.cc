@@ -1,0 +1,293 @@
+#include "paper/ablation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/text_layout.h"
+#include "record/csv_text.h"
+
+namespace lacuna {
+namespace {
+
+// Where the mesh noise was not measured, D differs if it does by this share.
+constexpr double kDefaultNoise = 0.01;
+// An evaluation that takes so many times as long is worth a word.
+constexpr double kCostRatio = 1.5;
+
+bool IsSearched(const Table1Configuration& configuration, size_t variable) {
+  const SearchVariable& searched = configuration.search.variables[variable];
+  return searched.lower < searched.upper;
+}
+
+const AblationRow* Find(const std::vector<AblationRow>& rows, const std::string& name) {
+  for (const AblationRow& row : rows)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+// How far a modulus is off, as a factor of at least 1.
+double FactorOff(double ratio) { return std::exp(std::abs(std::log(ratio))); }
+
+std::string Compared(const AblationRow& row, const AblationRow& other, double noise) {
+  const double difference = row.best.median / other.best.median - 1;
+  if (std::abs(difference) <= 2 * noise)
+    return fmt::format("D as that of {}, within two deviations of the mesh noise", other.name);
+  return fmt::format("D {:.1f} % {} than that of {}", 100 * std::abs(difference),
+                     difference < 0 ? "lower" : "higher", other.name);
+}
+
+std::string ParametersInWords(const Table1Configuration& configuration, const AblationRow& row,
+                              const AblationRow* other) {
+  std::string text;
+  if (IsSearched(configuration, 2)) {
+    text += fmt::format("; y off by a factor {:.2f}", FactorOff(row.modulus_factor.median));
+    if (other != nullptr) text += fmt::format(" ({:.2f})", FactorOff(other->modulus_factor.median));
+  }
+  if (IsSearched(configuration, 3)) {
+    text += fmt::format("; p off by {:.3f}", std::abs(row.poisson_error.median));
+    if (other != nullptr) text += fmt::format(" ({:.3f})", std::abs(other->poisson_error.median));
+  }
+  return text;
+}
+
+std::string InWords(const Table1Configuration& configuration, const AblationRow& row,
+                    const AblationRow* other, double noise) {
+  if (row.seeds == 0) return "no evaluation succeeded";
+  std::string text = "what the others are held against";
+  if (other != nullptr) {
+    text = Compared(row, *other, noise);
+  } else if (!row.against.empty()) {
+    text = fmt::format("nothing to hold it against: {} found nothing", row.against);
+  }
+  text += ParametersInWords(configuration, row, other);
+  const double below = 1 - row.best.median / row.at_truth.median;
+  const bool seeks_material = IsSearched(configuration, 2) || IsSearched(configuration, 3);
+  if (seeks_material && below > 2 * noise) {
+    text += fmt::format(
+        "; {:.1f} % below D at the true y and p, so that the least D does not tell "
+        "them",
+        100 * below);
+  }
+  if (other != nullptr) {
+    const double cost = row.seconds.median / row.evaluations.median;
+    const double ratio = cost / (other->seconds.median / other->evaluations.median);
+    if (ratio > kCostRatio || ratio < 1 / kCostRatio)
+      text += fmt::format("; an evaluation takes {:.1f} times as long", ratio);
+  }
+  if (row.failures.median > 0) text += fmt::format("; {:.0f} failed", row.failures.median);
+  return text;
+}
+
+// One value per seed, in order.
+struct SeedValues {
+  std::vector<double> start, best, start_sum, best_sum, drop, q, v, y, p, factor, error, truth,
+      evaluations, failures, seconds;
+};
+
+void Add(const Table1Study& study, const Table1Configuration& configuration,
+         const Table1Search& search, SeedValues* values) {
+  const OuterSearchResult& found = search.found;
+  const OuterEvaluation& first = found.evaluations.front();
+  const OuterEvaluation& best = found.evaluations[found.best];
+  const OuterParameters& at = found.parameters[found.best];
+  const OuterMeasure measure = configuration.search.measure;
+  values->start.push_back(first.residual_per_point);
+  values->best.push_back(best.residual_per_point);
+  values->start_sum.push_back(first.residual_sum);
+  values->best_sum.push_back(best.residual_sum);
+  values->drop.push_back(1 - ValueOf(best, measure) / ValueOf(first, measure));
+  values->q.push_back(at.radius_edge_ratio);
+  values->v.push_back(at.max_volume);
+  values->y.push_back(at.young_modulus);
+  values->p.push_back(at.poisson_ratio);
+  values->factor.push_back(at.young_modulus / study.true_young_modulus);
+  values->error.push_back(at.poisson_ratio - study.true_poisson_ratio);
+  values->truth.push_back(search.at_truth.residual_per_point);
+  values->evaluations.push_back(static_cast<double>(found.evaluations.size()));
+  values->failures.push_back(found.failures);
+  values->seconds.push_back(found.Seconds());
+}
+
+nlohmann::json JsonOf(const SeedRange& range) {
+  const auto number = [](double v) { return std::isnan(v) ? nlohmann::json() : nlohmann::json(v); };
+  return {{"median", number(range.median)},
+          {"least", number(range.least)},
+          {"largest", number(range.largest)}};
+}
+
+// The columns of the table, named with their units.
+std::vector<std::pair<const char*, const SeedRange*>> ColumnsOf(const AblationRow& row) {
+  return {{"start_per_point_m", &row.start},
+          {"best_per_point_m", &row.best},
+          {"start_sum_m", &row.start_sum},
+          {"best_sum_m", &row.best_sum},
+          {"drop", &row.drop},
+          {"radius_edge_ratio", &row.radius_edge_ratio},
+          {"max_volume_m3", &row.max_volume},
+          {"young_modulus_Pa", &row.young_modulus},
+          {"poisson_ratio", &row.poisson_ratio},
+          {"young_modulus_over_truth", &row.modulus_factor},
+          {"poisson_ratio_less_truth", &row.poisson_error},
+          {"truth_per_point_m", &row.at_truth},
+          {"evaluations", &row.evaluations},
+          {"failures", &row.failures},
+          {"seconds", &row.seconds}};
+}
+
+std::string QuotientText(const std::vector<MeshQuotient>& quotients) {
+  if (quotients.empty()) return "";
+  std::string text =
+      "\nWhat a gradient through a remesh is: central difference quotients of the value searched "
+      "over\nq and v at the first row's start, mm per range, by their step in parts of the "
+      "range\n";
+  for (size_t i = 0; i < quotients.size();) {
+    const std::string& variable = quotients[i].variable;
+    text += PaddedRight(variable, 20);
+    int up = 0, down = 0;
+    for (; i < quotients.size() && quotients[i].variable == variable; ++i) {
+      text += fmt::format("  {:g}: {:.2f}", quotients[i].step, 1e3 * quotients[i].slope);
+      up += quotients[i].slope > 0;
+      down += quotients[i].slope < 0;
+    }
+    text += up > 0 && down > 0 ? "   (both signs: no derivative)\n" : "\n";
+  }
+  return text;
+}
+
+std::string CsvOf(const AblationSummary& summary) {
+  std::string text = "name,varies,against,seeds";
+  for (const auto& column : ColumnsOf(summary.rows.front()))
+    text += fmt::format(",{}", column.first);
+  text += "\n";
+  for (const AblationRow& row : summary.rows) {
+    text += fmt::format("{},{},{},{}", row.name, CsvField(row.varies), CsvField(row.against),
+                        row.seeds);
+    for (const auto& column : ColumnsOf(row)) text += fmt::format(",{}", column.second->median);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+AblationSummary SummariseAblation(const Table1Study& study, const Table1Result& result) {
+  AblationSummary summary;
+  summary.mesh_noise = Summarise(study, result).mesh_noise;
+  const double noise = std::isnan(summary.mesh_noise) ? kDefaultNoise : summary.mesh_noise;
+  for (size_t c = 0; c < study.configurations.size(); ++c) {
+    const Table1Configuration& configuration = study.configurations[c];
+    AblationRow row;
+    row.name = configuration.name;
+    row.varies = configuration.varies;
+    row.question = configuration.question;
+    if (c > 0) {
+      row.against =
+          configuration.against.empty() ? study.configurations.front().name : configuration.against;
+    }
+    row.method_message = result.seeds.front().searches[c].found.message;
+    SeedValues values;
+    for (const Table1Seed& seed : result.seeds)
+      if (seed.searches[c].found.IsUsable()) Add(study, configuration, seed.searches[c], &values);
+    row.seeds = static_cast<int>(values.best.size());
+    row.start = RangeOf(values.start);
+    row.best = RangeOf(values.best);
+    row.start_sum = RangeOf(values.start_sum);
+    row.best_sum = RangeOf(values.best_sum);
+    row.drop = RangeOf(values.drop);
+    row.radius_edge_ratio = RangeOf(values.q);
+    row.max_volume = RangeOf(values.v);
+    row.young_modulus = RangeOf(values.y);
+    row.poisson_ratio = RangeOf(values.p);
+    row.modulus_factor = RangeOf(values.factor);
+    row.poisson_error = RangeOf(values.error);
+    row.at_truth = RangeOf(values.truth);
+    row.evaluations = RangeOf(values.evaluations);
+    row.failures = RangeOf(values.failures);
+    row.seconds = RangeOf(values.seconds);
+    summary.rows.push_back(std::move(row));
+  }
+  for (size_t c = 0; c < summary.rows.size(); ++c) {
+    AblationRow& row = summary.rows[c];
+    const AblationRow* other = c > 0 ? Find(summary.rows, row.against) : nullptr;
+    row.shows = InWords(study.configurations[c], row,
+                        other != nullptr && other->seeds > 0 ? other : nullptr, noise);
+  }
+  return summary;
+}
+
+std::string AblationText(const Table1Study& study, const Table1Result& result) {
+  const AblationSummary summary = SummariseAblation(study, result);
+  std::string text = fmt::format(
+      "Medians of {} seed(s). Truth: y = {:g} kPa, p = {:g}. D per point in mm, |D_anim| in m.\n\n"
+      "row                 D start    best  |D_anim|   best  drop %      q    v cm³   y kPa  "
+      "y/true      p  evals failed    s\n",
+      result.seeds.size(), 1e-3 * study.true_young_modulus, study.true_poisson_ratio);
+  std::string varies;
+  for (const AblationRow& row : summary.rows) {
+    if (row.varies != varies) text += fmt::format("-- {}\n", row.varies);
+    varies = row.varies;
+    const auto cell = [](double value, size_t width, int digits) {
+      return PaddedLeft(std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits), width);
+    };
+    text += PaddedRight(row.name, 20) + cell(1e3 * row.start.median, 7, 3) +
+            cell(1e3 * row.best.median, 8, 3) + cell(row.start_sum.median, 10, 3) +
+            cell(row.best_sum.median, 7, 3) + cell(100 * row.drop.median, 8, 1) +
+            cell(row.radius_edge_ratio.median, 7, 3) + cell(1e6 * row.max_volume.median, 9, 1) +
+            cell(1e-3 * row.young_modulus.median, 8, 1) + cell(row.modulus_factor.median, 8, 2) +
+            cell(row.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
+            cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0) + "\n";
+  }
+  text += "\nWhat each row shows (in brackets: the row it is held against)\n";
+  for (const AblationRow& row : summary.rows) {
+    text += Wrapped(row.question.empty() ? row.shows : row.question + " " + row.shows + ".",
+                    PaddedRight(row.name, 20), std::string(20, ' '));
+  }
+  if (!std::isnan(summary.mesh_noise)) {
+    text += fmt::format("\nMesh noise: {:.2f} % of D per point, from {} turns of S_0\n",
+                        100 * summary.mesh_noise, result.turned.size());
+  }
+  return text + QuotientText(result.quotients);
+}
+
+void WriteAblation(const Table1Study& study, const Table1Result& result,
+                   const std::filesystem::path& folder) {
+  const AblationSummary summary = SummariseAblation(study, result);
+  nlohmann::json json;
+  json["truth"] = {{"young_modulus_Pa", study.true_young_modulus},
+                   {"poisson_ratio", study.true_poisson_ratio}};
+  if (!std::isnan(summary.mesh_noise)) json["mesh_noise"] = summary.mesh_noise;
+  for (const AblationRow& row : summary.rows) {
+    nlohmann::json entry{{"name", row.name},         {"varies", row.varies},
+                         {"question", row.question}, {"against", row.against},
+                         {"seeds", row.seeds},       {"method_message", row.method_message},
+                         {"shows", row.shows}};
+    for (const auto& [name, range] : ColumnsOf(row)) entry[name] = JsonOf(*range);
+    json["rows"].push_back(entry);
+  }
+  for (const MeshQuotient& quotient : result.quotients) {
+    json["remesh_quotients"].push_back(
+        {{"variable", quotient.variable},
+         {"step", quotient.step},
+         {"slope_m_per_range",
+          std::isnan(quotient.slope) ? nlohmann::json() : nlohmann::json(quotient.slope)}});
+  }
+  WriteFileAtomically(folder / "ablation.txt", AblationText(study, result));
+  WriteFileAtomically(folder / "ablation.json", json.dump(2) + "\n");
+  WriteFileAtomically(folder / "ablation.csv", CsvOf(summary));
+}
+
+void CheckAblation(const Table1Study& study) {
+  for (const Table1Configuration& configuration : study.configurations) {
+    const auto is_named = [&](const Table1Configuration& other) {
+      return other.name == configuration.against;
+    };
+    if (!configuration.against.empty() &&
+        std::none_of(study.configurations.begin(), study.configurations.end(), is_named))
+      configuration.config.Fail("against", "names no row of the folder");
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,224 @@
+#include "paper/drop_study.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+const Effect* FindEffect(const Scene& scene, const std::string& type) {
+  for (const auto& effect : scene.effects)
+    if (effect->Card().type == type) return effect.get();
+  return nullptr;
+}
+
+double ParameterOf(const Effect& effect, const std::string& name) {
+  const auto& parameters = effect.Card().parameters;
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const auto& each) { return each.name == name; });
+  CHECK(found != parameters.end()) << name;
+  return effect.Parameters()[found - parameters.begin()];
+}
+
+bool IsAlongZ(const Effect& effect, const std::string& name) {
+  return ParameterOf(effect, name + "_x") == 0 && ParameterOf(effect, name + "_y") == 0;
+}
+
+// One frame of the fall, as far as it is measured.
+struct DropState {
+  double time = 0;
+  double centre = 0, speed = 0;  // of mass, along z
+  double gap = 0;                // of the lowest node over the floor
+  double height = 0;             // of the body
+  double force = 0;              // of the floor
+  double kinetic = 0, energy = 0;
+};
+
+DropState StateAt(const Scene& scene, const SceneMotion& motion, size_t k) {
+  const Effect& floor = *FindEffect(scene, "plane_contact");
+  const Body& body = *motion.body;
+  const Eigen::VectorXd position = motion.positions[k].reshaped();
+  const Eigen::VectorXd velocity = motion.velocities[k].reshaped();
+  const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(position.size());
+  const Eigen::VectorXd no_memory;
+  const double time = motion.times[k];
+  const Kinematics at{body, position, velocity, no_acceleration, time, 0, no_memory};
+  const Eigen::VectorXd share = body.node_mass / body.node_mass.sum();
+  DropState state;
+  state.time = time;
+  state.centre = motion.positions[k].row(2).dot(share);
+  state.speed = motion.velocities[k].row(2).dot(share);
+  const double lowest = motion.positions[k].row(2).minCoeff();
+  state.gap = lowest - ParameterOf(floor, "offset");
+  state.height = motion.positions[k].row(2).maxCoeff() - lowest;
+  Eigen::VectorXd push = Eigen::VectorXd::Zero(position.size());
+  floor.AddForce(at, &push);
+  state.force = push(Eigen::seq(2, Eigen::last, 3)).sum();
+  state.kinetic = 0.5 * motion.velocities[k].colwise().squaredNorm().dot(body.node_mass);
+  state.energy = state.kinetic;
+  for (const auto& effect : scene.effects) state.energy += effect->Energy(at).value_or(0);
+  return state;
+}
+
+double ZeroBetween(double t0, double v0, double t1, double v1) {
+  return t0 + (t1 - t0) * v0 / (v0 - v1);
+}
+
+// The value at the vertex of the parabola through three even samples.
+double Vertex(double before, double middle, double after) {
+  const double curvature = before - 2 * middle + after;
+  if (curvature == 0) return middle;
+  const double slope = 0.5 * (after - before);
+  return middle - 0.5 * slope * slope / curvature;
+}
+
+// Of the largest of all samples, refined by its neighbours.
+double Peak(const std::vector<DropState>& states, double (*value)(const DropState&)) {
+  size_t peak = 0;
+  for (size_t k = 0; k < states.size(); ++k)
+    if (value(states[k]) > value(states[peak])) peak = k;
+  if (peak == 0 || peak + 1 == states.size()) return value(states[peak]);
+  return Vertex(value(states[peak - 1]), value(states[peak]), value(states[peak + 1]));
+}
+
+// Where the spectrum of the height, about its mean and under Hann's window, is largest.
+double SwingFrequency(const std::vector<DropState>& flight) {
+  constexpr size_t kFewest = 16;
+  if (flight.size() < kFewest) return kNotMeasured;
+  const auto count = static_cast<double>(flight.size());
+  double mean = 0;
+  for (const DropState& state : flight) mean += state.height / count;
+  const double step = flight[1].time - flight[0].time;
+  const double span = step * count;
+  const auto power = [&](double frequency) {
+    double re = 0, im = 0;
+    for (size_t k = 0; k < flight.size(); ++k) {
+      const auto place = static_cast<double>(k);
+      const double window = 0.5 - 0.5 * std::cos(2 * M_PI * (place + 0.5) / count);
+      const double angle = 2 * M_PI * frequency * step * place;
+      re += window * (flight[k].height - mean) * std::cos(angle);
+      im += window * (flight[k].height - mean) * std::sin(angle);
+    }
+    return re * re + im * im;
+  };
+  // Below 3/2 periods in the window there is no telling a swing from a drift.
+  const double resolution = 0.01 / span;
+  double best = 1.5 / span, largest = 0;
+  for (double f = best; f < 0.25 / step; f += resolution) {
+    const double here = power(f);
+    if (here > largest) {
+      largest = here;
+      best = f;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+DropStudy ReadDrop(const Config& config) {
+  DropStudy study;
+  config.Integer("schema_version", 1, 1);
+  study.scene = ReadScene(Config::Load(config.Path("scene")));
+  const Effect* floor = FindEffect(study.scene, "plane_contact");
+  if (floor == nullptr || !IsAlongZ(*floor, "normal"))
+    config.Fail("scene", "has no plane_contact with a normal along z to fall on");
+  const Effect* gravity = FindEffect(study.scene, "gravity");
+  if (gravity == nullptr || !IsAlongZ(*gravity, "acceleration") ||
+      ParameterOf(*gravity, "acceleration_z") >= 0)
+    config.Fail("scene", "has no gravity along -z");
+  if (study.scene.bar.velocity.z() >= 0)
+    config.Fail("scene", "has a bar that does not fall: bar.velocity");
+  for (const Config& item : config.Items("meshes")) {
+    DropMesh mesh;
+    mesh.paper_nodes = item.Integer("paper_nodes", 1, 100000000);
+    mesh.edge_length = item.Quantity("edge_length", kLength, kPositive);
+    mesh.settings = ReadMeshSettings(item.Child("mesh"));
+    study.meshes.push_back(mesh);
+  }
+  if (study.meshes.empty()) config.Fail("meshes", "is empty; expected a list of meshes");
+  study.instants = config.Quantities("instants", kTime, kNotNegative);
+  if (study.instants.empty()) config.Fail("instants", "is empty; expected a list of times");
+  config.RefuseUnknownKeys();
+  return study;
+}
+
+DropNumbers MeasureDrop(const Scene& scene, const SceneMotion& motion) {
+  CHECK(motion.IsUsable());
+  std::vector<DropState> states;
+  for (size_t k = 0; k < motion.times.size(); ++k) states.push_back(StateAt(scene, motion, k));
+  const DropState& start = states.front();
+  DropNumbers numbers;
+
+  double least = start.energy;
+  numbers.energy_growth = 0;
+  for (const DropState& state : states) {
+    numbers.energy_growth = std::max(numbers.energy_growth, (state.energy - least) / start.kinetic);
+    least = std::min(least, state.energy);
+  }
+
+  const auto touches = [](const DropState& state) { return state.gap <= 0; };
+  const auto touch = std::find_if(states.begin(), states.end(), touches);
+  if (touch == states.begin() || touch == states.end()) return numbers;
+  const auto before = std::prev(touch);
+  numbers.touch_time = ZeroBetween(before->time, before->gap, touch->time, touch->gap);
+  numbers.compression =
+      1 + Peak(states, [](const DropState& state) { return -state.height; }) / start.height;
+  numbers.peak_force = Peak(states, [](const DropState& state) { return state.force; });
+  const auto leave = std::find_if(states.rbegin(), states.rend(), touches).base();
+  if (leave == states.end()) return numbers;
+  const auto last = std::prev(leave);
+  const double left = ZeroBetween(last->time, last->gap, leave->time, leave->gap);
+  numbers.contact_time = left - numbers.touch_time;
+
+  // In flight the centre moves on a parabola, which tells its speed at the start of the flight.
+  const double gravity = -ParameterOf(*FindEffect(scene, "gravity"), "acceleration_z");
+  const DropState& end = states.back();
+  const double flight = end.time - left;
+  numbers.rebound_speed = end.speed + gravity * flight;
+  const double centre_left = end.centre - (end.speed + 0.5 * gravity * flight) * flight;
+  const double standing = start.centre - start.gap;
+  numbers.rebound_height =
+      centre_left - standing + 0.5 * numbers.rebound_speed * numbers.rebound_speed / gravity;
+  numbers.frequency = SwingFrequency({leave, states.end()});
+  // Heights count from the standing body, so that only what moves or strains it is left.
+  const double weight = motion.body->node_mass.sum() * gravity;
+  const double height_energy = start.energy - start.kinetic - weight * start.gap;
+  numbers.energy_left = (end.energy - height_energy) / start.kinetic;
+  return numbers;
+}
+
+Scene SceneOf(const DropStudy& study, const DropMesh& mesh, int step_divisor) {
+  Scene scene = study.scene;
+  scene.bar.edge_length = mesh.edge_length;
+  scene.mesh = mesh.settings;
+  scene.steps_per_frame *= step_divisor;
+  return scene;
+}
+
+std::vector<DropRun> RunDrop(const DropStudy& study, Progress* progress) {
+  const auto simulate = [&](const Scene& scene, const DropMesh& mesh) {
+    SceneMotion motion = SimulateScene(scene, progress);
+    if (!motion.IsUsable()) {
+      throw InputError(fmt::format("the drop of {} nodes, order {}: {}", mesh.paper_nodes,
+                                   mesh.settings.order, motion.message));
+    }
+    return motion;
+  };
+  std::vector<DropRun> runs;
+  for (const DropMesh& mesh : study.meshes) {
+    DropRun run;
+    run.mesh = mesh;
+    const Scene scene = SceneOf(study, mesh, 1), halved = SceneOf(study, mesh, 2);
+    run.motion = simulate(scene, mesh);
+    run.numbers = MeasureDrop(scene, run.motion);
+    run.halved = MeasureDrop(halved, simulate(halved, mesh));
+    runs.push_back(std::move(run));
+  }
+  return runs;
+}
+
+}  // namespace lacuna

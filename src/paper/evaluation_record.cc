@@ -1,0 +1,137 @@
+#include "paper/evaluation_record.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/text_file.h"
+
+namespace lacuna {
+namespace {
+
+std::string KeyOf(const OuterParameters& p) {
+  return fmt::format("{:a} {:a} {:a} {:a}", p.radius_edge_ratio, p.max_volume, p.young_modulus,
+                     p.poisson_ratio);
+}
+
+// JSON has no NaN: null stands for it.
+nlohmann::json Measured(double value) {
+  return std::isnan(value) ? nlohmann::json() : nlohmann::json(value);
+}
+double NumberOf(const nlohmann::json& value) {
+  return value.is_null() ? kNotMeasured : value.get<double>();
+}
+
+// Keys of the derivatives, in the order of OuterEvaluation::by_moduli.
+constexpr const char* kModuli[] = {"by_young_modulus", "by_poisson_ratio"};
+
+OuterEvaluation EvaluationFrom(const nlohmann::json& json) {
+  OuterEvaluation evaluation;
+  evaluation.usable = json.at("usable");
+  evaluation.failure = json.at("failure");
+  evaluation.residual_sum = NumberOf(json.at("residual_sum_m"));
+  evaluation.residual_per_point = NumberOf(json.at("residual_per_point_m"));
+  evaluation.residual_rms = NumberOf(json.value("residual_rms_m", nlohmann::json()));
+  evaluation.scan_distance = NumberOf(json.at("scan_distance_m"));
+  evaluation.force = NumberOf(json.at("net_force_N"));
+  evaluation.nodes = json.at("nodes");
+  evaluation.tets = json.at("tetrahedra");
+  evaluation.surface_points = json.at("surface_points");
+  evaluation.seconds = json.at("seconds");
+  for (const char* name : kModuli) {
+    if (!json.contains(name)) continue;
+    const nlohmann::json& by = json.at(name);
+    evaluation.by_moduli.push_back(
+        {by.at("residual_sum"), by.at("residual_per_point"), by.at("residual_rms")});
+  }
+  return evaluation;
+}
+
+}  // namespace
+
+nlohmann::json ToJson(const OuterParameters& parameters) {
+  return {{"radius_edge_ratio", parameters.radius_edge_ratio},
+          {"max_volume_m3", parameters.max_volume},
+          {"young_modulus_Pa", parameters.young_modulus},
+          {"poisson_ratio", parameters.poisson_ratio}};
+}
+
+OuterParameters OuterParametersFrom(const nlohmann::json& json) {
+  return {json.at("radius_edge_ratio"), json.at("max_volume_m3"), json.at("young_modulus_Pa"),
+          json.at("poisson_ratio")};
+}
+
+nlohmann::json ToJson(const OuterEvaluation& evaluation) {
+  nlohmann::json json{{"usable", evaluation.usable},
+                      {"failure", evaluation.failure},
+                      {"residual_sum_m", Measured(evaluation.residual_sum)},
+                      {"residual_per_point_m", Measured(evaluation.residual_per_point)},
+                      {"residual_rms_m", Measured(evaluation.residual_rms)},
+                      {"scan_distance_m", Measured(evaluation.scan_distance)},
+                      {"net_force_N", Measured(evaluation.force)},
+                      {"nodes", evaluation.nodes},
+                      {"tetrahedra", evaluation.tets},
+                      {"surface_points", evaluation.surface_points},
+                      {"seconds", evaluation.seconds}};
+  for (size_t i = 0; i < evaluation.by_moduli.size(); ++i) {
+    const OuterSlope& by = evaluation.by_moduli[i];
+    json[kModuli[i]] = {{"residual_sum", by.residual_sum},
+                        {"residual_per_point", by.residual_per_point},
+                        {"residual_rms", by.residual_rms}};
+  }
+  return json;
+}
+
+EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std::string& key)
+    : file_(file) {
+  std::string text;
+  if (std::filesystem::exists(file)) {
+    text = ReadWholeFile(file);
+    const size_t whole = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+    if (whole < text.size()) std::filesystem::resize_file(file, whole);
+    text.resize(whole);
+  }
+  if (text.empty()) {
+    AppendLine({{"objective", key}});
+    return;
+  }
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    try {
+      const nlohmann::json json = nlohmann::json::parse(line);
+      if (number == 1) {
+        if (json.at("objective") == key) continue;
+        throw InputError({file.string(), 1},
+                         "was made with other settings; remove its folder to search anew");
+      }
+      known_[KeyOf(OuterParametersFrom(json.at("parameters")))] =
+          EvaluationFrom(json.at("evaluation"));
+    } catch (const nlohmann::json::exception& problem) {
+      throw InputError({file.string(), number}, problem.what());
+    }
+  }
+}
+
+const OuterEvaluation* EvaluationRecord::Find(const OuterParameters& parameters) const {
+  const auto found = known_.find(KeyOf(parameters));
+  return found == known_.end() ? nullptr : &found->second;
+}
+
+void EvaluationRecord::AppendLine(const nlohmann::json& line) {
+  std::ofstream stream(file_, std::ios::app);
+  stream << line.dump() << "\n" << std::flush;
+  if (!stream) throw InputError(SourcePosition{file_.string()}, "cannot be written");
+}
+
+void EvaluationRecord::Append(const OuterParameters& parameters,
+                              const OuterEvaluation& evaluation) {
+  AppendLine({{"parameters", ToJson(parameters)}, {"evaluation", ToJson(evaluation)}});
+  known_[KeyOf(parameters)] = evaluation;
+}
+
+}  // namespace lacuna

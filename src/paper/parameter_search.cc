@@ -1,0 +1,209 @@
+#include "paper/parameter_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "fit/gradient_search.h"
+#include "paper/evaluation_record.h"
+#include "search/gaussian_process_search.h"
+#include "search/nlopt_search.h"
+
+namespace lacuna {
+namespace {
+
+SearchVariable ReadVariable(const Config& search, const std::string& name,
+                            const Dimension& dimension, const Bounds& bounds, SearchScale scale) {
+  const Config entry = search.Child(name);
+  SearchVariable variable{name, 0, 0, 0, scale};
+  variable.start = entry.Quantity("start", dimension, bounds);
+  if (entry.Has("lower") != entry.Has("upper"))
+    entry.Fail(entry.Has("lower") ? "lower" : "upper",
+               "lower and upper go together; without both the parameter stays at its start");
+  variable.lower = entry.Quantity("lower", dimension, bounds, variable.start);
+  variable.upper = entry.Quantity("upper", dimension, bounds, variable.start);
+  if (variable.lower > variable.start || variable.start > variable.upper)
+    entry.Fail("start", "lies outside of lower and upper");
+  return variable;
+}
+
+SearchResult Run(const SearchProblem& problem, const SearchControl& control,
+                 const OuterSearchSettings& settings) {
+  CobylaOptions cobyla = settings.cobyla;
+  GaussianProcessSearchOptions process;
+  process.seed = settings.seed;
+  NloptOptions library;
+  library.initial_radius = cobyla.initial_radius;
+  library.final_radius = cobyla.final_radius;
+  switch (settings.method) {
+    case OuterMethod::kCobylaModern:
+      cobyla.mode = CobylaMode::kModern;
+      return MinimiseByCobyla(problem, control, cobyla);
+    case OuterMethod::kCobylaPowell:
+      cobyla.mode = CobylaMode::kPowell;
+      return MinimiseByCobyla(problem, control, cobyla);
+    case OuterMethod::kGaussianProcess:
+      return MinimiseByGaussianProcess(problem, control, process);
+    case OuterMethod::kNloptBobyqa:
+      library.algorithm = NloptAlgorithm::kBobyqa;
+      return MinimiseByNlopt(problem, control, library);
+    case OuterMethod::kCeres:
+      return MinimiseByGradient(problem, control,
+                                {cobyla.initial_radius, cobyla.final_radius, settings.difference});
+    case OuterMethod::kNloptCobyla:
+      break;
+  }
+  return MinimiseByNlopt(problem, control, library);
+}
+
+// Of an evaluation, or of its slopes.
+template <typename Residuals>
+double Chosen(const Residuals& residuals, OuterMeasure measure) {
+  switch (measure) {
+    case OuterMeasure::kSum:
+      return residuals.residual_sum;
+    case OuterMeasure::kRms:
+      return residuals.residual_rms;
+    case OuterMeasure::kPerPoint:
+      break;
+  }
+  return residuals.residual_per_point;
+}
+
+// By q, v, y and p; NaN where the evaluation does not tell.
+Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
+  for (size_t i = 0; i < evaluation.by_moduli.size(); ++i)
+    gradient[static_cast<Eigen::Index>(2 + i)] = Chosen(evaluation.by_moduli[i], measure);
+  return gradient;
+}
+
+}  // namespace
+
+OuterSearchSettings ReadOuterSearch(const Config& search) {
+  OuterSearchSettings settings;
+  settings.variables = {
+      ReadVariable(search, "radius_edge_ratio", kDimensionless, {1, 100, true, false},
+                   SearchScale::kLinear),
+      ReadVariable(search, "max_volume", kVolume, kPositive, SearchScale::kLogarithmic),
+      ReadVariable(search, "young_modulus", kPressure, kPositive, SearchScale::kLogarithmic),
+      ReadVariable(search, "poisson_ratio", kDimensionless, {0, 0.5, false, true},
+                   SearchScale::kLinear)};
+  settings.method = search.Choice<OuterMethod>("method",
+                                               {{"cobyla", OuterMethod::kCobylaModern},
+                                                {"cobyla_1994", OuterMethod::kCobylaPowell},
+                                                {"gaussian_process", OuterMethod::kGaussianProcess},
+                                                {"nlopt_cobyla", OuterMethod::kNloptCobyla},
+                                                {"nlopt_bobyqa", OuterMethod::kNloptBobyqa},
+                                                {"ceres", OuterMethod::kCeres}},
+                                               "cobyla");
+  settings.measure = search.Choice<OuterMeasure>("measure",
+                                                 {{"per_point", OuterMeasure::kPerPoint},
+                                                  {"rms", OuterMeasure::kRms},
+                                                  {"sum", OuterMeasure::kSum}},
+                                                 "per_point");
+  settings.registration_in_loop =
+      search.Choice<bool>("registration", {{"tracked", false}, {"in_loop", true}}, "tracked");
+  settings.remesh_surface = search.Flag("remesh_surface", settings.remesh_surface);
+  settings.evaluations = search.Integer("evaluations", 1, 100000, settings.evaluations);
+  CobylaOptions& cobyla = settings.cobyla;
+  cobyla.initial_radius =
+      search.Number("initial_radius", {0, 0.5, true, false}, cobyla.initial_radius);
+  cobyla.final_radius = search.Number("final_radius", {0, 0.5, true, false}, 0.01);
+  if (cobyla.final_radius > cobyla.initial_radius)
+    search.Fail("final_radius", "is larger than initial_radius");
+  cobyla.restarts.max_restarts = search.Integer("restarts", 0, 1000, 20);
+  settings.difference = search.Number("difference", {0, 0.5, true, false}, settings.difference);
+  const auto is_free = [](const SearchVariable& variable) {
+    return variable.lower < variable.upper;
+  };
+  const auto free = std::count_if(settings.variables.begin(), settings.variables.end(), is_free);
+  if (settings.method == OuterMethod::kNloptBobyqa && free < 2)
+    search.Fail("method", "nlopt_bobyqa needs two free parameters at least");
+  settings.seed = static_cast<uint64_t>(search.Integer("seed", 0, 1 << 30, 1));
+  return settings;
+}
+
+OuterParameters ParametersOf(const Eigen::VectorXd& x) { return {x[0], x[1], x[2], x[3]}; }
+
+double ValueOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
+  return Chosen(evaluation, measure);
+}
+
+double OuterSearchResult::Seconds() const {
+  double seconds = 0;
+  for (const OuterEvaluation& evaluation : evaluations) seconds += evaluation.seconds;
+  return seconds;
+}
+
+int OuterSearchResult::Worst(OuterMeasure measure) const {
+  int worst = best;
+  for (size_t k = 0; k < evaluations.size(); ++k) {
+    if (!evaluations[k].usable) continue;
+    if (worst < 0 || ValueOf(evaluations[k], measure) > ValueOf(evaluations[worst], measure))
+      worst = static_cast<int>(k);
+  }
+  return worst;
+}
+
+OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchSettings& settings,
+                                 const std::filesystem::path& folder, const std::string& key,
+                                 Progress* progress) {
+  MakeFolder(folder);
+  EvaluationRecord record(folder / "evaluations.jsonl", key);
+  const SearchSpace space(settings.variables);
+  progress->Begin("search", settings.evaluations);
+  int64_t done = 0;
+  OuterProblem asked = problem;
+  asked.slopes = settings.method == OuterMethod::kCeres;
+  const auto evaluate = [&](const Eigen::VectorXd& x) {
+    const OuterParameters parameters = ParametersOf(x);
+    const OuterEvaluation* known = record.Find(parameters);
+    if (known == nullptr) {
+      record.Append(parameters, EvaluateOuter(asked, parameters));
+      known = record.Find(parameters);
+    }
+    Evaluation outcome;
+    if (known->usable) outcome.value = ValueOf(*known, settings.measure);
+    outcome.failure = known->failure;
+    progress->Report(++done, outcome.value.value_or(kNotMeasured));
+    return outcome;
+  };
+  const auto gradient = [&](const Eigen::VectorXd& x) {
+    return GradientOf(*record.Find(ParametersOf(x)), settings.measure);
+  };
+  const SearchProblem search_problem = space.ProblemOf(evaluate, 0, gradient);
+  SearchControl control;
+  control.max_evaluations = settings.evaluations;
+  control.log = folder / "search.log";
+  control.log_key = key;
+  const SearchResult found = Run(search_problem, control, settings);
+  OuterSearchResult result;
+  result.status = found.status;
+  result.message = found.message;
+  result.trace_hash = found.trace_hash;
+  result.best = found.best.value_or(-1);
+  result.failures = found.failures;
+  for (const SearchStep& step : found.trace) {
+    result.parameters.push_back(ParametersOf(space.FromUnit(step.x)));
+    const OuterEvaluation* known = record.Find(result.parameters.back());
+    const auto agrees = [&] {
+      return step.outcome.value ? *step.outcome.value == ValueOf(*known, settings.measure)
+                                : !std::isfinite(ValueOf(*known, settings.measure));
+    };
+    if (known == nullptr || (known->usable && !agrees())) {
+      throw InputError(
+          SourcePosition{(folder / "evaluations.jsonl").string()},
+          "lacks an evaluation that search.log has, or has another value of it; remove "
+          "both to search anew");
+    }
+    result.evaluations.push_back(*known);
+  }
+  progress->End(
+      fmt::format("{} evaluations, {} failed", result.evaluations.size(), result.failures));
+  return result;
+}
+
+}  // namespace lacuna

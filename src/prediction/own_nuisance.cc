@@ -1,0 +1,59 @@
+#include "prediction/own_nuisance.h"
+
+#include <utility>
+#include <vector>
+
+#include "fit/calibration.h"
+
+namespace lacuna {
+namespace {
+
+// Share of the time of a recording that is only predicted, over which its own nuisances are found.
+constexpr double kNuisanceHorizon = 0.1;
+// Of a scan, the correspondences are taken anew so often for it.
+constexpr int kRounds = 3;
+
+}  // namespace
+
+Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
+                            const std::optional<Eigen::MatrixXd>& place_offset) {
+  if (place_offset) errors.common = 0;
+  std::vector<CalibratedParameter> own;
+  std::vector<MisfitDirection> directions;
+  for (const auto& entry : model.nuisances()) {
+    own.push_back(entry.prior);
+    directions.push_back(entry.direction);
+  }
+  const PredictedRecording& item = model.item();
+  const std::vector<double>& times = item.recording.times;
+  const double start = item.StartTime();
+  const double until = start + kNuisanceHorizon * (times[item.frames.back()] - start);
+  std::vector<int> beginning = item.frames;
+  std::erase_if(beginning, [&](int frame) { return times[frame] > until; });
+  const int rounds = item.scans != nullptr && !own.empty() ? kRounds : 1;
+  Eigen::VectorXd values;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<Observed> kept;
+    const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
+      Misfit misfit =
+          model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{},
+                        kept.empty() ? nullptr : &kept);
+      Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
+      if (!prediction.usable) return prediction;
+      const auto whitened = [&](const Eigen::MatrixXd& rows) {
+        return Whitened(rows, misfit.count, misfit.points, errors, misfit.deformation);
+      };
+      prediction.residual =
+          whitened(place_offset ? misfit.ResidualWithout(*place_offset) : misfit.residual);
+      if (kept.empty()) kept = std::move(misfit.observed);
+      if (with_jacobian) prediction.jacobian = whitened(misfit.by);
+      return prediction;
+    });
+    values = fitted.parameters;
+    for (size_t k = 0; k < own.size() && values.size() > 0; ++k)
+      own[k].start = values[static_cast<Eigen::Index>(k)];
+  }
+  return values;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,16 @@
+// The undeformed body of a prediction study.
+#ifndef LACUNA_PREDICTION_PREDICTED_BODY_H_
+#define LACUNA_PREDICTION_PREDICTED_BODY_H_
+
+#include "experiment/reference_body.h"
+#include "prediction/prediction_study.h"
+
+namespace lacuna {
+
+// Made from the reference shape of the first recording; where that shape is a scan, from the first
+// frame that the study uses. Throws InputError when the shape cannot be meshed.
+ReferenceBody MakeReferenceBody(const PredictionStudy& study);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_PREDICTION_PREDICTED_BODY_H_

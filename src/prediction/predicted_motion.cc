@@ -1,0 +1,349 @@
+#include "prediction/predicted_motion.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "experiment/grip_tracks.h"
+#include "experiment/known_loads.h"
+#include "experiment/scan_grips.h"
+#include "experiment/surface_observer.h"
+#include "fem/prescribed_force.h"
+
+namespace lacuna {
+namespace {
+
+using Of = MisfitDirection::Of;
+
+constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
+
+double ShareUsed(const Observed& observed) {
+  return observed.offered > 0 ? static_cast<double>(observed.used) / observed.offered : 0;
+}
+
+// Where the scans carry the nodes of grips that follow them: frame by frame, 3 × nodes.
+std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double reach,
+                                          bool tells_the_shape, const TetMesh& mesh,
+                                          const BoundarySurface& boundary) {
+  const bool rests_at_first =
+      tells_the_shape && item.recording.reference.source == ReferenceSource::kFirstFrame;
+  std::vector<Eigen::Matrix3Xd> moved(item.frames.size(), mesh.nodes);
+  for (const RecordedGrip& grip : item.recording.grips) {
+    if (grip.motion != GripMotion::kFollowsScan) continue;
+    const std::vector<int> nodes = NamingWhere(
+        item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh.nodes); });
+    const std::vector<Eigen::Isometry3d> motions = FollowGrip(
+        *item.scans, item.frames, boundary, {grip.region.name, nodes, reach, rests_at_first});
+    for (size_t k = 0; k < motions.size(); ++k)
+      for (const int node : nodes) moved[k].col(node) = motions[k] * mesh.nodes.col(node);
+  }
+  return moved;
+}
+
+void MoveGrips(const PredictedRecording& item, double reach, bool tells_the_shape,
+               const TetMesh& mesh, const BoundarySurface& boundary, GripTracks* grips) {
+  const bool is_scan = item.scans != nullptr;
+  std::vector<Eigen::Matrix3Xd> moved;
+  if (is_scan) moved = FollowGrips(item, reach, tells_the_shape, mesh, boundary);
+  for (size_t k = 0; k < item.frames.size(); ++k) {
+    const int frame = item.frames[k];
+    const RecordedGrip* lost =
+        grips->Extend(item.recording.times[frame], mesh.nodes, is_scan ? moved[k] : mesh.nodes,
+                      is_scan ? Eigen::Matrix3Xd(3, 0) : item.recording.markers.positions[frame]);
+    // Between two frames a grip moves evenly, before the first and after the last it would stand.
+    if (lost != nullptr && (k == 0 || k + 1 == item.frames.size()))
+      throw InputError(fmt::format(
+          "{}: frame {}, the {} that is used, shows too few of the markers that \"{}\" follows: "
+          "choose `{}`",
+          item.recording.file.string(), frame, k == 0 ? "first" : "last", lost->region.name,
+          k == 0 ? "from" : "to"));
+  }
+}
+
+// A scanned object that is not held must rest in its first frames.
+void RequireStartAtRest(const PredictedRecording& item) {
+  if (item.hold) return;
+  const ScannedPoints& first = item.scans->At(item.frames.front());
+  const double step = LargestMove(first, item.scans->At(item.frames[1]));
+  const double whole = LargestMove(first, item.scans->At(item.frames.back()));
+  constexpr double kNoise = 4;  // standard deviations of one point
+  if (step > 0.25 * whole && step > kNoise * first.noise) {
+    throw InputError(fmt::format(
+        "{}: the object moves already between its first two frames, by {:.2f} mm; a prediction "
+        "starts from rest: give `from:`, or `hold:`",
+        item.recording.file.string(), 1e3 * step));
+  }
+}
+
+// Stacked vectors, in columns.
+template <typename Stacked>
+void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
+  if (stacked->size() == 0) return;
+  const Eigen::Matrix3Xd turned = turn * stacked->reshaped(3, stacked->size() / 3);
+  *stacked = turned.reshaped(stacked->rows(), stacked->cols());
+}
+
+}  // namespace
+
+Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) const {
+  Eigen::VectorXd rest = residual;
+  const Eigen::Index components = Components();
+  for (size_t at = 0; at < count.size(); ++at) {
+    const int point = static_cast<int>(at) % points;
+    if (count[at] == 0) continue;
+    auto row = rest.segment(components * static_cast<Eigen::Index>(at), components);
+    if (deformation.empty())
+      row -= place_offset.col(point);
+    else
+      row -= deformation[at] * place_offset.col(point);
+  }
+  return rest;
+}
+
+namespace {
+
+// A place that is half of the object's size away from it is none on it.
+void RequireMarkersNear(const Recording& recording, const TetMesh& mesh) {
+  constexpr double kFar = 0.5;
+  const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
+  const double size = box.diagonal().norm();
+  for (Eigen::Index m = 0; m < recording.marker_places.cols(); ++m) {
+    const double away = box.exteriorDistance(Eigen::Vector3d(recording.marker_places.col(m)));
+    if (away > kFar * size)
+      throw InputError(fmt::format(
+          "{}: marker_places: {} sits {:.3g} mm away from the object, which measures {:.3g} mm",
+          recording.file.string(), recording.markers.names[static_cast<size_t>(m)], 1e3 * away,
+          1e3 * size));
+  }
+}
+
+}  // namespace
+
+RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
+                               const TetMesh& mesh, std::shared_ptr<const Body> body,
+                               const SurfacePatches& patches)
+    : study_(study), item_(recording) {
+  model_.body = std::move(body);
+  model_.effects = study.effects;
+  model_.effects.insert(model_.effects.end(), recording.effects.begin(), recording.effects.end());
+  GripTracks grips(recording.recording, mesh, &model_);
+  const bool tells_the_shape = &recording == &study.recordings.front();
+  if (item_.scans != nullptr) {
+    auto observer =
+        std::make_unique<SurfaceObserver>(item_.scans, model_.body, patches, study.scan);
+    if (study.scheme != TimeScheme::kQuasiStatic) RequireStartAtRest(item_);
+    const double reach = observer->Reach();
+    observer_ = std::move(observer);
+    RequireThatScansShowTheObject();
+    MoveGrips(item_, reach, tells_the_shape, mesh, model_.body->boundary, &grips);
+  } else {
+    // The body has the elements of the mesh in an order of its own.
+    RequireMarkersNear(item_.recording, mesh);
+    observer_ = std::make_unique<MarkerObserver>(item_.recording, model_.body->mesh);
+    MoveGrips(item_, 0, tells_the_shape, mesh, model_.body->boundary, &grips);
+  }
+  for (const auto& load : MakeKnownForces(recording.recording, model_))
+    model_.effects.push_back(load);
+  if (item_.hold) AddHold(mesh);
+  if (item_.clock_deviation > 0) AddNuisance("clock", "s", item_.clock_deviation, {Of::kClock});
+  for (const bool turns : {false, true}) {
+    const double deviation = turns ? item_.turn_deviation : item_.shift_deviation;
+    for (int axis = 0; deviation > 0 && axis < 3; ++axis)
+      AddNuisance(fmt::format("{}_{}", turns ? "turn" : "shift", "xyz"[axis]), turns ? "rad" : "m",
+                  deviation, {turns ? Of::kTurn : Of::kShift, axis});
+  }
+}
+
+void RecordingModel::AddNuisance(const std::string& name, const std::string& unit, double deviation,
+                                 MisfitDirection direction) {
+  Nuisance nuisance;
+  nuisance.prior.name = item_.name + "." + name;
+  nuisance.prior.prior_deviation = nuisance.prior.typical = deviation;
+  nuisance.direction = std::move(direction);
+  nuisance.unit = unit;
+  nuisances_.push_back(std::move(nuisance));
+}
+
+void RecordingModel::AddHold(const TetMesh& mesh) {
+  const std::string where = study_.file.string() + ": hold of " + item_.name;
+  const std::vector<int> nodes =
+      NamingWhere(where, [&] { return SelectNodes(item_.hold->region, mesh.nodes); });
+  const Eigen::VectorXi chosen =
+      Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  const Eigen::VectorXd areas = NodeBoundaryAreas(*model_.body);
+  if (areas(chosen).sum() == 0)
+    throw InputError(where + " touches no boundary node: its region is too small");
+  const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
+  const double weight = 10 * model_.body->node_mass.sum();  // N, about that of the object
+  for (int axis = 0; axis < 3; ++axis) {
+    MisfitDirection direction;
+    Eigen::VectorXd& force = direction.perturbation.held_force;
+    force = Eigen::VectorXd::Zero(3 * share.size());
+    for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
+    AddNuisance(fmt::format("hold_force_{}", "xyz"[axis]), "N", weight, std::move(direction));
+  }
+}
+
+void RecordingModel::RequireThatScansShowTheObject() {
+  // A frame that cannot be read is told before the long computation, not by it.
+  for (const int frame : item_.frames) item_.scans->At(frame);
+  const Observed first =
+      observer_->Observe(item_.frames.front(), model_.body->mesh.nodes.reshaped());
+  const int seen = static_cast<int>((first.count.array() > 0).count());
+  shown_ = ShareUsed(first);
+  if (seen >= kFewestSeen * PointCount()) return;
+  throw InputError(fmt::format(
+      "{}: frame {} shows {} of {} patches of the undeformed surface: its points lie elsewhere, or "
+      "their length unit, transform or normals are wrong, or scan.reach is too small",
+      item_.recording.file.string(), item_.frames.front(), seen, PointCount()));
+}
+
+std::vector<int> RecordingModel::FittedFrames() const {
+  std::vector<int> frames;
+  if (!item_.fitted) return frames;
+  for (const int frame : item_.frames)
+    if (item_.recording.times[frame] <= item_.fit_until) frames.push_back(frame);
+  return frames;
+}
+
+PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const {
+  CHECK_EQ(nuisance.size(), static_cast<Eigen::Index>(nuisances_.size()));
+  PredictionOptions options;
+  options.start_time = item_.StartTime();
+  options.time_step = study_.time_step;
+  options.step.scheme = study_.scheme;
+  // Far below the steps' own error; tighter ones cost a quarter more.
+  options.step.relative_tolerance = 1e-6;
+  options.step.linear.relative_tolerance = 1e-4;
+  options.held_force = Eigen::VectorXd::Zero(3 * model_.body->NodeCount());
+  for (size_t k = 0; k < nuisances_.size(); ++k) {
+    const Eigen::VectorXd& force = nuisances_[k].direction.perturbation.held_force;
+    if (force.size() > 0) options.held_force += nuisance[static_cast<Eigen::Index>(k)] * force;
+  }
+  return options;
+}
+
+double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
+  double late = 0;
+  for (size_t k = 0; k < nuisances_.size(); ++k)
+    if (nuisances_[k].direction.of == Of::kClock) late += nuisance[static_cast<Eigen::Index>(k)];
+  return late;
+}
+
+Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) const {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
+  for (size_t k = 0; k < nuisances_.size(); ++k) {
+    const MisfitDirection& direction = nuisances_[k].direction;
+    if (direction.of == Of::kShift) shift[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+    if (direction.of == Of::kTurn) turn[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+  }
+  Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
+  if (shift.isZero(0) && turn.isZero(0)) return registration;
+  const Eigen::Vector3d middle = Middle();
+  const double angle = turn.norm();
+  if (angle > 0) registration.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  registration.translation() = middle + shift - registration.linear() * middle;
+  return registration;
+}
+
+Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
+                                               const Eigen::Isometry3d& registration,
+                                               const Eigen::Vector3d& place) const {
+  const Eigen::Vector3d axis = Eigen::Vector3d::Unit(direction.axis);
+  if (direction.of == Of::kShift) return axis;
+  return axis.cross(place - registration * Middle());
+}
+
+Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
+                               const std::vector<MisfitDirection>& directions,
+                               const std::vector<Observed>* observed) const {
+  PredictionOptions options = Options(nuisance);
+  options.held_guess = held_;
+  const double late = Delay(nuisance);
+  std::vector<double> times;
+  for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
+
+  // Clock and registration need no tangent: a later clock sees the motion earlier.
+  std::vector<Perturbation> perturbations;
+  std::vector<Eigen::Index> column;
+  for (const MisfitDirection& direction : directions) {
+    column.push_back(static_cast<Eigen::Index>(perturbations.size()));
+    if (direction.of == Of::kModel) perturbations.push_back(direction.perturbation);
+  }
+  const Eigen::Isometry3d registration = Registration(nuisance);
+  const bool is_registered = item_.shift_deviation > 0 || item_.turn_deviation > 0;
+
+  Misfit misfit;
+  misfit.points = PointCount();
+  const Eigen::Index components = observer_->Components();
+  const Eigen::Index rows_of_frame = components * misfit.points;
+  misfit.residual.resize(rows_of_frame * static_cast<Eigen::Index>(frames.size()));
+  misfit.by.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
+  misfit.summary = lacuna::Predict(
+      model_, options, times, perturbations, [&](int index, const PredictedState& state) {
+        const int frame = frames[index];
+        const Eigen::Index begin = rows_of_frame * index;
+        Observed seen =
+            observed != nullptr ? (*observed)[index] : observer_->Observe(frame, state.position);
+        Eigen::VectorXd predicted = *seen.rows * state.position;
+        Eigen::VectorXd velocity = *seen.rows * state.velocity;
+        Eigen::MatrixXd by;
+        if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        std::vector<Eigen::Matrix3d> deformation = seen.deformation;
+        if (is_registered) {
+          Turn(registration.linear(), &predicted);
+          predicted += registration.translation().replicate(misfit.points, 1);
+          Turn(registration.linear(), &velocity);
+          Turn(registration.linear(), &by);
+          for (Eigen::Matrix3d& F : deformation) F = registration.linear() * F;
+        }
+        for (int point = 0; point < misfit.points; ++point) {
+          misfit.count.push_back(seen.count[point]);
+          const Eigen::Index row = begin + components * point, own = components * point;
+          misfit.residual.segment(row, components).setZero();
+          if (seen.count[point] == 0) continue;
+          misfit.residual.segment(row, components) =
+              predicted.segment(own, components) - seen.target.segment(own, components);
+          for (size_t k = 0; k < directions.size(); ++k) {
+            auto derivative = misfit.by.col(static_cast<Eigen::Index>(k)).segment(row, components);
+            switch (directions[k].of) {
+              case Of::kModel:
+                derivative = by.col(column[k]).segment(own, components);
+                break;
+              case Of::kClock:
+                if (state.time > options.start_time)
+                  derivative = -velocity.segment(own, components);
+                break;
+              case Of::kShift:
+              case Of::kTurn:
+                derivative = ByRegistration(directions[k], registration, predicted.segment<3>(own));
+                break;
+            }
+          }
+        }
+        misfit.deformation.insert(misfit.deformation.end(), deformation.begin(), deformation.end());
+        misfit.frames.push_back(frame);
+        misfit.observed.push_back(std::move(seen));
+      });
+  if (misfit.summary.held.size() > 0) held_ = misfit.summary.held;
+  const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
+  misfit.residual.conservativeResize(reached);
+  misfit.by.conservativeResize(reached, Eigen::NoChange);
+  return misfit;
+}
+
+std::vector<int> RecordingModel::LostFrames(const Misfit& misfit, double least) const {
+  std::vector<int> lost;
+  if (item_.scans == nullptr) return lost;
+  double best = shown_;
+  for (const Observed& observed : misfit.observed) best = std::max(best, ShareUsed(observed));
+  for (size_t f = 0; f < misfit.observed.size(); ++f)
+    if (ShareUsed(misfit.observed[f]) < least * best) lost.push_back(misfit.frames[f]);
+  return lost;
+}
+
+}  // namespace lacuna

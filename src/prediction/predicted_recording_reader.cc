@@ -1,0 +1,177 @@
+#include "prediction/predicted_recording_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "effects/catalogue.h"
+#include "experiment/tracked_points.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+std::vector<int> FramesWithin(const Recording& recording, double from, double to, int every) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < recording.FrameCount(); ++frame)
+    if (recording.times[frame] >= from && recording.times[frame] <= to) frames.push_back(frame);
+  std::vector<int> chosen;
+  for (size_t k = 0; k < frames.size(); k += every) chosen.push_back(frames[k]);
+  return chosen;
+}
+
+Hold ReadHold(const Config& config, const Recording& recording) {
+  Hold hold{ReadRegion(config.Child("region"), recording.data_folder, "hold"),
+            config.Quantity("release", kTime, kAnyValue)};
+  if (hold.release > recording.times.back()) {
+    config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
+                                       recording.times.back()));
+  }
+  if (hold.release < recording.times.front()) {
+    config.Fail("release", fmt::format("lies before the recording's first frame, at {:g} s: no "
+                                       "frame shows the object held",
+                                       recording.times.front()));
+  }
+  return hold;
+}
+
+// Of the markers that are seen in both.
+double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  double largest = 0;
+  for (Eigen::Index m = 0; m < from.cols(); ++m) {
+    const double move = (to.col(m) - from.col(m)).norm();
+    if (move > largest) largest = move;
+  }
+  return largest;
+}
+
+// Without a hold the first frame must be an equilibrium. A body that already moves is not: its
+// first step is a good part of all its motion, and more than the least step of any two frames,
+// which is noise or a turning point.
+void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
+  constexpr double kLarge = 0.25, kBeyondNoise = 3;
+  const Recording& recording = item.recording;
+  if (item.hold || item.scans != nullptr || item.frames.size() < 3) return;
+  const auto& positions = recording.markers.positions;
+  const Eigen::Matrix3Xd& first = positions[item.frames[0]];
+  const double step = LargestMove(first, positions[item.frames[1]]);
+  double farthest = 0, least = std::numeric_limits<double>::infinity();
+  for (size_t k = 1; k < item.frames.size(); ++k) {
+    const Eigen::Matrix3Xd& here = positions[item.frames[k]];
+    farthest = std::max(farthest, LargestMove(first, here));
+    if (k > 1) least = std::min(least, LargestMove(positions[item.frames[k - 1]], here));
+  }
+  if (step > kLarge * farthest && step > kBeyondNoise * least)
+    config.Fail("recording",
+                "the object moves already between its first two frames; a prediction starts from "
+                "rest: give `from:`, or `hold:`");
+}
+
+// What markers must be told with, and scans.
+void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
+  const Recording& recording = item.recording;
+  const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
+  if (recording.tracked && item.hold)
+    config.Fail("hold",
+                "tracked points sit on the object where the first frame shows them, so it may not "
+                "be held out of shape there");
+  if (item.scans == nullptr) {
+    if (!recording.marker_places.allFinite())
+      config.Fail("recording",
+                  "lacks marker_places: where each marker sits on the undeformed object");
+    if (of_first_frame && !recording.tracked)
+      config.Fail("recording", "has no reference shape: markers alone do not tell it");
+    for (const RecordedGrip& grip : recording.grips)
+      if (grip.motion == GripMotion::kFollowsScan)
+        config.Fail("recording",
+                    fmt::format("{} is to follow the scan, but there are only markers: "
+                                "give `follows_markers` or a `path`",
+                                grip.region.name));
+    return;
+  }
+  for (const RecordedGrip& grip : recording.grips)
+    if (grip.deforms)
+      config.Fail("recording",
+                  fmt::format("{} is to deform with the scan, whose points are not told "
+                              "apart: only markers and tracked points tell that",
+                              grip.region.name));
+  if (tells_the_shape && of_first_frame && item.hold) {
+    config.Fail("hold",
+                "the recording's reference shape is its first frame, in which the object is held "
+                "out of shape: give a `reference` mesh");
+  }
+}
+
+void RequireGripPaths(const Config& config, const PredictedRecording& item) {
+  const double first = item.recording.times[item.frames.front()];
+  const double last = item.recording.times[item.frames.back()];
+  for (const RecordedGrip& grip : item.recording.grips) {
+    const Eigen::Index end = grip.times.size() - 1;
+    if (grip.motion == GripMotion::kGiven && (grip.times[0] > first || grip.times[end] < last))
+      config.Fail("recording",
+                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                              grip.file.string(), grip.times[0], grip.times[end], first, last));
+  }
+}
+
+}  // namespace
+
+PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
+                                      const ScanSettings& scan, TimeScheme scheme,
+                                      bool tells_the_shape) {
+  PredictedRecording item;
+  item.recording = LoadRecording(config.Path("recording"));
+  item.name = config.Text("name", item.recording.name);
+  const bool is_scan = item.recording.kind != FrameKind::kMarkers && !item.recording.tracked;
+  if (is_scan) item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
+  const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
+  const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
+  item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
+  item.fitted = config.Flag("fitted", true);
+  item.fit_until = config.Quantity("fit_until", kTime, kAnyValue, kForever);
+  item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
+  if (const auto registration = config.OptionalChild("registration")) {
+    if (item.scans != nullptr)
+      config.Fail("registration", "is known for markers only, not for scans");
+    item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
+    item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
+  }
+  if (const auto hold = config.OptionalChild("hold")) item.hold = ReadHold(*hold, item.recording);
+  for (const Config& effect : config.Items("effects"))
+    item.effects.push_back(MakeEffect(effect, material));
+
+  // An equilibrium tells of itself; a motion does with two steps.
+  const size_t fewest = scheme == TimeScheme::kQuasiStatic ? 1 : 3;
+  if (item.frames.size() < fewest) {
+    config.Fail("recording",
+                fmt::format("{} frames lie between {:g} s and {:g} s; at least {} are needed",
+                            item.frames.size(), from, to, fewest));
+  }
+  if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
+    config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
+  if (item.recording.tracked) SeeAsMarkers(item.frames, &item.recording);
+  CheckObserved(config, item, tells_the_shape);
+  if (scheme == TimeScheme::kQuasiStatic) {
+    if (item.hold)
+      config.Fail("hold", "what is let go of swings: motion.scheme may not be quasi_static");
+  } else {
+    RequireStartAtRest(config, item);
+  }
+  RequireGripPaths(config, item);
+  for (const MeasuredForce& force : item.recording.forces) {
+    const double first = item.recording.times[item.frames.front()];
+    const double last = item.recording.times[item.frames.back()];
+    if (!force.region)
+      config.Fail("recording", "does not tell where " + force.name + " acts (its region)");
+    const Eigen::Index end = force.times.size() - 1;
+    if (!force.file.empty() && (force.times[0] > first || force.times[end] < last))
+      config.Fail("recording",
+                  fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                              force.file.string(), force.times[0], force.times[end], first, last));
+  }
+  return item;
+}
+
+}  // namespace lacuna

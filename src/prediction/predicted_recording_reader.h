@@ -1,0 +1,22 @@
+// Reads one entry of a prediction study's `recordings`.
+#ifndef LACUNA_PREDICTION_PREDICTED_RECORDING_READER_H_
+#define LACUNA_PREDICTION_PREDICTED_RECORDING_READER_H_
+
+#include "core/config.h"
+#include "experiment/scan_settings.h"
+#include "fem/effect.h"
+#include "fem/step_equation.h"
+#include "prediction/prediction_study.h"
+
+namespace lacuna {
+
+// Loads the recording that the entry names and checks that a prediction can be compared with it.
+// `tells_the_shape`: it is the first recording of the study, whose reference shape is meshed.
+// Throws InputError with the position of the entry's key.
+PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
+                                      const ScanSettings& scan, TimeScheme scheme,
+                                      bool tells_the_shape);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_PREDICTION_PREDICTED_RECORDING_READER_H_

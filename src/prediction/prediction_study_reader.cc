@@ -1,0 +1,181 @@
+#include "prediction/prediction_study_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "experiment/model_reader.h"
+#include "prediction/predicted_recording_reader.h"
+#include "prediction/recorded_motion.h"
+
+namespace lacuna {
+namespace {
+
+// Markers that rest where they sit on the undeformed object tell nothing.
+void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
+  if (!IsAtRest(study)) return;
+  double deformation = 0;
+  for (const PredictedRecording& item : study.recordings)
+    if (item.fitted) deformation = std::max(deformation, RestDeformation(item));
+  constexpr double kCertain = 3;  // standard deviations of a marker's place
+  if (deformation > kCertain * study.place_deviation) return;
+  config.Fail("recordings",
+              fmt::format("nothing moves in the frames that are fitted, and no marker is farther "
+                          "than {:.2g} mm from its place on the undeformed object "
+                          "(place_deviation is {:.2g} mm): there is nothing to fit a model to",
+                          1e3 * deformation, 1e3 * study.place_deviation));
+}
+
+const ParameterCard& CardOf(const ModelParameter& parameter) {
+  const auto& [effect, index] = parameter.places.front();
+  return effect->Card().parameters[index];
+}
+
+// What is known of a parameter before: `mean`, the start unless it is given, and `deviation`; of
+// one on a logarithmic scale a small one, or the scale's part of it.
+void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
+  if (!item.Has("deviation")) {
+    if (item.Has("mean")) item.Fail("mean", "needs a `deviation` beside it");
+    return;
+  }
+  prior->prior_mean = item.Quantity("mean", card.dimension, card.bounds, prior->start);
+  if (prior->log_scale && !(prior->prior_mean > 0))
+    item.Fail("mean", "must be positive: the parameter is fitted on a logarithmic scale");
+  const double deviation = item.Quantity("deviation", card.dimension, kPositive);
+  prior->prior_deviation = prior->log_scale ? deviation / prior->prior_mean : deviation;
+}
+
+// `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`; absent: the material's.
+std::vector<ModelParameter> ReadFitted(const Config& config,
+                                       const std::vector<std::shared_ptr<Effect>>& effects) {
+  const std::vector<ModelParameter> known = ModelParameters(effects);
+  const auto fit = config.OptionalChild("fit");
+  if (!fit) {
+    std::vector<ModelParameter> of_material;
+    for (const ModelParameter& parameter : known)
+      if (parameter.places.front().first == effects.front()) of_material.push_back(parameter);
+    return of_material;
+  }
+  std::vector<std::pair<std::string, const ModelParameter*>> choices;
+  for (const ModelParameter& parameter : known)
+    choices.emplace_back(parameter.prior.name, &parameter);
+  std::vector<ModelParameter> fitted;
+  for (const Config& item : fit->Items("parameters")) {
+    ModelParameter parameter = *item.Choice("name", choices);
+    for (const ModelParameter& earlier : fitted)
+      if (earlier.prior.name == parameter.prior.name) item.Fail("name", "is listed twice");
+    CalibratedParameter& prior = parameter.prior;
+    const ParameterCard& card = CardOf(parameter);
+    prior.min = item.Quantity("min", card.dimension, card.bounds, prior.min);
+    prior.max = item.Quantity("max", card.dimension, card.bounds, prior.max);
+    if (prior.min > prior.max) item.Fail("min", "is above max");
+    if (!(prior.min <= prior.start && prior.start <= prior.max))
+      item.Fail("name", fmt::format("starts at {:g} {}, outside {:g} to {:g}", prior.start,
+                                    parameter.unit, prior.min, prior.max));
+    ReadPrior(item, card, &prior);
+    fitted.push_back(parameter);
+  }
+  return fitted;
+}
+
+constexpr double kLongestStep = 0.005;  // s, to begin with
+constexpr double kMostSteps = 1e6;
+
+// Mean distance of the frames that are used, s, of the recording where it is least.
+double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const PredictedRecording& item : recordings) {
+    const std::vector<double>& times = item.recording.times;
+    if (item.frames.size() < 2) continue;
+    shortest = std::min(shortest, (times[item.frames.back()] - times[item.frames.front()]) /
+                                      static_cast<double>(item.frames.size() - 1));
+  }
+  return shortest;
+}
+
+// What the fit begins with. Steps of quasi-static motions end at the frames in any case.
+double FirstStep(const PredictionStudy& study) {
+  const double spacing = ShortestSpacing(study.recordings);
+  if (study.scheme != TimeScheme::kQuasiStatic) return std::min(kLongestStep, 0.5 * spacing);
+  return std::isfinite(spacing) ? spacing : kLongestStep;
+}
+
+// A step of the order of the recording follows no motion, and with millions of them a fit would not
+// end.
+void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
+  constexpr double kFewest = 10;
+  const double duration = Duration(study), steps = duration / study.time_step;
+  const double fewest = study.scheme == TimeScheme::kQuasiStatic ? 0 : kFewest;
+  if (steps < fewest || steps > kMostSteps)
+    motion.Fail("time_step",
+                fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
+                            "sound",
+                            steps, duration, fewest, kMostSteps));
+}
+
+}  // namespace
+
+bool IsPredictionStudy(const Config& config) { return config.Has("recordings"); }
+
+PredictionStudy ReadPredictionStudy(const Config& config) {
+  PredictionStudy study;
+  if (!IsPredictionStudy(config) && config.Has("recording"))
+    config.Fail("recording",
+                "makes this an experiment for `lacuna reconstruct`; a prediction has "
+                "a list of `recordings`");
+  config.Integer("schema_version", 1, 1);
+  study.file = config.File();
+  study.name = config.Text("name");
+  study.output = config.Path("output", "../results/" + study.name);
+  const Config mesh = config.Child("mesh");
+  study.mesh = ReadMeshSettings(mesh);
+  study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
+  study.effects = ReadEffects(config);
+  study.candidates = ReadCandidates(config, study.effects.front().get());
+  const std::optional<Config> motion = config.OptionalChild("motion");
+  if (motion) study.scheme = ReadTimeScheme(*motion, "two_step");
+  study.chooses_time_step = !motion || !motion->Has("time_step");
+  if (!study.chooses_time_step) study.time_step = motion->Quantity("time_step", kTime, kPositive);
+  study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
+  study.place_deviation =
+      config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
+  study.scan = ReadScanSettings(config);
+  for (const Config& item : config.Items("recordings")) {
+    PredictedRecording recording =
+        ReadRecordingEntry(item, study.effects.front().get(), study.scan, study.scheme,
+                           /*tells_the_shape=*/study.recordings.empty());
+    for (const PredictedRecording& other : study.recordings)
+      if (other.name == recording.name)
+        item.Fail("name", fmt::format("\"{}\" is that of another recording already; without one, "
+                                      "an entry has its recording's",
+                                      recording.name));
+    study.recordings.push_back(std::move(recording));
+  }
+  if (study.recordings.empty()) config.Fail("recordings", "is empty");
+  if (std::none_of(study.recordings.begin(), study.recordings.end(),
+                   [](const PredictedRecording& item) { return item.fitted; }))
+    config.Fail("recordings", "none of them is fitted");
+  RequireSomethingToFit(config, study);
+  if (study.chooses_time_step)
+    study.time_step = FirstStep(study);
+  else
+    RequireSoundStep(*motion, study);
+  if (study.chooses_time_step && Duration(study) > kMostSteps * study.time_step)
+    config.Fail(
+        "recordings",
+        fmt::format("last {:g} s, which a motion with inertia takes millions of steps for: give "
+                    "`motion: {{scheme: quasi_static}}`, a shorter `to`, or a time_step",
+                    Duration(study)));
+  const auto& density = study.recordings.front().recording.density;
+  study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
+                          : config.Quantity("density", kDensity, kPositive);
+  study.fitted = ReadFitted(config, study.effects);
+  config.RefuseUnknownKeys();
+  study.configuration = config.Resolved();
+  return study;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,159 @@
+#include "prediction/recorded_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/residual_statistics.h"
+#include "experiment/scan_frames.h"
+
+namespace lacuna {
+namespace {
+
+// Markers rest where their distances stay within this many times those of noise, so many frames.
+constexpr double kRestThreshold = 2.5;
+constexpr int kFewestAtRest = 8;
+
+// Standard deviations of the white noise beyond which a coordinate's scatter is motion. That of the
+// largest of a hundred coordinates at rest is below 1.5, of noise that is correlated from frame to
+// frame somewhat larger.
+constexpr double kMoves = 2;
+
+std::vector<int> FittedFrames(const PredictedRecording& item) {
+  std::vector<int> frames;
+  for (const int frame : item.frames)
+    if (item.recording.times[frame] <= item.fit_until) frames.push_back(frame);
+  return frames;
+}
+
+// Mean and standard deviation of one coordinate over the frames that show it.
+struct Spread {
+  double mean = 0, deviation = 0;
+};
+Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, Eigen::Index axis,
+                Eigen::Index marker) {
+  double sum = 0, squares = 0, seen = 0;
+  for (const int frame : frames) {
+    const double value = item.recording.markers.positions[frame](axis, marker) -
+                         item.recording.marker_places(axis, marker);
+    if (std::isnan(value)) continue;
+    sum += value;
+    squares += value * value;
+    ++seen;
+  }
+  if (seen == 0) return {};
+  const double mean = sum / seen;
+  return {mean, std::sqrt(std::max(0.0, squares / seen - mean * mean))};
+}
+
+}  // namespace
+
+bool IsAtRest(const PredictedRecording& item) {
+  if (item.scans != nullptr) return false;
+  const std::vector<int> frames = FittedFrames(item);
+  // Rounding of the mean square must not look like motion where there is no noise.
+  constexpr double kRounding = 1e-9;  // m
+  const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
+  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if (SpreadOf(item, frames, axis, marker).deviation > least) return false;
+  return true;
+}
+
+bool IsAtRest(const PredictionStudy& study) {
+  return std::all_of(study.recordings.begin(), study.recordings.end(),
+                     [](const PredictedRecording& item) { return !item.fitted || IsAtRest(item); });
+}
+
+std::string RestWarning(const PredictionStudy& study) {
+  if (!IsAtRest(study)) return "";
+  const bool is_one_frame = std::all_of(study.recordings.begin(), study.recordings.end(),
+                                        [](const PredictedRecording& item) {
+                                          return !item.fitted || FittedFrames(item).size() == 1;
+                                        });
+  return fmt::format(
+      "{} of stiffness and of constant loads, but not of mass, damping, drag or anything else that "
+      "needs motion",
+      is_one_frame ? "a single frame of each recording is fitted: it tells"
+                   : "nothing moves in the frames that are fitted: they tell");
+}
+
+namespace {
+
+std::string SlownessWarning(const PredictedRecording& item, const PredictionStudy& study) {
+  constexpr double kMany = 50;  // for one frame
+  const std::vector<double>& times = item.recording.times;
+  const double steps = (times[item.frames.back()] - times[item.frames.front()]) / study.time_step;
+  if (study.scheme == TimeScheme::kQuasiStatic ||
+      steps <= kMany * static_cast<double>(item.frames.size()))
+    return "";
+  return fmt::format(
+      "{}: takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in each "
+      "of "
+      "them, `motion: {{scheme: quasi_static}}` takes as many as there are frames",
+      item.name, steps, 1e3 * study.time_step, item.frames.size());
+}
+
+std::string UnseenWarning(const PredictedRecording& item) {
+  if (item.scans != nullptr) return "";
+  const auto is_unseen = [&](int frame) {
+    const Eigen::Matrix3Xd& here = item.recording.markers.positions[frame];
+    return (here.array().isNaN().colwise().any()).all();
+  };
+  const auto first = std::find_if(item.frames.begin(), item.frames.end(), is_unseen);
+  if (first == item.frames.end()) return "";
+  return fmt::format(
+      "{}: {} of {} frames show no marker, the first is frame {}; they are not compared", item.name,
+      std::count_if(first, item.frames.end(), is_unseen), item.frames.size(), *first);
+}
+
+}  // namespace
+
+std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& warning) {
+    if (!warning.empty()) warnings.push_back(warning);
+  };
+  for (const PredictedRecording& item : study.recordings) {
+    for (const std::string& warning : item.recording.warnings) add(item.name + ": " + warning);
+    add(UnseenWarning(item));
+    add(SlownessWarning(item, study));
+  }
+  add(RestWarning(study));
+  return warnings;
+}
+
+double RestDeformation(const PredictedRecording& item) {
+  const std::vector<int> frames = FittedFrames(item);
+  double largest = 0;
+  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker) {
+    Eigen::Vector3d mean;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      mean[axis] = SpreadOf(item, frames, axis, marker).mean;
+    largest = std::max(largest, mean.norm());
+  }
+  return largest;
+}
+
+double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
+  if (item.scans != nullptr) return EstimateScanNoise(*item.scans, frames);
+  Eigen::MatrixXd rows(item.recording.marker_places.size(),
+                       static_cast<Eigen::Index>(frames.size()));
+  for (size_t k = 0; k < frames.size(); ++k)
+    rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
+  const double white = WhiteNoise(rows);
+  if (!(white > 0)) return 0;
+  Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
+  for (size_t k = 0; k < frames.size(); ++k)
+    times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
+  // A body that has almost come to rest makes a span's deviation larger, never smaller.
+  double least = std::numeric_limits<double>::infinity();
+  for (const StaticSpan& rest :
+       StaticSpans(times, rows, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
+    if (!std::isnan(rest.deviation)) least = std::min(least, rest.deviation);
+  return std::isfinite(least) ? least : white;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,123 @@
+#include "prediction/replayed_motion.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+
+#include "fem/element_strain.h"
+
+namespace lacuna {
+namespace {
+
+void FindUp(const Model& model, ReplayedMotion* motion) {
+  for (const auto& effect : model.effects) {
+    if (effect->Card().type != "gravity") continue;
+    const Eigen::Vector3d gravity = effect->Parameters().head<3>();
+    if (gravity.norm() == 0) continue;
+    motion->up = -gravity.normalized();
+    motion->up_from_gravity = true;
+    return;
+  }
+}
+
+// Follows the memory of the effects from one visited state to the next.
+class MemoryAlong {
+ public:
+  explicit MemoryAlong(const Model& model) : model_(model) {
+    for (const auto& effect : model.effects) {
+      Eigen::VectorXd state(effect->StateSize(*model.body));
+      effect->InitialState(*model.body, &state);
+      state_.push_back(std::move(state));
+    }
+  }
+
+  // `time_step` after the last one; 0: the equilibrium.
+  const std::vector<Eigen::VectorXd>& Advance(const PredictedState& at, double time_step) {
+    const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(at.position.size());
+    for (size_t j = 0; j < state_.size(); ++j) {
+      if (state_[j].size() == 0) continue;
+      const Eigen::VectorXd before = state_[j];
+      model_.effects[j]->AdvanceState(
+          {*model_.body, at.position, at.velocity, no_acceleration, at.time, time_step, before},
+          model_.effects[j]->Parameters(), &state_[j]);
+    }
+    return state_;
+  }
+
+ private:
+  const Model& model_;
+  std::vector<Eigen::VectorXd> state_;
+};
+
+}  // namespace
+
+ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
+                      const std::vector<std::shared_ptr<Effect>>& further) {
+  ReplayedMotion motion;
+  const Model& model = recording.model();
+  Model loaded = model;
+  loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
+  const Body& body = *model.body;
+  CHECK(recording.Markers() != nullptr) << "only markers are replayed";
+  const MarkerObserver& observer = *recording.Markers();
+  const Embedding& places = observer.places_in_mesh();
+  const std::vector<int>& frames = recording.item().frames;
+  const PredictionOptions options = recording.Options(nuisance);
+  motion.nuisance = nuisance;
+  motion.delay = recording.Delay(nuisance);
+  motion.registration = recording.Registration(nuisance);
+  FindUp(model, &motion);
+
+  // The start is visited too, between the frames before it and those after.
+  std::vector<double> times;
+  for (const int frame : frames)
+    times.push_back(recording.item().recording.times[frame] - motion.delay);
+  const auto start = std::upper_bound(times.begin(), times.end(), options.start_time);
+  const int at_start = static_cast<int>(start - times.begin());
+  times.insert(start, options.start_time);
+
+  const Eigen::Index markers = recording.PointCount();
+  const Eigen::Index count = static_cast<Eigen::Index>(frames.size());
+  motion.predicted.resize(3 * markers, count);
+  motion.velocity.resize(3 * markers, count);
+  motion.strain.resize(markers, count);
+  motion.strain_rate.resize(markers, count);
+  motion.height.resize(markers, count);
+  const int last = static_cast<int>(count) - 1;
+  const int stride = std::max(1, (last - at_start) / (ReplayedMotion::kMostStates - 2) + 1);
+  MemoryAlong memory(model);
+  double time_before = options.start_time;
+  motion.summary = Predict(loaded, options, times, {}, [&](int index, const PredictedState& state) {
+    const auto keep = [&](int frame, const std::vector<Eigen::VectorXd>& effect_state) {
+      motion.states.push_back({state.time, state.position, state.velocity, effect_state});
+      motion.state_frame.push_back(frame);
+    };
+    if (index == at_start) {
+      keep(at_start - 1, memory.Advance(state, 0));
+      return;
+    }
+    const int frame = index < at_start ? index : index - 1;
+    const auto vectors = [&](const Eigen::VectorXd& nodal) {
+      const Eigen::VectorXd stacked = observer.rows() * nodal;
+      return Eigen::Matrix3Xd(stacked.reshaped(3, markers));
+    };
+    motion.predicted.col(frame) = (motion.registration * vectors(state.position)).reshaped();
+    motion.velocity.col(frame) =
+        (motion.registration.linear() * vectors(state.velocity)).reshaped();
+    for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
+      motion.deformation.emplace_back(motion.registration.linear() * deformation);
+    for (Eigen::Index m = 0; m < markers; ++m) {
+      const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
+      motion.strain(m, frame) = LargestPrincipal(strain.strain);
+      motion.strain_rate(m, frame) = LargestPrincipal(strain.rate);
+      motion.height(m, frame) = motion.up.dot(motion.predicted.col(frame).segment<3>(3 * m));
+    }
+    if (index < at_start) return;
+    const auto& effect_state = memory.Advance(state, state.time - time_before);
+    time_before = state.time;
+    if ((last - frame) % stride == 0) keep(frame, effect_state);
+  });
+  return motion;
+}
+
+}  // namespace lacuna

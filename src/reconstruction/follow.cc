@@ -1,0 +1,343 @@
+#include "reconstruction/follow.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "experiment/grip_tracks.h"
+#include "experiment/known_loads.h"
+#include "geometry/surface_tracks.h"
+#include "reconstruction/followed_sensitivity.h"
+#include "reconstruction/force_model_choice.h"
+#include "reconstruction/recorded_states.h"
+#include "registration/surface_alignment.h"
+
+namespace lacuna {
+namespace {
+
+Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
+}
+
+Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
+  return Eigen::Map<const Eigen::VectorXd>(points.data(), points.size());
+}
+
+double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
+  if (study.follow.noise > 0) return study.follow.noise;
+  const double estimated = EstimateNoise(states.front().cloud.points);
+  // Exact data would ask for an exact fit, which no mesh gives.
+  const double floor = 1e-5 * BoundingBoxDiagonal(states.front().cloud.points);
+  return std::max(estimated, floor);
+}
+
+// Where points of the body are in the state, by CPD.
+struct Correspondence {
+  Eigen::Matrix3Xd target;  // 3 × n
+  Eigen::VectorXd sigma;    // m, of a target across the surface
+};
+
+class Follower {
+ public:
+  Follower(const ReconstructionStudy& study, const ReferenceBody& reference,
+           const std::vector<FrameState>& states, const TrackedFrames* tracked,
+           const std::vector<int>& moduli, FollowedMotion* motion)
+      : study_(study), states_(states), tracked_(tracked), motion_(*motion) {
+    motion_.noise = NoiseOf(study, states);
+    model_ = {motion_.body, study.effects, {}};
+    grips_ = std::make_unique<GripTracks>(study.recording, reference.mesh, &model_);
+    forces_ = MakeForceModel(study, model_);
+    if (study.follow.forces.kind == ForceSettings::Kind::kKnown)
+      known_forces_ = MakeKnownForces(study.recording, model_);
+    model_.effects.insert(model_.effects.end(), known_forces_.begin(), known_forces_.end());
+    history_ = RestHistory(model_);
+    if (states.front().tracked.cols() > 0) {
+      tracks_ = TrackOnSurface(motion_.body->boundary, states.front().tracked);
+    }
+    StepOptions options;
+    options.scheme = study.follow.scheme;
+    options.refuse_inverted = !study.follow.allow_inverted;
+    stepper_ = std::make_unique<Stepper>(model_, options);
+    if (!moduli.empty()) sensitivity_ = std::make_unique<FollowedSensitivity>(model_, moduli);
+    previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
+  }
+
+  // The reference frame itself: nothing has moved yet.
+  void RecordRest() {
+    FollowedFrame frame;
+    frame.time = states_.front().time;
+    history_.time = frame.time;
+    frame.position = motion_.body->mesh.nodes;
+    frame.force = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
+    frame.pseudo_force = frame.force;
+    frame.solver = {true, "reference", "", 0};
+    frame.residual = ResidualDisplacement(frame.position, states_.front());
+    motion_.frames.push_back(std::move(frame));
+    grips_->Begin(history_.time);
+  }
+
+  // False when the frame could not be followed; its record says why.
+  bool Follow(size_t k) {
+    frame_ = k;
+    const FrameState& state = states_[k];
+    const Body& body = *motion_.body;
+    // In statics every frame is an equilibrium of its own, without a step from the last one.
+    const bool is_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
+    const double time_step = is_static || k == 0 ? 0 : state.time - states_[k - 1].time;
+
+    FollowedFrame frame;
+    frame.time = state.time;
+    const Eigen::Matrix3Xd before = AsPoints(history_.position);
+    const Eigen::Matrix3Xd shift = RegisteredShift(k, before);
+    frame.pseudo_force = PseudoForce(shift, time_step);
+    const RecordedGrip* lost = grips_->Extend(state.time, before, before + shift, state.tracked);
+    if (lost != nullptr)
+      throw InputError(
+          fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen, or their "
+                      "marker_places are not told",
+                      study_.recording.file.string(), state.time, lost->region.name));
+
+    Eigen::VectorXd start = Stacked(before + shift);
+    grips_->Place(state.time, &start);
+    MotionHistory from = history_;
+    if (time_step == 0) from.time = state.time;
+    const StepEquation equation(model_, from, study_.follow.scheme, time_step);
+
+    ForceFit fit;
+    int iterations = 0;
+    if (forces_.HasUnknowns()) {
+      const Correspondence correspondence = Register(AsPoints(start), state);
+      StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
+      for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
+        ThrowIfInterrupted();
+        const Observations seen = Observe(AsPoints(start), state, correspondence);
+        frame.observations = static_cast<int>(seen.Count());
+        // Free forces are expected to go on as they were. Coefficients are expected to be small: as
+        // a random walk, what the scans do not see of them would drift away.
+        ForceFitOptions options = study_.follow.fit;
+        // Correspondences that will be taken anew need no exact fit.
+        const bool is_last = round + 1 == study_.follow.alignment_rounds;
+        if (!is_last) options.function_tolerance = std::max(options.function_tolerance, 1e-2);
+        fit = fitter.Fit(seen, {force_, {}}, options);
+        iterations += fit.factorisations;
+        if (!fit.IsUsable()) break;
+        const Eigen::MatrixXd covariance =
+            is_last ? fitter.Covariance(fit, seen, options) : Eigen::MatrixXd();
+        if (covariance.size() > 0) frame.force_deviation = NetForceDeviation(forces_, covariance);
+        start = fit.position;
+      }
+      if (!fit.IsUsable()) return Fail("forces", fit.message, iterations, &frame);
+      frame.weighted_rms = fit.weighted_rms;
+    } else {
+      fit.force = Eigen::VectorXd::Zero(3 * body.NodeCount());
+    }
+
+    // The forces, not the fitted places, are the result: what stands in the record is where an
+    // ordinary step under these forces leads.
+    MotionHistory after = from;
+    if (time_step == 0 && fit.IsUsable()) after.position = fit.position;
+    const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
+                                           : stepper_->Equilibrium(fit.force, &after);
+    if (!step.IsUsable()) return Fail("step", step.message, iterations, &frame);
+    if (sensitivity_ != nullptr) {
+      sensitivity_->Advance(from, time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic,
+                            time_step, after.position);
+      frame.position_by = sensitivity_->position();
+    }
+    history_ = after;
+    force_ = fit.force;
+    coefficients_ = fit.coefficients;
+
+    frame.position = AsPoints(history_.position);
+    frame.force = AsPoints(fit.force + KnownForces());
+    frame.residual = ResidualDisplacement(frame.position, state);
+    frame.solver = {true, "converged", "", iterations};
+    motion_.frames.push_back(std::move(frame));
+    return true;
+  }
+
+ private:
+  bool Fail(const char* what, const std::string& message, int iterations, FollowedFrame* frame) {
+    frame->solver = {false, "no convergence", fmt::format("{}: {}", what, message), iterations};
+    const Eigen::Index nodes = motion_.body->NodeCount();
+    const auto unknown = std::numeric_limits<double>::quiet_NaN();
+    frame->position = Eigen::Matrix3Xd::Constant(3, nodes, unknown);
+    frame->force = frame->position;
+    frame->residual = Eigen::Matrix3Xd::Constant(3, motion_.body->boundary.node.size(), unknown);
+    motion_.frames.push_back(std::move(*frame));
+    return false;
+  }
+
+  PointCloud SimulatedSurface(const Eigen::Matrix3Xd& nodes) const {
+    const TriMesh surface = BoundaryAt(motion_.body->boundary, nodes);
+    return {surface.vertices, VertexNormals(surface)};
+  }
+
+  // The motion of `nodes` from state k − 1 to state k (the paper's displacement field between
+  // consecutive surfaces). Before the first state stands the simulated surface.
+  Eigen::Matrix3Xd RegisteredShift(size_t k, const Eigen::Matrix3Xd& nodes) {
+    if (tracked_ != nullptr) {
+      const Eigen::Matrix3Xd& rest = motion_.body->mesh.nodes;
+      return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
+    }
+    const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
+    // Motions go on: the last one is where the search for the next begins.
+    last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
+    if (last_motion_.IsEmpty()) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
+    return last_motion_.Evaluate(nodes);
+  }
+
+  Eigen::Matrix3Xd TrackedTarget() const {
+    const Eigen::Matrix3Xd& rest = motion_.body->boundary.surface.vertices;
+    return rest + tracked_->DisplacementAt(frame_, rest);
+  }
+
+  // A registration that has not quite settled still guides, with a warning; one that failed moves
+  // nothing, and what depends on it shows.
+  Alignment Registered(const PointCloud& source, const PointCloud& target,
+                       const DisplacementField* previous = nullptr) const {
+    if (previous != nullptr && previous->IsEmpty()) previous = nullptr;
+    Alignment alignment = Align(source, target, study_.registration, previous);
+    if (!alignment.IsUsable()) {
+      motion_.warnings.push_back(
+          fmt::format("frame {}: registration: {}", study_.frames[frame_], alignment.message));
+    }
+    if (alignment.field.IsEmpty()) {
+      alignment.displacement = Eigen::Matrix3Xd::Zero(3, source.Size());
+      alignment.standard_deviation = Eigen::VectorXd::Constant(source.Size(), kUnobserved);
+    }
+    return alignment;
+  }
+
+  // v = d/dt, α = dv/dt, F = m α.
+  Eigen::Matrix3Xd PseudoForce(const Eigen::Matrix3Xd& shift, double time_step) {
+    if (time_step <= 0) return Eigen::Matrix3Xd::Zero(3, shift.cols());
+    const Eigen::Matrix3Xd velocity = shift / time_step;
+    const Eigen::Matrix3Xd acceleration = (velocity - previous_velocity_) / time_step;
+    previous_velocity_ = velocity;
+    if (study_.follow.forces.unit_pseudo_mass) return acceleration;
+    return acceleration * motion_.body->node_mass.asDiagonal();
+  }
+
+  // Where the step has led (3n, N).
+  Eigen::VectorXd KnownForces() const {
+    Eigen::VectorXd known = Eigen::VectorXd::Zero(history_.position.size());
+    const Eigen::VectorXd no_memory, at_rest = Eigen::VectorXd::Zero(known.size());
+    for (const auto& force : known_forces_) {
+      force->AddForce({*model_.body, history_.position, history_.velocity, at_rest, history_.time,
+                       0, no_memory},
+                      &known);
+    }
+    return known;
+  }
+
+  // What stands for the model in a registration: the places of the tracked points on it, so that a
+  // side which is never seen takes no part, or its whole surface.
+  PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
+    if (tracks_.Count() == 0) return SimulatedSurface(nodes);
+    return {PointsAt(tracks_, motion_.body->boundary, nodes), {}};
+  }
+
+  bool IsTracked(const FrameState& state) const {
+    return study_.follow.use_identity && state.tracked.cols() > 0;
+  }
+
+  Correspondence Register(const Eigen::Matrix3Xd& nodes, const FrameState& state) const {
+    if (IsTracked(state)) return {};
+    if (tracked_ != nullptr) {
+      return {TrackedTarget(),
+              tracked_->DeviationAt(frame_, motion_.body->boundary.surface.vertices)};
+    }
+    const PointCloud surface = RegistrationPoints(nodes);
+    const Alignment aligned = Registered(surface, StatePoints(state));
+    return {surface.points + aligned.displacement, aligned.standard_deviation};
+  }
+
+  Observations Observe(const Eigen::Matrix3Xd& nodes, const FrameState& state,
+                       const Correspondence& correspondence) const {
+    const BoundarySurface& boundary = motion_.body->boundary;
+    if (IsTracked(state)) {
+      return ObserveMarkers(boundary, tracks_.at_rest, state.tracked - tracks_.offset,
+                            motion_.noise);
+    }
+    if (tracks_.Count() > 0) {
+      return ObserveMarkers(boundary, tracks_.at_rest, correspondence.target - tracks_.offset,
+                            motion_.noise);
+    }
+    const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
+    // Across the surface CPD is all there is; along its normal the scanned points say more where
+    // there are any, so there CPD only guides.
+    const double slip =
+        study_.follow.tangential_noise > 0 ? study_.follow.tangential_noise : 0.03 * size;
+    const Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(std::max(motion_.noise, slip));
+    const Eigen::VectorXd normal = tangent.cwiseMax(5 * motion_.noise);
+    const Observations registered =
+        ObserveVertices(boundary, nodes, correspondence.target, normal, tangent);
+    const Observations scanned =
+        ObserveScan(boundary, nodes, state.cloud, motion_.noise, study_.follow.reach * size);
+    return Concatenate(registered, scanned);
+  }
+
+  // align(p, S) − p of Eq. 1.
+  Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
+                                        const FrameState& state) const {
+    const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
+    if (tracked_ != nullptr) return TrackedTarget() - vertices;
+    const Alignment aligned = Registered(RegistrationPoints(nodes), StatePoints(state));
+    return aligned.field.IsEmpty() ? Eigen::Matrix3Xd::Zero(3, vertices.cols()).eval()
+                                   : aligned.field.Evaluate(vertices);
+  }
+
+  const ReconstructionStudy& study_;
+  const std::vector<FrameState>& states_;
+  const TrackedFrames* tracked_;
+  FollowedMotion& motion_;
+  size_t frame_ = 0;  // the one being followed
+  Model model_;
+  std::unique_ptr<GripTracks> grips_;
+  ForceModel forces_;
+  std::vector<std::shared_ptr<Effect>> known_forces_;
+  MotionHistory history_;
+  std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<FollowedSensitivity> sensitivity_;  // where it is asked for
+  SurfaceTracks tracks_;  // of tracked points; empty where there are none
+  Eigen::Matrix3Xd previous_velocity_;
+  DisplacementField last_motion_;
+  Eigen::VectorXd force_, coefficients_;
+};
+
+}  // namespace
+
+FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
+                            const std::vector<FrameState>& states, Progress* progress,
+                            const TrackedFrames* tracked, const std::vector<int>& moduli) {
+  FollowedMotion motion;
+  CHECK(moduli.empty() || (tracked != nullptr && HasModulusSensitivity(study.follow.forces)));
+  CHECK(tracked == nullptr || (FirstFrameIsReference(study) && states.front().tracked.cols() == 0));
+  motion.body = std::make_shared<Body>(MakeBody(reference.mesh, study.density));
+  Follower follower(study, reference, states, tracked, moduli, &motion);
+  progress->Begin("forces", static_cast<int64_t>(states.size()));
+  size_t first = 0;
+  if (FirstFrameIsReference(study)) {
+    follower.RecordRest();
+    first = 1;
+  }
+  for (size_t k = first; k < states.size(); ++k) {
+    ThrowIfInterrupted();
+    const bool followed = follower.Follow(k);
+    progress->Report(static_cast<int64_t>(k + 1), motion.frames.back().weighted_rms);
+    if (followed) continue;
+    motion.warnings.push_back(fmt::format("frame {} could not be followed ({}); the run ends there",
+                                          study.frames[k], motion.frames.back().solver.message));
+    break;
+  }
+  progress->End();
+  return motion;
+}
+
+}  // namespace lacuna

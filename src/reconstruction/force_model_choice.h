@@ -1,0 +1,17 @@
+// The basis of the unknown external forces that a reconstruction fits.
+#ifndef LACUNA_RECONSTRUCTION_FORCE_MODEL_CHOICE_H_
+#define LACUNA_RECONSTRUCTION_FORCE_MODEL_CHOICE_H_
+
+#include "fem/model.h"
+#include "fit/force_model.h"
+#include "reconstruction/reconstruction_study.h"
+
+namespace lacuna {
+
+// The force model that the settings describe: on boundary nodes of the region that no grip holds,
+// where a force would move nothing. Throws InputError when there is no such node.
+ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECONSTRUCTION_FORCE_MODEL_CHOICE_H_

@@ -1,0 +1,96 @@
+#include "reconstruction/reconstruction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hash.h"
+#include "core/interrupt.h"
+#include "experiment/frame_states.h"
+#include "experiment/reference_body.h"
+#include "experiment/scan_settings.h"
+#include "reconstruction/follow.h"
+#include "reconstruction/reconstruction_measures.h"
+#include "reconstruction/recorded_states.h"
+#include "record/run_directory.h"
+#include "record/run_stage.h"
+
+namespace lacuna {
+namespace {
+
+// Raised when the stage's code changes so that its result does.
+constexpr int kStatesVersion = 1;
+constexpr int kReferenceVersion = 1;
+constexpr int kMotionVersion = 2;
+constexpr int kResultsVersion = 2;
+
+// What is hashed so that a changed input is noticed.
+std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
+  std::map<std::string, std::string> hashes;
+  for (const std::filesystem::path& file : RecordingFiles(study.recording))
+    hashes[file.lexically_proximate(study.recording.file.parent_path()).generic_string()] =
+        HashFile(file);
+  return hashes;
+}
+
+}  // namespace
+
+RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress) {
+  RunDirectory run(study.output);
+  const std::map<std::string, std::string> inputs = HashInputs(study);
+  run.Begin(study.configuration, inputs, study.seed);
+  const nlohmann::json& options = study.configuration;
+  const auto part = [&options](std::initializer_list<const char*> keys) {
+    nlohmann::json chosen = nlohmann::json::object();
+    for (const char* key : keys)
+      if (options.contains(key)) chosen[key] = options[key];
+    return chosen;
+  };
+
+  const auto states = RunStage<std::vector<FrameState>>(
+      &run,
+      {"surfaces", kStatesVersion, part({"frames", "filter", "surface", "validation"}), inputs},
+      progress, [&] { return LoadFrameStates(study, progress); }, SaveFrameStates, ReadFrameStates);
+
+  std::map<std::string, std::string> behind{{"surfaces", run.ResultHash("surfaces")}};
+  for (const auto& [name, hash] : inputs) behind[name] = hash;
+  const auto reference = RunStage<ReferenceBody>(
+      &run, {"mesh", kReferenceVersion, part({"mesh"}), behind}, progress,
+      [&] {
+        progress->Begin("mesh", 0);
+        ReferenceBody body = MakeReferenceBody(study, states.front());
+        progress->End(
+            fmt::format("{} nodes, {} tetrahedra", body.mesh.NodeCount(), body.mesh.TetCount()));
+        return body;
+      },
+      SaveReferenceBody, ReadReferenceBody);
+
+  behind["mesh"] = run.ResultHash("mesh");
+  const auto motion = RunStage<FollowedMotion>(
+      &run,
+      {"motion", kMotionVersion,
+       part({"material", "effects", "density", "motion", "forces", "fit", "registration"}), behind},
+      progress, [&] { return FollowFrames(study, reference, states, progress); },
+      SaveFollowedMotion,
+      [&](const std::filesystem::path& folder) {
+        return ReadFollowedMotion(study, reference, folder);
+      });
+
+  behind["motion"] = run.ResultHash("motion");
+  for (const auto& file :
+       {study.validation.true_positions, study.validation.true_mesh, study.validation.true_forces})
+    if (!file.empty()) behind[file.filename().string()] = HashFile(file);
+  const auto record = RunStage<RunRecord>(
+      &run, {"results", kResultsVersion, part({"name", "validation"}), behind}, progress,
+      [&] { return MeasureRun(study, reference, states, motion); },
+      [&](const RunRecord& value, const std::filesystem::path& folder) {
+        SaveRunRecord(value, folder);
+        WriteFields(study, states, motion, value, folder);
+      },
+      LoadRunRecord);
+  run.Finish();
+  return record;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,270 @@
+#include "reconstruction/reconstruction_measures.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/measure.h"
+#include "core/npy.h"
+#include "fit/force_model.h"
+#include "geometry/embedding.h"
+#include "geometry/mesh_io.h"
+#include "geometry/nearest.h"
+#include "geometry/surface_tracks.h"
+#include "reconstruction/recorded_states.h"
+#include "record/csv_table.h"
+#include "report/surface_picture.h"
+#include "report/vtk_files.h"
+#include "scan/scan_writer.h"
+
+namespace lacuna {
+namespace {
+
+size_t FirstFollowed(const ReconstructionStudy& study) {
+  return FirstFrameIsReference(study) ? 1 : 0;
+}
+
+// Root mean square distance between columns that are both known.
+double RmsError(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& truth) {
+  return Summarise((found - truth).colwise().norm().transpose()).rms;
+}
+
+double MeanSpacing(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second) {
+  Eigen::Matrix3Xd all(3, first.cols() + second.cols());
+  all << first, second;
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index j = 0; j < all.cols(); ++j)
+    if (all.col(j).allFinite()) known.push_back(j);
+  const Eigen::Matrix3Xd points = all(Eigen::all, known);
+  return PointSearch(points).Nearest(points, 2).distance.row(1).mean();
+}
+
+void MeasureHeldOut(const ReconstructionStudy& study, const std::vector<FrameState>& states,
+                    const FollowedMotion& motion, RunRecord* record) {
+  const Eigen::Matrix3Xd& rest = states.front().held_out;
+  if (rest.cols() == 0) return;
+  const SurfaceTracks tracks = TrackOnSurface(motion.body->boundary, rest);
+  double worst = 0;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    if (!motion.frames[k].solver.usable) continue;
+    worst =
+        std::max(worst, RmsError(PointsAt(tracks, motion.body->boundary, motion.frames[k].position),
+                                 states[k].held_out));
+  }
+  record->measures["held_out_points"] = static_cast<double>(rest.cols());
+  record->measures["held_out_rms_max_m"] = worst;
+  record->measures["held_out_spacing_m"] = MeanSpacing(rest, states.front().tracked);
+}
+
+void MeasureTrueSurfaces(const ReconstructionStudy& study, const FollowedMotion& motion,
+                         RunRecord* record) {
+  if (study.validation.true_surfaces.empty()) return;
+  double sum = 0, worst = 0;
+  int followed = 0;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    if (!motion.frames[k].solver.usable) continue;
+    const TriMesh truth =
+        ReadTrueSurface(study.validation.true_surfaces.parent_path(), study.frames[k]);
+    const TriMesh found = BoundaryAt(motion.body->boundary, motion.frames[k].position);
+    const double mean = DistanceToSurface(found, truth.vertices).mean;
+    sum += mean;
+    worst = std::max(worst, mean);
+    ++followed;
+  }
+  if (followed == 0) return;
+  record->measures["true_surface_distance_mean_m"] = sum / followed;
+  record->measures["true_surface_distance_max_m"] = worst;
+}
+
+void MeasureTruePositions(const ReconstructionStudy& study, const FollowedMotion& motion,
+                          RunRecord* record) {
+  const ValidationSettings& validation = study.validation;
+  if (validation.true_positions.empty()) return;
+  const TetMeshFile rest = ReadTetMesh(validation.true_mesh);
+  const NpyArray positions = ReadNpy(validation.true_positions);
+  if (positions.shape.size() != 3 || positions.shape[2] != 3) {
+    throw InputError(SourcePosition{validation.true_positions.string()},
+                     "expected an array of frames × points × 3");
+  }
+  const auto points_per_frame = positions.shape[1];
+  const Embedding embedding = Embed(motion.body->mesh, rest.mesh.nodes);
+  double error_sum = 0, largest = 0;
+  int64_t count = 0;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    if (!motion.frames[k].solver.usable) continue;
+    const int frame = study.frames[k];
+    if (frame >= positions.shape[0]) {
+      throw InputError(
+          SourcePosition{validation.true_positions.string()},
+          fmt::format("has {} frames; frame {} was followed", positions.shape[0], frame));
+    }
+    const Eigen::Map<const Eigen::Matrix3Xd> all(
+        positions.values.data() + 3 * points_per_frame * frame, 3, points_per_frame);
+    const Eigen::Matrix3Xd truth = all(Eigen::all, rest.node_in_file);
+    const Eigen::Matrix3Xd found =
+        rest.mesh.nodes + (PointsAt(embedding, motion.body->mesh, motion.frames[k].position) -
+                           PointsAt(embedding, motion.body->mesh, motion.body->mesh.nodes));
+    error_sum += (found - truth).colwise().norm().sum();
+    largest = std::max(largest, (truth - rest.mesh.nodes).colwise().norm().maxCoeff());
+    count += truth.cols();
+  }
+  if (count == 0) return;
+  record->measures["true_position_mean_error_m"] = error_sum / static_cast<double>(count);
+  record->measures["true_displacement_max_m"] = largest;
+  record->measures["true_position_mean_error"] = error_sum / static_cast<double>(count) / largest;
+}
+
+void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& motion,
+                       RunRecord* record) {
+  if (study.validation.true_forces.empty()) return;
+  const Eigen::MatrixXd truth = ReadNpyMatrix(study.validation.true_forces);
+  std::vector<double> errors;
+  for (size_t k = FirstFollowed(study); k < motion.frames.size(); ++k) {
+    if (!motion.frames[k].solver.usable || study.frames[k] >= truth.rows()) continue;
+    const Eigen::Vector3d known = truth.row(study.frames[k]).transpose();
+    if (known.norm() == 0) continue;
+    errors.push_back((motion.frames[k].force.rowwise().sum() - known).norm() / known.norm());
+  }
+  if (errors.empty()) return;
+  std::sort(errors.begin(), errors.end());
+  record->measures["true_force_median_error"] = errors[errors.size() / 2];
+}
+
+// The model's surface at the last frame that was followed, coloured by |D|, with the scan's points.
+void DrawLastFrame(const ReconstructionStudy& study, const std::vector<FrameState>& states,
+                   const FollowedMotion& motion, const std::filesystem::path& file) {
+  size_t last = motion.frames.size();
+  while (last > 0 && !motion.frames[last - 1].solver.usable) --last;
+  if (last == 0) return;
+  const FollowedFrame& frame = motion.frames[last - 1];
+  SurfaceScene scene;
+  scene.mesh = BoundaryAt(motion.body->boundary, frame.position);
+  scene.vertex_values = 1e3 * frame.residual.colwise().norm().transpose();
+  scene.value_name = "|D| mm";
+  scene.points = states[last - 1].cloud.points;
+  scene.caption =
+      fmt::format("{}, frame {}: model and scanned points", study.name, study.frames[last - 1]);
+  PictureOptions options;
+  options.show_edges = true;
+  options.point_size = 2;
+  const PictureResult picture = RenderSurfacePng(file, scene, options);
+  if (!picture.IsUsable()) LOG(WARNING) << "no picture: " << picture.message;
+}
+
+double OrNotMeasured(bool measured, double value) { return measured ? value : kNotMeasured; }
+
+}  // namespace
+
+RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
+                     const std::vector<FrameState>& states, const FollowedMotion& motion) {
+  RunRecord record;
+  record.recording = study.recording.name;
+  record.object_size = BoundingBoxDiagonal(motion.body->mesh.nodes);
+  record.mesh = reference.quality;
+  record.warnings = study.recording.warnings;
+  record.warnings.insert(record.warnings.end(), reference.notes.begin(), reference.notes.end());
+  record.warnings.insert(record.warnings.end(), motion.warnings.begin(), motion.warnings.end());
+  record.point_residuals.resize(motion.body->boundary.node.size(),
+                                static_cast<Eigen::Index>(motion.frames.size()));
+  std::vector<LengthSummary> residuals;
+  double distance_sum = 0, per_point_sum = 0;
+  int followed = 0;
+  for (size_t k = 0; k < motion.frames.size(); ++k) {
+    const FollowedFrame& frame = motion.frames[k];
+    const bool usable = frame.solver.usable;
+    FrameRecord entry;
+    entry.frame = study.frames[k];
+    entry.time = frame.time;
+    entry.solver = frame.solver;
+    const LengthSummary residual = Summarise(frame.residual.colwise().norm().transpose());
+    record.point_residuals.col(static_cast<Eigen::Index>(k)) = residual.lengths;
+    if (usable) {
+      const TriMesh surface = BoundaryAt(motion.body->boundary, frame.position);
+      const LengthSummary distance = DistanceToSurface(surface, states[k].cloud.points);
+      entry.surface_distance_mean = distance.mean;
+      entry.surface_distance_rms = distance.rms;
+      entry.surface_distance_max = distance.max;
+      const Eigen::VectorXd force =
+          Eigen::Map<const Eigen::VectorXd>(frame.force.data(), frame.force.size());
+      const Eigen::VectorXd position =
+          Eigen::Map<const Eigen::VectorXd>(frame.position.data(), frame.position.size());
+      const Eigen::Vector3d centre =
+          frame.position * motion.body->node_mass / motion.body->node_mass.sum();
+      const NetForce net = NetForceOf(force, position, centre);
+      entry.force_resultant = net.force;
+      entry.force_resultant_deviation = frame.force_deviation;
+      entry.torque_resultant = net.torque;
+      if (k >= FirstFollowed(study)) {
+        residuals.push_back(residual);
+        distance_sum += distance.mean;
+        per_point_sum += residual.mean;
+        ++followed;
+      }
+    }
+    entry.residual = OrNotMeasured(usable, residual.sum);
+    entry.residual_mean = OrNotMeasured(usable, residual.mean);
+    entry.relative_residual = entry.residual_mean / record.object_size;
+    entry.relative_surface_distance = entry.surface_distance_mean / record.object_size;
+    record.frames.push_back(entry);
+  }
+  record.animation_residual = AnimationResidual(residuals);
+  record.relative_animation_residual =
+      OrNotMeasured(followed > 0, per_point_sum / followed / record.object_size);
+  record.measures["noise_m"] = motion.noise;
+  if (followed > 0) {
+    record.measures["residual_per_point_m"] = per_point_sum / followed;
+    record.measures["surface_distance_mean_m"] = distance_sum / followed;
+  }
+  const bool complete = motion.frames.size() == states.size() && motion.frames.back().solver.usable;
+  record.stages["forces"] = {complete, complete ? "converged" : "no convergence",
+                             complete ? "" : motion.frames.back().solver.message, 0};
+  MeasureHeldOut(study, states, motion, &record);
+  MeasureTrueSurfaces(study, motion, &record);
+  MeasureTruePositions(study, motion, &record);
+  MeasureTrueForces(study, motion, &record);
+  return record;
+}
+
+void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>& states,
+                 const FollowedMotion& motion, const RunRecord& /*record*/,
+                 const std::filesystem::path& folder) {
+  const Body& body = *motion.body;
+  std::vector<TimedFile> bodies, surfaces, scans;
+  for (size_t k = 0; k < motion.frames.size(); ++k) {
+    const FollowedFrame& frame = motion.frames[k];
+    if (!frame.solver.usable) continue;
+    TetMesh deformed = body.mesh;
+    deformed.nodes = frame.position;
+    const auto file = [&](const char* what, const char* extension) {
+      return folder / "fields" / fmt::format("{}_{:04}.{}", what, study.frames[k], extension);
+    };
+    std::filesystem::create_directories(folder / "fields");
+    WriteVtu(file("body", "vtu"), deformed,
+             {{{"displacement_m", frame.position - body.mesh.nodes},
+               {"force_N", frame.force},
+               {"pseudo_force_N", frame.pseudo_force}},
+              {}});
+    bodies.push_back({frame.time, file("body", "vtu")});
+
+    const TriMesh surface = BoundaryAt(body.boundary, frame.position);
+    WriteVtp(
+        file("surface", "vtp"), surface,
+        {{{"residual_m", frame.residual}, {"residual_length_m", frame.residual.colwise().norm()}},
+         {}});
+    surfaces.push_back({frame.time, file("surface", "vtp")});
+
+    const SurfaceHits hits = SurfaceSearch(surface).Nearest(states[k].cloud.points);
+    WriteVtp(file("scan", "vtp"), states[k].cloud,
+             {{"distance_to_model_m", hits.distance.transpose()}});
+    scans.push_back({frame.time, file("scan", "vtp")});
+  }
+  DrawLastFrame(study, states, motion, folder / "last_frame.png");
+  WritePvd(folder / "body.pvd", bodies);
+  WritePvd(folder / "surface.pvd", surfaces);
+  WritePvd(folder / "scan.pvd", scans);
+}
+
+}  // namespace lacuna

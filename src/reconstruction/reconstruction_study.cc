@@ -1,0 +1,208 @@
+#include "reconstruction/reconstruction_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment/scan_settings.h"
+
+namespace lacuna {
+namespace {
+
+CpdOptions ReadRegistration(const Config& config) {
+  CpdOptions cpd;
+  cpd.beta = config.Number("beta", kPositive, cpd.beta);
+  cpd.fine_variance = config.Number("fine_variance", kNotNegative, cpd.fine_variance);
+  cpd.lambda = config.Number("lambda", kPositive, cpd.lambda);
+  cpd.rigidity = config.Number("rigidity", kNotNegative, cpd.rigidity);
+  cpd.tangential_weight =
+      config.Number("tangential_weight", {0, 1, true, false}, cpd.tangential_weight);
+  cpd.match_extents = config.Flag("match_extents", cpd.match_extents);
+  cpd.outlier_weight = config.Number("outlier_weight", {0, 1, false, true}, cpd.outlier_weight);
+  cpd.estimate_outlier_weight = config.Flag("estimate_outlier_weight", cpd.estimate_outlier_weight);
+  cpd.initial_sigma = config.Quantity("initial_sigma", kLength, kNotNegative, cpd.initial_sigma);
+  cpd.sigma_floor = config.Number("sigma_floor", kPositive, cpd.sigma_floor);
+  cpd.points_per_function =
+      config.Integer("points_per_function", 1, 100000, cpd.points_per_function);
+  cpd.max_rank = config.Integer("max_rank", 4, 2000, cpd.max_rank);
+  cpd.rank_tolerance = config.Number("rank_tolerance", {0, 1, true, false}, cpd.rank_tolerance);
+  return cpd;
+}
+
+ForceSettings ReadForces(const Config& config, const std::filesystem::path& data_folder) {
+  using Kind = ForceSettings::Kind;
+  ForceSettings forces;
+  forces.kind = config.Choice<Kind>("model",
+                                    {{"none", Kind::kNone},
+                                     {"known", Kind::kKnown},
+                                     {"free", Kind::kFree},
+                                     {"smooth", Kind::kSmooth},
+                                     {"footprint", Kind::kFootprint},
+                                     {"nodal", Kind::kNodal}},
+                                    "smooth");
+  if (const auto region = config.OptionalChild("region"))
+    forces.region = ReadRegion(*region, data_folder, "forces");
+  if ((forces.kind == Kind::kFootprint || forces.kind == Kind::kNodal) && !forces.region)
+    config.Fail("model", "needs a region");
+  forces.length = config.Quantity("length", kLength, kNotNegative, forces.length);
+  forces.traction_scale =
+      config.Quantity("traction_scale", kPressure, kNotNegative, forces.traction_scale);
+  forces.force_scale = config.Quantity("force_scale", kForce, kPositive, forces.force_scale);
+  forces.unit_pseudo_mass =
+      config.Choice<bool>("pseudo_mass", {{"lumped", false}, {"unit", true}}, "lumped");
+  forces.hold_net_force = config.Flag("hold_net_force", forces.hold_net_force);
+  if (forces.hold_net_force && forces.kind == Kind::kFree)
+    config.Fail("hold_net_force", "goes with smooth forces; free ones have no basis to restrict");
+  return forces;
+}
+
+FollowSettings ReadFollow(const Config& config, const std::filesystem::path& data_folder) {
+  FollowSettings follow;
+  if (const auto motion = config.OptionalChild("motion")) {
+    follow.scheme = ReadTimeScheme(*motion, "implicit_euler");
+    follow.allow_inverted = motion->Flag("allow_inverted", follow.allow_inverted);
+  }
+  if (const auto forces = config.OptionalChild("forces"))
+    follow.forces = ReadForces(*forces, data_folder);
+  if (const auto fit = config.OptionalChild("fit")) {
+    follow.noise = fit->Quantity("noise", kLength, kNotNegative, follow.noise);
+    follow.tangential_noise =
+        fit->Quantity("tangential_noise", kLength, kNotNegative, follow.tangential_noise);
+    follow.alignment_rounds = fit->Integer("alignment_rounds", 1, 50, follow.alignment_rounds);
+    follow.use_identity = fit->Flag("use_identity", follow.use_identity);
+    follow.reach = fit->Number("reach", {0, 1, true, false}, follow.reach);
+    follow.fit.free_force_scale =
+        fit->Quantity("free_force_scale", kLength, kPositive, follow.fit.free_force_scale);
+    follow.fit.balance_tolerance =
+        fit->Quantity("balance_tolerance", kLength, kPositive, follow.fit.balance_tolerance);
+    follow.fit.robust_threshold =
+        fit->Number("robust_threshold", kNotNegative, follow.fit.robust_threshold);
+    follow.fit.max_iterations = fit->Integer("max_iterations", 1, 1000, follow.fit.max_iterations);
+  }
+  return follow;
+}
+
+std::vector<int> ReadFrames(const Config& config, const Recording& recording) {
+  const int count = recording.FrameCount();
+  int first = 0, last = count - 1, every = 1;
+  if (const auto frames = config.OptionalChild("frames")) {
+    first = frames->Integer("first", 0, count - 1, first);
+    last = frames->Integer("last", first, count - 1, last);
+    every = frames->Integer("every", 1, count, every);
+  }
+  std::vector<int> chosen;
+  for (int frame = first; frame <= last; frame += every) chosen.push_back(frame);
+  return chosen;
+}
+
+void ReadValidation(const Config& config, ValidationSettings* validation) {
+  const auto entry = config.OptionalChild("validation");
+  if (!entry) return;
+  validation->hold_out_every = entry->Integer("hold_out_every", 0, 1000000, 0);
+  if (validation->hold_out_every == 1) entry->Fail("hold_out_every", "would hold out every point");
+  validation->true_surfaces = entry->Path("true_surfaces", "");
+  validation->true_positions = entry->Path("true_positions", "");
+  validation->true_mesh = entry->Path("true_mesh", "");
+  validation->true_forces = entry->Path("true_forces", "");
+  if (validation->true_positions.empty() != validation->true_mesh.empty())
+    entry->Fail("true_positions", "and true_mesh go together");
+  // Told now rather than after the computation that they would be compared with.
+  const auto require = [&entry](const char* key, const std::filesystem::path& path) {
+    if (!path.empty() && !std::filesystem::exists(path))
+      entry->Fail(key, "there is no " + path.string());
+  };
+  require("true_surfaces", validation->true_surfaces);
+  require("true_positions", validation->true_positions);
+  require("true_mesh", validation->true_mesh);
+  require("true_forces", validation->true_forces);
+}
+
+// Known forces need a place and must cover the frames; others are told apart from them.
+void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
+  Recording& recording = study->recording;
+  if (study->follow.forces.kind != ForceSettings::Kind::kKnown) {
+    if (!recording.forces.empty()) {
+      recording.warnings.push_back(
+          "the recording's measured forces are not used: forces.model is not known");
+    }
+    return;
+  }
+  const Config forces = config.Child("forces");
+  if (recording.forces.empty())
+    forces.Fail("model", "known forces, but the recording has no forces");
+  const double first = recording.times[study->frames.front()];
+  const double last = recording.times[study->frames.back()];
+  const double slack = 1e-9 * (last - first);
+  for (const MeasuredForce& force : recording.forces) {
+    if (!force.region)
+      forces.Fail("model", fmt::format("the recording does not tell where {} acts (its region)",
+                                       force.name));
+    const bool is_constant = force.file.empty();
+    const double from = force.times[0], to = force.times[force.times.size() - 1];
+    if (!is_constant && (from > first + slack || to < last - slack)) {
+      forces.Fail("model", fmt::format("{} covers {:g} s to {:g} s, the frames {:g} s to {:g} s",
+                                       force.file.string(), from, to, first, last));
+    }
+  }
+}
+
+}  // namespace
+
+ReconstructionStudy ReadReconstruction(const Config& config) {
+  if (config.Has("recordings") && !config.Has("recording"))
+    config.Fail("recordings",
+                "makes this an experiment for `lacuna fit`, which predicts; a "
+                "reconstruction has one `recording`");
+  return ReadReconstruction(config, LoadRecording(config.Path("recording")));
+}
+
+ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording) {
+  ReconstructionStudy study;
+  config.Integer("schema_version", 1, 1);
+  study.name = config.Text("name");
+  if (config.Has("output") && config.Text("output").empty())
+    config.Fail("output", "is empty; expected a folder");
+  study.output = config.Path("output", "../results/" + study.name);
+  study.seed = static_cast<uint64_t>(config.Integer("seed", 0, 1 << 30, 1));
+  study.recording = recording;
+  study.frames = ReadFrames(config, study.recording);
+  if (const auto filter = config.OptionalChild("filter")) study.filter = ReadFilter(*filter);
+  if (const auto surface = config.OptionalChild("surface")) {
+    study.surfaces_of_frames =
+        surface->Choice<bool>("of_frames", {{"poisson", true}, {"none", false}}, "poisson");
+    study.surface = ReadSurface(*surface);
+  }
+  if (const auto registration = config.OptionalChild("registration"))
+    study.registration = ReadRegistration(*registration);
+  const Config mesh = config.Child("mesh");
+  study.mesh = ReadMeshSettings(mesh);
+  study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
+  study.density = study.recording.density
+                      ? config.Quantity("density", kDensity, kPositive, *study.recording.density)
+                      : config.Quantity("density", kDensity, kPositive);
+  study.effects = ReadEffects(config);
+  study.follow = ReadFollow(config, study.recording.data_folder);
+  ReadValidation(config, &study.validation);
+  config.RefuseUnknownKeys();
+  if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
+    config.Fail("recording",
+                "has one frame, which would be the reference shape and the motion at once; give a "
+                "reference shape or more frames");
+  }
+  CheckMeasuredForces(config, &study);
+  for (const std::string& warning : ImplausibleParameters(study.effects))
+    study.recording.warnings.push_back(warning);
+  const bool has_gravity =
+      std::any_of(study.effects.begin(), study.effects.end(),
+                  [](const auto& effect) { return effect->Card().type == "gravity"; });
+  if (study.recording.gravity && !has_gravity) {
+    study.recording.warnings.push_back(
+        "the recording was made in gravity, the model has none; sound where the reference shape "
+        "was scanned in the same gravity");
+  }
+  study.configuration = config.Resolved();
+  return study;
+}
+
+}  // namespace lacuna

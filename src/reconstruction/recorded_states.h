@@ -1,0 +1,28 @@
+// The recorded side of a reconstruction: the state of the object in every frame, and the undeformed
+// body that is made from the first of them or from a given shape.
+#ifndef LACUNA_RECONSTRUCTION_RECORDED_STATES_H_
+#define LACUNA_RECONSTRUCTION_RECORDED_STATES_H_
+
+#include <vector>
+
+#include "core/progress.h"
+#include "experiment/frame_states.h"
+#include "experiment/reference_body.h"
+#include "reconstruction/reconstruction_study.h"
+
+namespace lacuna {
+
+// One state per frame of the study, in its order. Throws InputError, naming the frame, and
+// Interrupted.
+std::vector<FrameState> LoadFrameStates(const ReconstructionStudy& study, Progress* progress);
+
+// `first` is the state of the study's first frame. Throws InputError when the shape cannot be
+// meshed.
+ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first);
+
+// Whether the first frame is the reference shape itself, so that there is nothing to follow in it.
+bool FirstFrameIsReference(const ReconstructionStudy& study);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECONSTRUCTION_RECORDED_STATES_H_

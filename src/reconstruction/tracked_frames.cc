@@ -1,0 +1,43 @@
+#include "reconstruction/tracked_frames.h"
+
+#include <fmt/format.h>
+
+#include "core/interrupt.h"
+#include "registration/surface_alignment.h"
+
+namespace lacuna {
+
+Eigen::Matrix3Xd TrackedFrames::DisplacementAt(size_t k, const Eigen::Matrix3Xd& at_rest) const {
+  if (fields[k].IsEmpty()) return Eigen::Matrix3Xd::Zero(3, at_rest.cols());
+  return fields[k].Evaluate(at_rest);
+}
+
+Eigen::VectorXd TrackedFrames::DeviationAt(size_t k, const Eigen::Matrix3Xd& at_rest) const {
+  if (fields[k].IsEmpty()) return Eigen::VectorXd::Zero(at_rest.cols());
+  return fields[k].StandardDeviation(at_rest);
+}
+
+TrackedFrames TrackFrames(const ReconstructionStudy& study, const std::vector<FrameState>& states,
+                          Progress* progress) {
+  TrackedFrames tracked;
+  const PointCloud first = StatePoints(states.front());
+  tracked.points = first.points;
+  tracked.fields.resize(states.size());
+  progress->Begin("tracking", static_cast<int64_t>(states.size()));
+  for (size_t k = 1; k < states.size(); ++k) {
+    ThrowIfInterrupted();
+    const DisplacementField& previous = tracked.fields[k - 1];
+    const Alignment aligned = Align(first, StatePoints(states[k]), study.registration,
+                                    previous.IsEmpty() ? nullptr : &previous);
+    if (!aligned.IsUsable()) {
+      tracked.warnings.push_back(
+          fmt::format("frame {}: registration: {}", study.frames[k], aligned.message));
+    }
+    tracked.fields[k] = aligned.field;
+    progress->Report(static_cast<int64_t>(k + 1));
+  }
+  progress->End();
+  return tracked;
+}
+
+}  // namespace lacuna

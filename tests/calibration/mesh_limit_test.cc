@@ -1,0 +1,79 @@
+#include "calibration/mesh_limit.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "calibration/calibration_fits.h"
+#include "calibration/linear_misfit.h"
+#include "experiment/reference_body.h"
+#include "prediction/predicted_body.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+struct BarFit {
+  PredictionStudy study;
+  CalibrationProblem problem;
+  Calibration calibration;
+
+  BarFit(const std::filesystem::path& folder, const std::string& volume)
+      : study(ReadBarStudy(folder, {{"max_volume: 1000 mm^3",
+                                     "max_volume: " + volume + ", preserve_surface: false"}})),
+        problem(study, MakeReferenceBody(study).mesh) {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    Progress progress(silent);
+    calibration = FitFromStart(problem, &progress);
+  }
+};
+
+void ReplaceInFile(const std::filesystem::path& file, const std::string& from,
+                   const std::string& to) {
+  std::string text = FileContent(file);
+  ASSERT_NE(text.find(from), std::string::npos);
+  text.replace(text.find(from), from.size(), to);
+  std::ofstream(file) << text;
+}
+
+TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  // Held at its face: a clamp of some depth would reach more nodes of a finer mesh.
+  ReplaceInFile(folder / "recording.yaml", "point: [0.002 m", "point: [0.00001 m");
+  const BarFit coarse(folder.Path(), "4000 mm^3"), fine(folder.Path(), "400 mm^3");
+  const Eigen::VectorXd& values = coarse.calibration.parameters;
+  const Eigen::VectorXd before = coarse.problem.Linearise(values, false).residual;
+  const auto limit = AtMeshLimit(coarse.problem, values);
+  ASSERT_TRUE(limit.has_value());
+  // A coarse mesh is stiff: its modulus is fitted too low.
+  const double missing = fine.calibration.parameters[0] - values[0];
+  EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
+  EXPECT_NEAR((*limit)[0], fine.calibration.parameters[0], 0.5 * missing);
+  ParameterEstimate estimate = coarse.calibration.estimates[0];
+  const double of_fine = fine.calibration.parameters[0];
+  EXPECT_LT(estimate.high, of_fine);
+  CountModelError(coarse.problem.parameters()[0], (*limit)[0], &estimate);
+  EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
+  // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
+  const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
+  const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
+  ASSERT_TRUE(finer.has_value());
+  const PredictionStudy study = coarse.problem.AsChosen();
+  const CalibrationProblem on_finer(study, finer->mesh);
+  const auto part = [&](const Eigen::VectorXd& change) {
+    const Eigen::VectorXd there =
+        on_finer.Linearise(MovedBy(coarse.problem.parameters(), values, change), false).residual;
+    return WhitenedRows(there - before, misfit, 0, false).norm();
+  };
+  EXPECT_LT(part(finer->change), 0.5 * part(Eigen::VectorXd::Zero(values.size())));
+  coarse.problem.SetModel(values);
+  const Eigen::VectorXd after = coarse.problem.Linearise(values, false).residual;
+  EXPECT_LT((after - before).norm(), 1e-6 * before.norm()) << "the problem is left as it was";
+}
+
+}  // namespace
+}  // namespace lacuna

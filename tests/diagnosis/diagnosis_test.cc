@@ -1,0 +1,136 @@
+#include "diagnosis/diagnosis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "diagnosis/diagnosis_record.h"
+#include "diagnosis/verdict.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::Contains;
+using Verdict = Diagnosis::Verdict;
+
+// The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
+constexpr double kModelError = 2;  // σ
+
+const std::map<std::string, std::string> kWithoutDamping{
+    {"  - {type: mass_damping, alpha: 1 1/s}\n", ""}, {", {name: mass_damping.alpha}", ""}};
+
+TEST(Diagnosis, NamesADampingThatTheModelLacks) {
+  HeldBarTruth truth;
+  truth.alpha = 12;
+  const Diagnosis diagnosis = DiagnoseBar(truth, kWithoutDamping);
+  EXPECT_GT(diagnosis.errors.in_noise, 3 * kModelError);
+  ASSERT_TRUE(diagnosis.verdict == Verdict::kMissing || diagnosis.verdict == Verdict::kAmbiguous)
+      << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, Contains("mass_damping"));
+  for (const RankedEffect& effect : diagnosis.ranking) {
+    if (effect.scored.candidate.type != "mass_damping") continue;
+    EXPECT_TRUE(effect.refitted);
+    EXPECT_LT(effect.errors.in_noise, kModelError);
+    // 1/s; the interval's width is a tenth of it.
+    ASSERT_EQ(effect.sizes.size(), 1u);
+    EXPECT_NEAR(effect.sizes[0].value, truth.alpha, 0.15 * truth.alpha);
+    EXPECT_LT(effect.sizes[0].low, effect.sizes[0].value);
+    EXPECT_GT(effect.sizes[0].high, effect.sizes[0].value);
+    EXPECT_TRUE(effect.others.empty());
+  }
+}
+
+TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
+  const Diagnosis diagnosis = DiagnoseBar({}, {});
+  EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+}
+
+// Half the distance of frames, where the first fit would begin.
+TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
+  HeldBarTruth truth;
+  truth.alpha = 12;
+  std::map<std::string, std::string> left_open = kWithoutDamping;
+  left_open["motion: {time_step: 1.5 ms}\n"] = "";
+  const Diagnosis shortened = DiagnoseBar(truth, left_open, {.refits = 1, .without = {}});
+  EXPECT_LT(shortened.time_step, 0.003);
+  std::map<std::string, std::string> given = kWithoutDamping;
+  given["time_step: 1.5 ms"] = "time_step: 5 ms";
+  const Diagnosis as_given = DiagnoseBar(truth, given, {.refits = 1, .without = {}});
+  EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
+  const auto doubt = [](const Diagnosis& diagnosis) {
+    for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+      if (nuisance.candidate.name == kTimeStepNuisance) return nuisance.doubt;
+    return std::nan("");
+  };
+  EXPECT_GT(MayLend(doubt(as_given)), kNamed);
+  EXPECT_LT(doubt(shortened), 0.5 * doubt(as_given));
+}
+
+TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
+  HeldBarTruth truth;
+  truth.jitter = 1e-3;
+  const Diagnosis diagnosis = DiagnoseBar(truth, {});
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_THAT(diagnosis.effects, Contains("time_jitter"));
+  EXPECT_GT(diagnosis.instead.nuisances_evidence, 50);
+  EXPECT_GT(diagnosis.instead.bare.without_nuisances, diagnosis.errors.without_nuisances);
+}
+
+TEST(Diagnosis, SaysThatItHasNoPowerWhereNothingCouldShow) {
+  // 100 m of noise on a bar of 0.08 m.
+  const Diagnosis diagnosis = DiagnoseBar({}, {{"noise: 0.05 mm", "noise: 100 m"}});
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << diagnosis.explanation;
+}
+
+TEST(Diagnosis, IsWrittenWithTheVerdictAndEveryEffect) {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::kNotInLibrary;
+  diagnosis.ranking.emplace_back();
+  ScoredEffect& scored = diagnosis.ranking.back().scored;
+  scored.candidate.type = "drag";
+  scored.parameters = {"coefficient"};
+  scored.units = {"kg/m^3"};
+  scored.score.size = scored.score.deviation = Eigen::VectorXd::Ones(1);
+  scored.score.detectable = Eigen::VectorXd::Constant(1, INFINITY);
+  diagnosis.ranking.push_back(diagnosis.ranking.back());
+  RankedEffect& refitted = diagnosis.ranking.back();
+  refitted.refitted = true;
+  refitted.sizes.resize(1);
+  refitted.sizes[0].value = 2;
+  refitted.sizes[0].low = 1;
+  ParameterEstimate place;
+  place.value = 0.05;
+  place.high = 0.07;
+  refitted.others = {{"drag.centre_x", "m", place}};
+  const TemporaryFolder folder;
+  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
+  std::ifstream stream(folder / "diagnosis.json");
+  const auto written = nlohmann::json::parse(stream);
+  EXPECT_EQ(written["verdict"], "not in library");
+  EXPECT_EQ(written["ranking"][0]["effect"], "drag");
+  EXPECT_TRUE(written["ranking"][0]["sizes"][0]["detectable"].is_null());
+  const DiagnosisRecord read = ReadDiagnosisFile(folder / "diagnosis.json");
+  EXPECT_EQ(read.ranking[0].sizes[0].expected, 1);
+  EXPECT_FALSE(read.ranking[0].sizes[0].refitted.has_value());
+  ASSERT_TRUE(read.ranking[1].sizes[0].refitted.has_value());
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->value, 2);
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->low, 1);
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
+  EXPECT_TRUE(read.ranking[0].others.empty());
+  ASSERT_EQ(read.ranking[1].others.size(), 1u);
+  EXPECT_EQ(read.ranking[1].others[0].parameter, "drag.centre_x");
+  EXPECT_EQ(read.ranking[1].others[0].unit, "m");
+  EXPECT_EQ(read.ranking[1].others[0].found.value, 0.05);
+  EXPECT_EQ(read.ranking[1].others[0].found.low, -INFINITY);
+  EXPECT_EQ(read.ranking[1].others[0].found.high, 0.07);
+}
+
+}  // namespace
+}  // namespace lacuna

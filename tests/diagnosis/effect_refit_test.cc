@@ -1,0 +1,254 @@
+#include "diagnosis/effect_refit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "calibration/calibration_fits.h"
+#include "calibration/linear_misfit.h"
+#include "effects/catalogue.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kFrames = 40, kSeries = 3;
+constexpr double kSigma = 1e-4;  // m
+
+// One recording of one marker: what is left looks like `amount` of the nuisance beside a wave.
+FittedHypothesis MakeHypothesis(double amount) {
+  LinearisedMisfit misfit;
+  misfit.usable = true;
+  LinearisedMisfit::Part part;
+  part.layout.series = kSeries;
+  part.layout.count.assign(kSeries * kFrames, 1);
+  for (int frame = 0; frame < kFrames; ++frame) part.layout.times.push_back(0.01 * frame);
+  part.errors.noise = kSigma;
+  part.fitted.assign(kFrames, 1);
+  const Eigen::Index rows = kSeries * kFrames;
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(rows, 0, 1);
+  misfit.by.resize(rows, 2);
+  misfit.by.col(0) = 1e-3 * (2 * std::numbers::pi * t).array().cos();
+  misfit.by.col(1) = 1e-3 * t;
+  misfit.residual = kSigma * (40 * t).array().sin();
+  misfit.residual -= amount * misfit.by.col(1);
+  misfit.parts.push_back(part);
+  FittedHypothesis hypothesis;
+  hypothesis.misfit = misfit;
+  hypothesis.parameters = 1;
+  hypothesis.priors = {{0, 1, false}, {0.1, 0.2, false}};
+  hypothesis.left = misfit.residual;
+  return hypothesis;
+}
+
+const NoiseLevel kNoise{0.008, 1.3};
+
+// At the best parameters it is the evidence of the linear model; a parameter that is elsewhere
+// loses what that costs.
+TEST(HypothesisEvidence, IsThatOfTheLinearModelAtItsBest) {
+  FittedHypothesis hypothesis = MakeHypothesis(0.8);
+  const auto fit = [&] {
+    const LinearisedMisfit& misfit = hypothesis.misfit;
+    return LinearModel(WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
+                       WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false),
+                       hypothesis.priors)
+        .FitAll(kNoise.variance);
+  };
+  const LinearFit best = fit();
+  EXPECT_LT(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence - 1e-6);
+  hypothesis.misfit.residual += best.change[0] * hypothesis.misfit.by.col(0);
+  hypothesis.priors[0].mean -= best.change[0];
+  EXPECT_NEAR(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence, 1e-9);
+}
+
+TEST(FallsShort, WhereItKeepsLittleOfThePromiseAndLeavesMoreThanNoise) {
+  const double noise = 100, promised = 50;
+  const auto falls_short = [&](double misfit_before, double misfit_after, double gained) {
+    return FallsShort({-900, misfit_before}, {-900 + gained, misfit_after}, noise, promised);
+  };
+  EXPECT_FALSE(falls_short(300, 200, 30));
+  EXPECT_TRUE(falls_short(300, 200, 20));
+  EXPECT_FALSE(falls_short(300, 110, 20));  // there is no more to be found
+  // Of a model that is at the estimated noise, or below.
+  EXPECT_TRUE(falls_short(102, 90, 20));
+  EXPECT_TRUE(falls_short(90, 80, 20));
+  EXPECT_FALSE(falls_short(90, 80, 30));
+}
+
+TEST(PredictsWorse, WhereHeldOutFramesAreMissedByMoreThanNoiseExplains) {
+  const auto predicts_worse = [](double with, bool has_held_out) {
+    ModelErrors errors;
+    errors.has_held_out = has_held_out;
+    errors.without_nuisances = with;
+    ModelErrors without = errors;
+    without.without_nuisances = 2;
+    return PredictsWorse(errors, without);
+  };
+  EXPECT_FALSE(predicts_worse(1, true));
+  EXPECT_FALSE(predicts_worse(2.1, true));
+  EXPECT_TRUE(predicts_worse(2.4, true));
+  EXPECT_FALSE(predicts_worse(2.4, false));
+}
+
+// A nuisance takes its part of the misfit away, and is paid for by its prior.
+TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
+  const FittedHypothesis usual = MakeHypothesis(0.1), far = MakeHypothesis(0.9);
+  const HypothesisEvidence of_usual = EvidenceOf(usual, kNoise), of_far = EvidenceOf(far, kNoise);
+  EXPECT_LT(of_far.misfit, 1.05 * of_usual.misfit);
+  // (0.8 / 0.2)² / 2 = 8, if the column fixes it.
+  EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
+}
+
+// The evidence of the linear model with the other effect's change over that without, less its
+// price; the refitted effect is none of the others.
+TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
+  FittedHypothesis hypothesis = MakeHypothesis(0.1);
+  LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(misfit.residual.size(), 0, 1);
+  const Eigen::VectorXd there = 1e-3 * (4 * std::numbers::pi * t).array().sin();
+  const std::vector<TriedVariant> tried = {
+      {"refitted", there, {{0, 1, false}}},
+      {"absent", 1e-3 * (9 * std::numbers::pi * t).array().cos(), {{0, 1, false}}},
+      {"there", there, {{0, 1, false}}, std::log(3)},
+      {"a nuisance", there, {{0, 1, false}}, 1, true}};
+  EXPECT_EQ(FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise).type, "");
+  misfit.residual += 0.2 * there;
+  const FurtherEvidence further = FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise);
+  EXPECT_EQ(further.type, "there");
+  const auto evidence = [&] {
+    return LinearModel(WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
+                       WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false),
+                       hypothesis.priors)
+        .FitAll(kNoise.variance)
+        .log_evidence;
+  };
+  const double without = evidence();
+  misfit.by.conservativeResize(Eigen::NoChange, 3);
+  misfit.by.col(2) = there;
+  hypothesis.priors.push_back({0, 1, false});
+  EXPECT_NEAR(further.evidence, evidence() - without - std::log(3), 1e-9);
+  EXPECT_GT(further.evidence, 10);
+  EXPECT_NEAR(further.of_nuisance, further.evidence + std::log(3) - 1, 1e-9);
+}
+
+// With its parameter where it is best for all frames, or for the fitted ones.
+FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise, bool fitted_only) {
+  const LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::VectorXd change =
+      LinearModel(WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
+                  WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only),
+                  hypothesis.priors)
+          .FitAll(noise.variance)
+          .change;
+  hypothesis.misfit.residual += change[0] * hypothesis.misfit.by.col(0);
+  hypothesis.priors[0].mean -= change[0];
+  return hypothesis;
+}
+
+// What held-out frames add is how dense they are where the fitted ones predict them: a Gaussian
+// about what the parameter's best value expects, as wide as the noise and what is open of it.
+TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
+  const NoiseLevel white{0, 1.3};
+  FittedHypothesis with = MakeHypothesis(0.8), without;
+  std::fill(with.misfit.parts[0].fitted.begin() + kFrames / 2, with.misfit.parts[0].fitted.end(),
+            0);
+  with.misfit.by = with.misfit.by.col(1).eval();
+  with.priors = {{0, 2, false}};
+  without = with;
+  without.misfit.by.setZero();
+  EffectRefit a, b;
+  a.at_fit = AtItsBest(with, white, true);
+  a.hypothesis = AtItsBest(with, white, false);
+  b.at_fit = b.hypothesis = without;
+  const RefitEvidence of_a = EvidenceOf(a, white), of_b = EvidenceOf(b, white);
+  const double held_out = of_a.held_out - of_b.held_out;
+
+  const Eigen::Index half = kSeries * kFrames / 2;
+  const double variance = 1.3 * kSigma * kSigma;
+  const Eigen::VectorXd by = with.misfit.by.col(0), residual = with.misfit.residual;
+  const double precision = by.head(half).squaredNorm() / variance + 0.25;
+  const double best = -by.head(half).dot(residual.head(half)) / variance / precision;
+  const Eigen::VectorXd to_come = by.tail(half);
+  const Eigen::MatrixXd covariance =
+      variance * Eigen::MatrixXd::Identity(half, half) + to_come * to_come.transpose() / precision;
+  const Eigen::VectorXd missed = residual.tail(half) + best * to_come;
+  const double log_density = -0.5 * missed.dot(covariance.llt().solve(missed)) -
+                             0.5 * std::log((covariance / variance).determinant());
+  const double log_without = -0.5 * residual.tail(half).squaredNorm() / variance;
+  EXPECT_NEAR(held_out, log_density - log_without, 1e-6 * std::abs(held_out));
+  EXPECT_GT(held_out, 100);
+  EXPECT_GT(of_a.all - of_b.all, held_out);
+}
+
+// The bar that was held aside and let go, with elements that are too coarse.
+class OfACoarseBar : public ::testing::Test {
+ protected:
+  OfACoarseBar() {
+    WriteBarRecording(folder_.Path(), FilmHeldBar({}));
+    study_ = ReadBarStudy(folder_.Path());
+    problem_.emplace(study_, BarMesh({6, 2, 2}, 1));
+  }
+
+  static ProgressOptions Silent() {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    return silent;
+  }
+
+  const TemporaryFolder folder_;
+  PredictionStudy study_;
+  std::optional<CalibrationProblem> problem_;
+  Progress progress_{Silent()};
+};
+using EffectRankingOfACoarseBar = OfACoarseBar;
+using EffectRefitOfACoarseBar = OfACoarseBar;
+
+// Softer near one end may look like stiffer near the other: a refit begins from both.
+TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
+  const EffectRanking ranking = RankEffects(*problem_, problem_->Start(), &progress_);
+  int places = 0;
+  for (const ScoredEffect& effect : ranking.effects) {
+    double at_most = effect.score.evidence;
+    for (const ScoredVariant& other : effect.elsewhere) {
+      EXPECT_EQ(other.candidate.type, effect.candidate.type);
+      EXPECT_NE(other.candidate.variant, effect.candidate.variant);
+      EXPECT_GT(other.candidate.position.line, 0);
+      EXPECT_LE(other.score.evidence, at_most);
+      at_most = other.score.evidence;
+    }
+    // Half of the places along the length cannot be better than both of their neighbours.
+    EXPECT_LE(effect.elsewhere.size(), 4u) << effect.candidate.type;
+    places += static_cast<int>(effect.elsewhere.size());
+    if (effect.candidate.type == "fibre_stiffness") {
+      EXPECT_TRUE(effect.elsewhere.empty());
+    }
+  }
+  EXPECT_GT(places, 0);
+}
+
+// First order may expect a size at which everything is another motion, from where no fit finds
+// back.
+TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
+  const Calibration fit = FitFromStart(*problem_, &progress_);
+  ASSERT_FALSE(fit.estimates.empty()) << fit.message;
+  const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+
+  ScoredEffect bed;
+  bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
+  bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
+  bed.fitted = fit.parameters;
+  const EffectRefit refit = Refit({*problem_, fit.parameters, misfit, &progress_}, &bed,
+                                  {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
+  ASSERT_TRUE(refit.message.empty()) << refit.message;
+  // A refit ends where a step gains less than one standard deviation.
+  EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
+  EXPECT_LT(refit.calibration.start_rms, 3 * fit.rms);
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,215 @@
+#include "diagnosis/extended_experiment.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "diagnosis/model_change.h"
+#include "effects/catalogue.h"
+#include "prediction/prediction_study_reader.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+// A run of the bar's study without its damping; `more`: keys of its experiment.
+std::filesystem::path FitBar(const std::filesystem::path& folder, const std::string& more = "") {
+  WriteBarRecording(folder, FilmHeldBar({}));
+  std::ofstream(folder / "bar.yaml") << BarExperiment(
+      folder, {{"name: bar", "name: bar\noutput: runs/bar" + more},
+               {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
+               {"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
+               {", {name: mass_damping.alpha}", ""}});
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "bar.yaml"));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  EXPECT_TRUE(RunCalibration(study, &progress).usable);
+  return study.output;
+}
+
+TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  FittedRun fitted = OpenRun(run);
+  EXPECT_EQ(fitted.study.effects.front()->Parameters()[0], fitted.values[0]) << "as it was fitted";
+  CalibratedParameter& modulus = fitted.study.fitted[0].prior;  // that was measured otherwise
+  ASSERT_TRUE(modulus.log_scale);
+  modulus.prior_mean = 1.4e5;
+  modulus.prior_deviation = 0.05;
+
+  ScoredEffect scored;
+  const Body body = MakeBody(fitted.mesh, 1000);
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, fitted.study.effects, fitted.study.time_step, 0.25}))
+    if (candidate.type == "mass_damping") scored.candidate = candidate;
+  ASSERT_NE(scored.candidate.effect, nullptr);
+  scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
+
+  const std::filesystem::path file = WriteExtendedExperiment(fitted, run, scored);
+  EXPECT_EQ(file.filename(), "bar+mass_damping.yaml");
+  const PredictionStudy extended = ReadPredictionStudy(Config::Load(file));
+  EXPECT_EQ(extended.output.filename(), "bar+mass_damping");
+  ASSERT_EQ(extended.effects.size(), fitted.study.effects.size() + 1);
+  EXPECT_EQ(extended.effects.front()->Parameters(), fitted.study.effects.front()->Parameters());
+  EXPECT_EQ(extended.effects.back()->Parameters()[0], 2.5);
+  ASSERT_EQ(extended.fitted.size(), 2u);
+  EXPECT_EQ(extended.fitted[0].prior.prior_mean, modulus.prior_mean);
+  EXPECT_NEAR(extended.fitted[0].prior.prior_deviation, modulus.prior_deviation, 1e-12);
+  const CalibratedParameter &alpha = extended.fitted[1].prior,
+                            expected = WithEffect(fitted.study, scored).fitted[1].prior;
+  EXPECT_EQ(alpha.name, "mass_damping.alpha");
+  // Known before is what the refits of a diagnosis take for known, not where this fit starts.
+  EXPECT_EQ(expected.prior_mean, 0);
+  EXPECT_EQ(alpha.prior_mean, expected.prior_mean);
+  EXPECT_EQ(alpha.prior_deviation, expected.prior_deviation);
+  EXPECT_EQ(alpha.max, expected.max);
+  EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
+}
+
+// Mass damping, written as a law of the user's own beside another one: it is scored as the
+// catalogue's, and the experiment that adds it has the rest of the candidates.
+TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
+  const TemporaryFolder folder;
+  const ParameterCard& alpha = FindEntry("mass_damping")->card->parameters[0];
+  const std::string damping = fmt::format(
+      "{{type: expression, name: my_damping, per: mass, force: [-k*vx, -k*vy, -k*vz], parameters: "
+      "{{k: {{value: 1 1/s, plausible: [{} 1/s, {} 1/s], min: {} 1/s}}}}}}",
+      alpha.plausible_min, alpha.plausible_max, alpha.bounds.min);
+  const std::string push =
+      "{type: expression, name: push, per: mass, force: [a, 0, 0], parameters: "
+      "{a: {value: 1 m/s^2, plausible: [-9 m/s^2, 9 m/s^2]}}}";
+  const std::filesystem::path run =
+      FitBar(folder.Path(), "\ncandidates:\n  - " + damping + "\n  - " + push);
+  const FittedRun fitted = OpenRun(run);
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRanking ranking =
+      RankEffects(CalibrationProblem(fitted.study, fitted.mesh), fitted.values, &progress);
+  const auto scored = [&](const std::string& type) {
+    const auto found =
+        std::find_if(ranking.effects.begin(), ranking.effects.end(),
+                     [&](const ScoredEffect& effect) { return effect.candidate.type == type; });
+    EXPECT_NE(found, ranking.effects.end()) << type;
+    return *found;
+  };
+  const ScoredEffect own = scored("my_damping"), built_in = scored("mass_damping");
+  EXPECT_GT(own.score.evidence, 5);
+  EXPECT_NEAR(own.score.evidence, built_in.score.evidence, 1e-3 * built_in.score.evidence);
+  EXPECT_NEAR(own.score.size[0], built_in.score.size[0], 1e-3 * built_in.score.size[0]);
+  EXPECT_LT(scored("push").score.evidence, own.score.evidence);
+
+  const std::filesystem::path file = WriteExtendedExperiment(fitted, run, own);
+  EXPECT_EQ(file.filename(), "bar+my_damping.yaml");
+  const PredictionStudy extended = ReadPredictionStudy(Config::Load(file));
+  EXPECT_EQ(extended.effects.back()->Card().title, "my_damping, a force law of the user's own");
+  EXPECT_EQ(extended.effects.back()->Parameters()[0], own.score.size[0]);
+  EXPECT_EQ(extended.fitted.back().prior.name, "expression.k");
+  ASSERT_EQ(extended.candidates.size(), 1u);
+  EXPECT_EQ(extended.candidates[0].name, "push");
+}
+
+TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
+  // Its folder of runs is then "../results/…" of no folder that has a name.
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  std::filesystem::create_directory(folder / "experiments");
+  std::ofstream(folder / "experiments/bar.yaml") << BarExperiment(
+      folder.Path(), {{"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"}});
+  std::filesystem::current_path(folder / "experiments");
+  const PredictionStudy study = ReadPredictionStudy(Config::Load("bar.yaml"));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  EXPECT_TRUE(RunCalibration(study, &progress).usable);
+  EXPECT_NO_THROW(OpenRun(study.output));
+  std::filesystem::current_path(before);
+}
+
+TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  const FittedRun fitted = OpenRun(run);
+
+  ScoredEffect law;
+  law.candidate.type = "st_venant_kirchhoff";
+  law.candidate.replaces_material = true;
+  const Eigen::VectorXd moduli = fitted.study.effects.front()->Parameters();
+  law.candidate.effect = FindEntry("st_venant_kirchhoff")->make(moduli);
+  const PredictionStudy other =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, law)));
+  ASSERT_EQ(other.effects.size(), fitted.study.effects.size());
+  EXPECT_EQ(other.effects.front()->Card().type, "st_venant_kirchhoff");
+  EXPECT_EQ(other.effects.front()->Parameters(), moduli);
+  ASSERT_EQ(other.fitted.size(), 1u);
+  EXPECT_EQ(other.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(other.fitted[0].places[0].first, other.effects.front());
+
+  ScoredEffect contact;
+  contact.candidate.type = "plane_contact";
+  contact.candidate.effect = MakeEffect(
+      "plane_contact", {{"stiffness", 1e8}, {"normal_y", 1}, {"normal_z", 0}, {"offset", -0.0123}});
+  contact.candidate.refined = {{"offset", 1e-3}};
+  contact.score.size = Eigen::VectorXd::Constant(1, 0.8);
+  const PredictionStudy more =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, contact)));
+  ASSERT_EQ(more.effects.size(), fitted.study.effects.size() + 1);
+  EXPECT_EQ(more.effects.back()->Parameters(), contact.candidate.effect->Parameters());
+  // The modulus, and of the plane where it is.
+  ASSERT_EQ(more.fitted.size(), 2u);
+  EXPECT_EQ(more.fitted[1].prior.name, "plane_contact.offset");
+}
+
+TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
+  ScoredEffect scored;
+  scored.candidate.type = "drag";
+  scored.candidate.effect = MakeEffect("drag", {{"coefficient", 0}});
+  scored.candidate.amplitude = {0};
+  const double largest = PlausibleScale(scored.candidate.effect->Card().parameters[0]);
+  scored.score.detectable = Eigen::VectorXd::Constant(1, 0.5 * largest);
+  EXPECT_EQ(WhyUnseen(scored), "");
+  scored.score.detectable[0] = 2 * largest;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("larger than is plausible"));
+  scored.score.detectable[0] = INFINITY;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("drag does nothing in these recordings"));
+  scored.candidate.amplitude.clear();  // a pilot
+  scored.score.detectable[0] = 3;
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("3 times as large"));
+}
+
+std::string MessageOnOpening(const std::filesystem::path& run) {
+  try {
+    OpenRun(run);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was opened";
+}
+
+TEST(ExtendedExperiment, ARunWhoseExperimentOrRecordingHasChangedIsNotOpened) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = FitBar(folder.Path());
+  EXPECT_EQ(MessageOnOpening(run), "was opened");
+  std::vector<Eigen::Matrix3Xd> markers = FilmHeldBar({});
+  markers.back()(0, 0) += 1e-3;
+  WriteBarRecording(folder.Path(), markers);
+  EXPECT_THAT(MessageOnOpening(run), HasSubstr("markers.csv has changed since"));
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  EXPECT_EQ(MessageOnOpening(run), "was opened");
+  std::ofstream(folder / "bar.yaml", std::ios::app) << "seed_of_doubt: 1\n";
+  EXPECT_THROW(OpenRun(run), InputError);
+  std::ofstream(folder / "bar.yaml") << BarExperiment(folder.Path(), {{"0.15 MPa", "0.16 MPa"}});
+  EXPECT_THAT(MessageOnOpening(run), HasSubstr("bar.yaml has changed since"));
+}
+
+}  // namespace
+}  // namespace lacuna

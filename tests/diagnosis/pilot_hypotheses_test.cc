@@ -1,0 +1,165 @@
+#include "diagnosis/pilot_hypotheses.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "diagnosis/model_change.h"
+#include "diagnosis/plane_proposals.h"
+#include "effects/catalogue.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::Contains;
+using Verdict = Diagnosis::Verdict;
+
+// The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
+constexpr double kModelError = 2;  // σ
+// The bar, 20 mm wide, is let go at y > 0 and swings to y < 0, where this plane is.
+constexpr double kPlane = -0.0125;  // m
+
+HeldBarTruth BesideAPlane() {
+  HeldBarTruth truth;
+  truth.hidden = {MakeEffect(
+      "plane_contact",
+      {{"stiffness", 3e7}, {"normal_x", 0}, {"normal_y", 1}, {"normal_z", 0}, {"offset", kPlane}})};
+  return truth;
+}
+
+const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
+  for (const RankedEffect& effect : diagnosis.ranking)
+    if (effect.scored.candidate.type == type) return &effect;
+  return nullptr;
+}
+
+bool IsUntried(const std::vector<UntriedEffect>& untried, const std::string& type) {
+  for (const UntriedEffect& effect : untried)
+    if (effect.type == type) return true;
+  return false;
+}
+
+// Pilots of the bar's model at the true parameters.
+struct PilotsOfBar {
+  TemporaryFolder folder;
+  PredictionStudy study;
+  std::vector<ProposedPlane> planes;
+  LinearisedMisfit misfit;
+  PilotHypotheses pilots;
+
+  explicit PilotsOfBar(const HeldBarTruth& truth) {
+    WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+    study = ReadBarStudy(folder.Path());
+    const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+    Eigen::VectorXd values = problem.Start();
+    values[0] = truth.young_modulus;
+    values[1] = truth.alpha;
+    values.segment<3>(2) = truth.hold_force;
+    values[5] = truth.clock;
+    misfit = problem.Linearise(values, false);
+    planes = ProposePlanes(problem, values, misfit);
+    pilots = RunPilots(problem, values, misfit, {"corotational"});
+  }
+};
+
+TEST(PilotHypotheses, TryThePlaneThatTheModelCrosses) {
+  const PilotsOfBar bar(BesideAPlane());
+  ASSERT_FALSE(bar.planes.empty());
+  EXPECT_GT(bar.planes.front().normal.y(), 0.9);
+  // m: the edge sinks into the plane by some tenths, and the marker nearest to it stands off by as
+  // much again.
+  EXPECT_NEAR(bar.planes.front().offset, kPlane, 1.2e-3);
+  EXPECT_GT(bar.planes.front().crossing, 1e-3);
+  EXPECT_FALSE(IsUntried(bar.pilots.untried, "plane_contact"));
+  for (const PilotHypothesis& pilot : bar.pilots.tried) {
+    ASSERT_EQ(pilot.by.size(), bar.misfit.residual.size());
+    if (pilot.candidate.type != "plane_contact") continue;
+    // At the true parameters the deepest plane explains most of what is left by itself.
+    EXPECT_LT((bar.misfit.residual + pilot.by).norm(), 0.5 * bar.misfit.residual.norm());
+    break;
+  }
+}
+
+TEST(PilotHypotheses, TryNoPlaneWhereTheModelCrossesNone) {
+  const PilotsOfBar bar({});
+  EXPECT_TRUE(bar.planes.empty());
+  EXPECT_TRUE(IsUntried(bar.pilots.untried, "plane_contact"));
+  std::vector<std::string> tried;
+  for (const PilotHypothesis& pilot : bar.pilots.tried) {
+    tried.push_back(pilot.candidate.type);
+    EXPECT_TRUE(pilot.candidate.replaces_material);
+    // The same moduli at small strain, another law: another motion, though not by much.
+    EXPECT_GT(pilot.by.norm(), 0);
+    EXPECT_EQ(pilot.candidate.effect->Parameters(), bar.study.effects.front()->Parameters());
+  }
+  EXPECT_THAT(tried, testing::ElementsAre("linear", "st_venant_kirchhoff"));
+}
+
+TEST(PilotHypotheses, ALawTakesOverTheFittedModuli) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  CandidateEffect law;
+  law.type = "linear";
+  law.replaces_material = true;
+  law.effect = FindEntry("linear")->make(study.effects.front()->Parameters());
+  const PredictionStudy with = WithCandidate(study, law);
+  EXPECT_EQ(with.effects.size(), study.effects.size());
+  EXPECT_EQ(with.effects.front(), law.effect);
+  ASSERT_EQ(with.fitted.size(), study.fitted.size());
+  EXPECT_EQ(with.fitted[0].places[0].first, law.effect);
+  EXPECT_EQ(with.fitted[1].places, study.fitted[1].places);  // of the damping
+}
+
+TEST(Diagnosis, PrefersAPlaneThatTheBarMeets) {
+  const Diagnosis diagnosis = DiagnoseBar(BesideAPlane(), {});
+  EXPECT_GT(diagnosis.errors.in_noise, kModelError);
+  const RankedEffect* contact = Find(diagnosis, "plane_contact");
+  ASSERT_NE(contact, nullptr);
+  ASSERT_TRUE(contact->refitted);
+  EXPECT_LT(contact->errors.in_noise, 0.55 * diagnosis.errors.in_noise);
+  for (const RankedEffect& other : diagnosis.ranking) {
+    if (other.refitted && &other != contact) {
+      EXPECT_LT(other.evidence, contact->evidence);
+    }
+  }
+  for (const std::string& named : diagnosis.effects)
+    EXPECT_EQ(named, "plane_contact") << diagnosis.explanation;
+}
+
+TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
+  const Diagnosis diagnosis = DiagnoseBar({}, {});
+  const RankedEffect* contact = Find(diagnosis, "plane_contact");
+  EXPECT_EQ(contact == nullptr, IsUntried(diagnosis.untried, "plane_contact"));
+  // A plane that the mesh's error has proposed: effects are tried where the limit would be fitted.
+  if (contact != nullptr) {
+    EXPECT_LT(contact->scored.score.evidence, 3);
+  }
+  // So small strains that laws differ by less than the noise: none has evidence to speak of.
+  for (const char* law : {"linear", "corotational", "st_venant_kirchhoff"}) {
+    ASSERT_NE(Find(diagnosis, law), nullptr) << law;
+    EXPECT_LT(Find(diagnosis, law)->scored.score.evidence, 3) << law;
+  }
+}
+
+TEST(Diagnosis, NamesNoWrongEffectWhereAnotherLawIsMissing) {
+  HeldBarTruth truth;
+  truth.law = "st_venant_kirchhoff";
+  truth.hold_force = {0, 0.25, 0.1};  // bends the bar by a third of its length
+  const Diagnosis diagnosis = DiagnoseBar(truth, {});
+  ASSERT_FALSE(diagnosis.ranking.empty());
+  EXPECT_THAT(diagnosis.ranking.front().scored.candidate.type,
+              AnyOf("st_venant_kirchhoff", "strain_stiffening"));
+  // The bar's coarse mesh leaves enough that it may name nothing at all.
+  if (diagnosis.verdict == Verdict::kMissing) {
+    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff") << diagnosis.explanation;
+  }
+  if (diagnosis.verdict == Verdict::kAmbiguous) {
+    EXPECT_THAT(diagnosis.effects, Contains("st_venant_kirchhoff"));
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

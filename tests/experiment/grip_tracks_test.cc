@@ -1,0 +1,142 @@
+#include "experiment/grip_tracks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+
+#include "calibration/calibration_problem.h"
+#include "core/error.h"
+#include "effects/catalogue.h"
+#include "geometry/rotation.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+// A bar that is carried at one end, seen by markers there.
+class CarriedByMarkers : public testing::Test {
+ protected:
+  CarriedByMarkers() : mesh_(BarMesh({4, 1, 1}, 1)) {
+    recording_.times = {0, 1, 2};
+    recording_.markers.names = {"a", "b", "c", "d"};
+    recording_.marker_places.resize(3, 4);
+    recording_.marker_places << 0, 0, 0, 0.01, -0.01, 0.01, -0.01, 0.01, 0.01, 0.01, -0.01, 0.01;
+  }
+
+  // A grip that follows these markers: in the first frame at rest, in the last where the motion has
+  // them, between as `middle` has them.
+  void Follow(const std::vector<std::string>& names, const Eigen::Matrix3Xd& middle) {
+    RecordedGrip grip;
+    grip.region = {"hand", HalfSpaceRegion{{0.002, 0, 0}, {-1, 0, 0}}};
+    grip.motion = GripMotion::kFollowsMarkers;
+    grip.markers = names;
+    grip.deforms = deforms_;
+    recording_.grips = {grip};
+    model_ = {};
+    model_.body = std::make_shared<const Body>(MakeBody(mesh_, 1000));
+    GripTracks tracks(recording_, mesh_, &model_);
+    const Eigen::Matrix3Xd none(3, 0);
+    first_lost_ = tracks.Extend(0, none, none, recording_.marker_places) != nullptr;
+    const RecordedGrip* lost = tracks.Extend(1, none, none, middle);
+    lost_ = lost == nullptr ? "" : lost->region.name;
+    tracks.Extend(2, none, none, motion_ * recording_.marker_places);
+    const Grip& held = model_.grips.front();
+    rest_ = mesh_.nodes(Eigen::all, held.nodes);
+    at_middle_ = held.motion(1);
+  }
+
+  Eigen::Matrix3Xd Moved() const { return motion_ * recording_.marker_places; }
+
+  TetMesh mesh_;
+  Recording recording_;
+  Model model_;
+  Eigen::Isometry3d motion_ =
+      Eigen::Translation3d(0.01, 0.02, -0.01) * Eigen::Isometry3d(RotationBy({0.1, 0.2, -0.1}));
+  Eigen::Matrix3Xd rest_, at_middle_;
+  std::string lost_;
+  bool deforms_ = false;
+  bool first_lost_ = true;
+};
+
+TEST_F(CarriedByMarkers, MovesAsTheyDo) {
+  Follow({"a", "b", "c", "d"}, Moved());
+  EXPECT_FALSE(first_lost_);
+  EXPECT_EQ(lost_, "");
+  EXPECT_LT((at_middle_ - motion_ * rest_).norm(), 1e-12);
+}
+
+TEST_F(CarriedByMarkers, DeformsWithThemWhereItMay) {
+  const Eigen::Vector3d stretch(1, 1.2, 0.9);  // the markers lie in the plane x = 0
+  const Eigen::Matrix3Xd wide = stretch.asDiagonal() * recording_.marker_places;
+  Follow({"a", "b", "c", "d"}, wide);
+  const auto inner = [](const Eigen::Matrix3Xd& places) -> Eigen::MatrixXd {
+    const Eigen::Matrix3Xd about = places.colwise() - Eigen::Vector3d(places.col(0));
+    return about.transpose() * about;
+  };
+  EXPECT_LT((inner(at_middle_) - inner(rest_)).norm(), 1e-12);  // rigid
+  deforms_ = true;
+  Follow({"a", "b", "c", "d"}, wide);
+  EXPECT_LT((at_middle_ - stretch.asDiagonal() * rest_).norm(), 1e-12);
+}
+
+TEST_F(CarriedByMarkers, IsRefusedWhereTwoAreToTellHowItDeforms) {
+  deforms_ = true;
+  EXPECT_THAT(
+      [&] {
+        Follow({"a", "b"}, Moved());
+      },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("span no plane")));
+}
+
+TEST_F(CarriedByMarkers, DoesWithoutOneThatIsHidden) {
+  Eigen::Matrix3Xd seen = Moved();
+  seen(1, 1) = kUnseen;
+  Follow({"a", "b", "c", "d"}, seen);
+  EXPECT_EQ(lost_, "");
+  EXPECT_LT((at_middle_ - motion_ * rest_).norm(), 1e-12);
+}
+
+TEST_F(CarriedByMarkers, MovesEvenlyWhereTheyDoNotTell) {
+  Eigen::Matrix3Xd seen = Moved();
+  seen.leftCols(2).setConstant(kUnseen);
+  Follow({"a", "b", "c"}, seen);  // only c, which tells no turn
+  EXPECT_EQ(lost_, "hand");
+  EXPECT_LT((at_middle_ - 0.5 * (rest_ + motion_ * rest_)).norm(), 1e-12);
+}
+
+TEST_F(CarriedByMarkers, DoesNotTurnAboutTheLineOfTwo) {
+  Follow({"a", "b"}, recording_.marker_places);
+  EXPECT_EQ(lost_, "");
+  EXPECT_LT((at_middle_ - rest_).norm(), 1e-12);
+}
+
+TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {
+  const TemporaryFolder folder;
+  std::vector<Eigen::Matrix3Xd> markers(kFrames, BarMarkerPlaces());
+  for (int frame = 0; frame < kFrames; ++frame) markers[frame].array() += 1e-3 * frame * frame;
+  markers.back().leftCols(2).setConstant(kUnseen);
+  WriteBarRecording(folder.Path(), markers);
+  std::string text = FileContent(folder / "recording.yaml");
+  const std::string fixed = "fixed: [{name: clamp, ";
+  const size_t at = text.find(fixed);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, fixed.size(), "gripped: [{name: hand, follows_markers: [m0, m1, m2], ");
+  std::ofstream(folder / "recording.yaml") << text;
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  try {
+    const CalibrationProblem problem(study, BarMesh({4, 1, 1}, 1));
+    FAIL() << "nothing was refused";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(),
+                testing::HasSubstr("frame 25, the last that is used, shows too few of the markers "
+                                   "that \"hand\" follows: choose `to`"));
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,231 @@
+// The paper's search on a reduced bend: every fifth frame of the demo's recording, few evaluations.
+#include "paper/parameter_search.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <string>
+
+#include "paper/reduced_bend.h"
+#include "reconstruction/reconstruction_study.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A modulus that is 30 times too high, which forces of this size cannot make up for.
+constexpr char kSearch[] = R"(
+radius_edge_ratio: {start: 2.0}
+max_volume: {start: 300 mm^3}
+young_modulus: {start: 3 MPa, lower: 0.01 MPa, upper: 10 MPa}
+poisson_ratio: {start: 0.3, lower: 0.1, upper: 0.45}
+evaluations: 10
+)";
+
+class OuterSearchTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { scans_ = new Table1Scans(LoadReducedBend()); }
+  static void TearDownTestSuite() { delete scans_; }
+
+  static OuterProblem Problem() {
+    return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
+  }
+  static OuterSearchSettings Settings() {
+    return ReadOuterSearch(Config::Parse(kSearch, "search.yaml"));
+  }
+  static OuterSearchResult Search(const OuterSearchSettings& settings, const fs::path& folder) {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    Progress progress(silent);
+    return RunOuterSearch(Problem(), settings, folder, "reduced", &progress);
+  }
+
+  static Table1Scans* scans_;
+};
+Table1Scans* OuterSearchTest::scans_ = nullptr;
+
+// The first `count` lines of a file, and a part of the next one.
+void CutAfter(const fs::path& file, int count) {
+  const std::string text = FileContent(file);
+  size_t end = 0;
+  for (int i = 0; i < count; ++i) end = text.find('\n', end) + 1;
+  std::ofstream(file) << text.substr(0, end + 9);
+}
+
+TEST_F(OuterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResult) {
+  const TemporaryFolder folder;
+  const OuterSearchResult whole = Search(Settings(), folder / "whole");
+  ASSERT_TRUE(whole.IsUsable());
+  ASSERT_EQ(whole.evaluations.size(), 10u);
+  const OuterEvaluation& start = whole.evaluations.front();
+  const OuterEvaluation& best = whole.evaluations[whole.best];
+  ASSERT_TRUE(start.usable);
+  // A fifth is well under what is found and well above a change by the mesh, of which there is
+  // none: only the material is searched.
+  EXPECT_LT(best.residual_per_point, 0.8 * start.residual_per_point);
+  EXPECT_LT(whole.parameters[whole.best].young_modulus, 1e6);
+  EXPECT_EQ(start.nodes, best.nodes);
+
+  // Stopped after four evaluations, while the fifth was being written.
+  fs::create_directories(folder / "stopped");
+  for (const char* name : {"search.log", "evaluations.jsonl"}) {
+    fs::copy_file(folder / "whole" / name, folder / "stopped" / name);
+    CutAfter(folder / "stopped" / name, 5);
+  }
+  const OuterSearchResult resumed = Search(Settings(), folder / "stopped");
+  EXPECT_EQ(resumed.trace_hash, whole.trace_hash);
+  EXPECT_EQ(resumed.best, whole.best);
+  for (size_t k = 0; k < whole.evaluations.size(); ++k)
+    EXPECT_EQ(resumed.evaluations[k].residual_sum, whole.evaluations[k].residual_sum) << k;
+  EXPECT_EQ(FileContent(folder / "stopped/search.log"), FileContent(folder / "whole/search.log"));
+
+  // A record that was changed since does not pass for what was searched.
+  const std::string record = FileContent(folder / "stopped/evaluations.jsonl");
+  std::string changed =
+      std::regex_replace(record, std::regex("(residual_per_point[^:]*\":)0\\.00"), "$010.01");
+  ASSERT_NE(changed, record);
+  std::ofstream(folder / "stopped/evaluations.jsonl") << changed;
+  EXPECT_THROW(Search(Settings(), folder / "stopped"), InputError);
+}
+
+TEST_F(OuterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
+  const OuterEvaluation coarse = EvaluateOuter(Problem(), {2.0, 3e-7, 1e5, 0.35});
+  const OuterEvaluation fine = EvaluateOuter(Problem(), {2.0, 5e-8, 1e5, 0.35});
+  ASSERT_TRUE(coarse.usable && fine.usable) << coarse.failure << fine.failure;
+  ASSERT_GT(fine.surface_points, 1.3 * coarse.surface_points);
+  EXPECT_GT(fine.residual_sum, 1.2 * coarse.residual_sum);
+  // Another mesh moves the mean by a few per cent.
+  EXPECT_NEAR(fine.residual_per_point / coarse.residual_per_point, 1, 0.15);
+}
+
+TEST_F(OuterSearchTest, ARefusedMeshIsAFailedEvaluation) {
+  std::vector<FrameState> states = scans_->states;
+  TriMesh& surface = states.front().surface;
+  surface.triangles.conservativeResize(3, surface.triangles.cols() - 1);
+  const OuterProblem problem{scans_->study, states, scans_->tracked, false, false, 0};
+  const OuterEvaluation failed = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
+  EXPECT_FALSE(failed.usable);
+  EXPECT_NE(failed.failure.find("cannot be meshed"), std::string::npos) << failed.failure;
+  EXPECT_TRUE(std::isnan(failed.residual_per_point));
+}
+
+TEST_F(OuterSearchTest, RegistrationInTheLoopAgreesWithTheTrackedFrames) {
+  OuterProblem problem = Problem();
+  const OuterParameters at{2.0, 3e-7, 1e5, 0.35};
+  const OuterEvaluation tracked = EvaluateOuter(problem, at);
+  problem.registration_in_loop = true;
+  const OuterEvaluation in_loop = EvaluateOuter(problem, at);
+  ASSERT_TRUE(tracked.usable && in_loop.usable);
+  // Both follow the same scans to their noise of 0.3 mm.
+  EXPECT_NEAR(in_loop.scan_distance, tracked.scan_distance, 1e-4);
+}
+
+// The derivative of what is measured by y (i = 0) or p (i = 1) with the central differences over
+// several steps, relative to the value's own size over a parameter's scale.
+void ExpectSlopes(const OuterProblem& problem, double tolerance) {
+  const OuterParameters at{2.0, 3e-7, 1.5e5, 0.35};
+  const OuterEvaluation evaluation = EvaluateOuter(problem, at);
+  ASSERT_TRUE(evaluation.usable) << evaluation.failure;
+  ASSERT_EQ(evaluation.by_moduli.size(), 2u);
+  for (const size_t i : {0u, 1u}) {
+    const double scale = i == 0 ? at.young_modulus : at.poisson_ratio;
+    for (const double step : {0.1, 0.03}) {
+      OuterParameters below = at, above = at;
+      (i == 0 ? below.young_modulus : below.poisson_ratio) -= step * scale;
+      (i == 0 ? above.young_modulus : above.poisson_ratio) += step * scale;
+      const OuterEvaluation from = EvaluateOuter(problem, below);
+      const OuterEvaluation to = EvaluateOuter(problem, above);
+      ASSERT_TRUE(from.usable && to.usable);
+      const OuterSlope& slope = evaluation.by_moduli[i];
+      const auto expect = [&](double given, double high, double low, const char* name) {
+        const double difference = (high - low) / (2 * step);
+        EXPECT_NEAR(scale * given, difference, tolerance * std::abs(difference) + 2e-3 * high)
+            << name << " by " << (i == 0 ? "y" : "p") << ", step " << step;
+      };
+      expect(slope.residual_sum, to.residual_sum, from.residual_sum, "sum");
+      expect(slope.residual_per_point, to.residual_per_point, from.residual_per_point, "mean");
+      expect(slope.residual_rms, to.residual_rms, from.residual_rms, "rms");
+    }
+  }
+}
+
+ReconstructionStudy WithForces(const std::string& forces) {
+  std::string text = kReducedBend;
+  const size_t begin = text.find("{model: smooth");
+  text.replace(begin, text.find('\n', begin) - begin, forces);
+  return ReadReconstruction(
+      Config::Parse(text, "reduced.yaml"),
+      LoadRecording(fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend"));
+}
+
+TEST_F(OuterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
+  // A body that bends by its weight, in a recording without: D grows as it gets softer.
+  const ReconstructionStudy study =
+      WithForces("{model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]");
+  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
+  problem.slopes = true;
+  // The curvature of D over a tenth of y.
+  ExpectSlopes(problem, 0.1);
+}
+
+TEST_F(OuterSearchTest, WhereForcesAreFittedThereAreNoDerivatives) {
+  const ReconstructionStudy study =
+      WithForces("{model: smooth, length: 60 mm, traction_scale: 0.1 kPa}");
+  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
+  EXPECT_FALSE(CanDifferentiate(problem));
+  problem.slopes = true;
+  const OuterEvaluation evaluation = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
+  ASSERT_TRUE(evaluation.usable);
+  EXPECT_TRUE(evaluation.by_moduli.empty());
+}
+
+TEST_F(OuterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSameResult) {
+  const TemporaryFolder folder;
+  OuterSearchSettings settings = Settings();
+  settings.method = OuterMethod::kCeres;
+  settings.evaluations = 8;
+  const OuterSearchResult whole = Search(settings, folder / "whole");
+  ASSERT_TRUE(whole.IsUsable());
+  // As of the search without derivatives above.
+  EXPECT_LT(whole.evaluations[whole.best].residual_per_point,
+            0.8 * whole.evaluations.front().residual_per_point);
+  fs::create_directories(folder / "stopped");
+  for (const char* name : {"search.log", "evaluations.jsonl"}) {
+    fs::copy_file(folder / "whole" / name, folder / "stopped" / name);
+    CutAfter(folder / "stopped" / name, 4);
+  }
+  EXPECT_EQ(Search(settings, folder / "stopped").trace_hash, whole.trace_hash);
+}
+
+TEST_F(OuterSearchTest, TheMeasuresAreOfTheSameLengths) {
+  const OuterEvaluation evaluation = EvaluateOuter(Problem(), {2.0, 3e-7, 1e5, 0.35});
+  ASSERT_TRUE(evaluation.usable);
+  EXPECT_GT(evaluation.residual_rms, evaluation.residual_per_point);      // Jensen's inequality
+  EXPECT_LT(evaluation.residual_rms, 3 * evaluation.residual_per_point);  // no heavy tail
+  EXPECT_EQ(ValueOf(evaluation, OuterMeasure::kRms), evaluation.residual_rms);
+}
+
+TEST(OuterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
+  std::string text = kSearch;
+  text.replace(text.find("lower: 0.01 MPa, "), 17, "");
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_NO_THROW(ReadOuterSearch(Config::Parse(kSearch, "s.yaml")));
+  text = std::string(kSearch) + "method: nlopt_bobyqa\n";
+  text.replace(text.find(", lower: 0.1, upper: 0.45"), 25, "");
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
+  // No tetrahedron's radius is so short beside its edges.
+  text = std::regex_replace(std::string(kSearch),
+                            std::regex("(radius_edge_ratio: \\{start: )[^,}]+"), "$011");
+  EXPECT_NE(text, kSearch);
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+  text = kSearch;
+  text.replace(text.find("start: 3 MPa"), 12, "start: 30 MPa");
+  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna

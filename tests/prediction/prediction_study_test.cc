@@ -1,0 +1,347 @@
+// What a user gets wrong in a prediction study, and what the program says.
+#include "prediction/prediction_study.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "prediction/prediction_study_reader.h"
+#include "prediction/recorded_motion.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::ContainsRegex;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Replacements = std::map<std::string, std::string>;
+
+// Markers that rest and then all go one way, by `speed` m per frame.
+std::vector<Eigen::Matrix3Xd> Moving(double speed, int rests = 5) {
+  std::vector<Eigen::Matrix3Xd> markers;
+  for (int frame = 0; frame < kFrames; ++frame)
+    markers.emplace_back(BarMarkerPlaces().array() + speed * std::max(0, frame - rests));
+  return markers;
+}
+
+void Replace(const std::filesystem::path& file, const Replacements& replaced) {
+  std::string text = FileContent(file);
+  for (const auto& [from, to] : replaced) {
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  }
+  std::ofstream(file) << text;
+}
+
+class ReadingAPredictionStudy : public testing::Test {
+ protected:
+  ReadingAPredictionStudy() { WriteBarRecording(folder_.Path(), Moving(0.001)); }
+
+  std::string MessageAfter(const Replacements& replaced) const {
+    return MessageOf(BarExperiment(folder_.Path(), replaced));
+  }
+  std::string MessageOf(const std::string& experiment) const {
+    try {
+      ReadPredictionStudy(Config::Parse(experiment, (folder_ / "study.yaml").string()));
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+    return "nothing was refused";
+  }
+  std::string MessageAfterInRecording(const Replacements& replaced,
+                                      const Replacements& in_study = {}) const {
+    WriteBarRecording(folder_.Path(), Moving(0.001));
+    Replace(folder_ / "recording.yaml", replaced);
+    return MessageAfter(in_study);
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Removes the hold, so that the recording has to start at rest.
+const Replacements kNoHold{
+    {"    hold:\n      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}\n",
+     ""},
+    {"      release: 0.0437 s\n", ""}};
+
+TEST_F(ReadingAPredictionStudy, TakesWhatIsThere) {
+  const PredictionStudy study = ReadBarStudy(folder_.Path());
+  EXPECT_TRUE(IsPredictionStudy(Config::Parse(BarExperiment(folder_.Path()), "e.yaml")));
+  ASSERT_EQ(study.recordings.size(), 1u);
+  const PredictedRecording& item = study.recordings[0];
+  EXPECT_EQ(item.frames.size(), static_cast<size_t>(kFrames));
+  ASSERT_TRUE(item.hold.has_value());
+  EXPECT_EQ(item.hold->release, kRelease);
+  EXPECT_EQ(item.fit_until, kFitUntil);
+  EXPECT_EQ(study.density, 1000);
+  EXPECT_EQ(study.scheme, TimeScheme::kTwoStep);
+  ASSERT_EQ(study.fitted.size(), 2u);
+  EXPECT_EQ(study.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(study.fitted[1].prior.name, "mass_damping.alpha");
+  const PredictionStudy some = ReadBarStudy(
+      folder_.Path(),
+      {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    every: 5\n    fit_until"}});
+  EXPECT_THAT(some.recordings[0].frames, ElementsAre(5, 10, 15, 20));
+}
+
+TEST_F(ReadingAPredictionStudy, FitsTheMaterialWhenItIsNotTold) {
+  const PredictionStudy study = ReadBarStudy(
+      folder_.Path(),
+      {{"fit: {parameters: [{name: young_modulus}, {name: mass_damping.alpha}]}\n", ""}});
+  ASSERT_EQ(study.fitted.size(), 2u);
+  EXPECT_EQ(study.fitted[0].prior.name, "young_modulus");
+  EXPECT_EQ(study.fitted[1].prior.name, "poisson_ratio");
+}
+
+// A damping that takes its moduli from the material keeps them the material's.
+TEST_F(ReadingAPredictionStudy, SharesTheMaterialsParameters) {
+  const PredictionStudy study =
+      ReadBarStudy(folder_.Path(),
+                   {{"{type: mass_damping, alpha: 1 1/s}", "{type: stiffness_damping, beta: 3 ms}"},
+                    {"mass_damping.alpha", "stiffness_damping.beta"}});
+  ASSERT_EQ(study.fitted[0].places.size(), 2u);
+  SetParameter(study.fitted[0], 123456);
+  EXPECT_EQ(study.effects[0]->Parameters()[0], 123456);
+  EXPECT_EQ(study.effects[2]->Parameters()[1], 123456);
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}}),
+              ContainsRegex("study.yaml:[0-9]+:[0-9]+: recordings.0..recording: 2 frames lie "
+                            "between 0.1 s and 0.115 s; at least 3 are needed"));
+  EXPECT_THAT(MessageAfter({{"fit_until: 0.1501 s", "fit_until: 0.015 s"}}),
+              HasSubstr("recordings[0].fit_until: leaves fewer than 3 frames to fit"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
+  EXPECT_THAT(MessageAfterInRecording({{"reference: {from: mesh, file: box.off}\n", ""}}),
+              HasSubstr("reference: markers do not tell the shape"));
+  EXPECT_THAT(MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
+              HasSubstr("recordings[0].recording: lacks marker_places"));
+}
+
+TEST_F(ReadingAPredictionStudy, TakesScansButNoHeldOneForTheShape) {
+  Replacements scans{{(folder_ / "recording.yaml").string(),
+                      std::string(LACUNA_SOURCE_DIR) + "/experiments/recordings/bend"}};
+  EXPECT_THAT(MessageAfter(scans), HasSubstr("recordings[0].hold: the recording's reference shape "
+                                             "is its first frame, in which the object is held"));
+  scans.insert(kNoHold.begin(), kNoHold.end());
+  const PredictionStudy study = ReadBarStudy(folder_.Path(), scans);
+  ASSERT_NE(study.recordings[0].scans, nullptr);
+  EXPECT_EQ(study.recordings[0].frames.size(), 16u);
+  EXPECT_EQ(study.scan.patches, 150);
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersWhoseGripFollowsAScan) {
+  EXPECT_THAT(
+      MessageAfterInRecording(
+          {{"reference",
+            "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, "
+            "0]}}]\nreference"}}),
+      HasSubstr("tool is to follow the scan, but there are only markers"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAReleaseAfterTheEnd) {
+  EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: 0.3 s"}}),
+              HasSubstr("recordings[0].hold.release: lies after the recording's last frame, at "
+                        "0.25 s"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
+  const std::string load =
+      "forces: [{name: pull, file: load.csv, time: t, x: x, y: y, z: z, region: {half_space: "
+      "{point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}}]\nreference";
+  EXPECT_THAT(MessageAfterInRecording({{"reference", load}}),
+              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
+  EXPECT_EQ(MessageAfterInRecording(
+                {{"reference", load}},
+                {{"    fit_until", "    from: 0.05 s\n    to: 0.2 s\n    fit_until"}}),
+            "nothing was refused");
+  EXPECT_THAT(MessageAfterInRecording({{"reference",
+                                        "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
+                                        "reference"}}),
+              HasSubstr("does not tell where pull acts"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAGripWhosePathDoesNotCoverTheFrames) {
+  const std::string grip =
+      "gripped: [{name: tool, half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}, path: "
+      "{file: load.csv, time: t, x: x, y: y, z: z}}]\nreference";
+  EXPECT_THAT(MessageAfterInRecording({{"reference", grip}}),
+              ContainsRegex("load.csv covers 0.05 s to 0.2 s, the frames 0 s to 0.25 s"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesMarkersThatRestWhereTheySitAnyway) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0, 1e-4);  // m
+  auto markers = Moving(0);
+  for (auto& frame : markers)
+    for (double& coordinate : frame.reshaped()) coordinate += noise(random);
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter({}),
+              HasSubstr("recordings: nothing moves in the frames that are fitted"));
+
+  // At rest elsewhere they tell at least what statics can, but no more.
+  for (auto& frame : markers) frame.array() += 0.01;
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_EQ(MessageAfter({}), "nothing was refused");
+  EXPECT_THAT(RestWarning(ReadBarStudy(folder_.Path())), HasSubstr("anything else that needs"));
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  EXPECT_EQ(RestWarning(ReadBarStudy(folder_.Path())), "");
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulos}"}}),
+              ContainsRegex("fit.parameters.0..name: got \"young_modulos\".*did you mean "
+                            "\"young_modulus\""));
+  EXPECT_THAT(MessageAfter({{"{name: mass_damping.alpha}", "{name: young_modulus}"}}),
+              HasSubstr("is listed twice"));
+  EXPECT_THAT(MessageAfter(
+                  {{"{name: young_modulus}", "{name: young_modulus, min: 0.2 MPa, max: 0.1 MPa}"}}),
+              HasSubstr("fit.parameters[0].min: is above max"));
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, min: 0.2 MPa}"}}),
+              HasSubstr("starts at 150000 Pa, outside 200000 to"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesCandidatesThatCouldNotBeAddedByName) {
+  const auto message = [&](const std::string& name, const std::string& more = "") {
+    return MessageAfter(
+        {{"name: bar\n",
+          "name: bar\ncandidates:\n  - {type: expression, name: " + name +
+              ", per: mass, force: [a, 0, 0], parameters: {a: {value: 1 m/s^2, plausible: "
+              "[-9 m/s^2, 9 m/s^2]}}}\n" +
+              more}});
+  };
+  EXPECT_EQ(message("push"), "nothing was refused");
+  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: a candidate's is of letters"));
+  EXPECT_THAT(message("drag"), HasSubstr("candidates[0].name: is that of an effect of the cat"));
+  EXPECT_THAT(message("push", "  - {type: drag, coefficient: 1}\n"),
+              HasSubstr("candidates[1].type: a diagnosis tries drag anyway"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAReleaseThatNoFrameComesBefore) {
+  EXPECT_THAT(MessageAfter({{"release: 0.0437 s", "release: -1 s"}}),
+              HasSubstr("hold.release: lies before the recording's first frame, at 0 s"));
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    fit_untl"}}),
+              HasSubstr("did you mean \"fit_until\""));
+}
+
+TEST_F(ReadingAPredictionStudy, TakesWhatIsKnownBeforeOfAParameter) {
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  const std::vector<ModelParameter> fitted =
+      ReadBarStudy(
+          folder_.Path(),
+          {{"{name: mass_damping.alpha}", "{name: mass_damping.alpha, deviation: 0.5 1/s}"},
+           {"{name: young_modulus}", "{name: young_modulus, mean: 140 kPa, deviation: 7 kPa}"}})
+          .fitted;
+  EXPECT_EQ(fitted[0].prior.prior_mean, 1.4e5);
+  ASSERT_TRUE(fitted[0].prior.log_scale);
+  EXPECT_NEAR(fitted[0].prior.prior_deviation, 0.05, 1e-12);
+  EXPECT_EQ(fitted[1].prior.prior_mean, 1) << "where it starts";
+  EXPECT_NEAR(fitted[1].prior.prior_deviation, 0.5, 1e-12);
+  EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulus, mean: 0.2 MPa}"}}),
+              HasSubstr("parameters[0].mean: needs a `deviation` beside it"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
+  EXPECT_THAT(MessageAfter({{"    fit_until", "    fitted: false\n    fit_until"}}),
+              HasSubstr("recordings: none of them is fitted"));
+  std::string none = BarExperiment(folder_.Path());
+  none.replace(none.find("recordings:"), std::string::npos, "recordings: []\n");
+  EXPECT_THAT(MessageOf(none), HasSubstr("recordings: is empty"));
+}
+
+TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
+  const std::string statics = "motion: {scheme: quasi_static}";
+  EXPECT_THAT(MessageAfter({{"motion: {time_step: 1.5 ms}", statics}}),
+              HasSubstr("recordings[0].hold: what is let go of swings"));
+  Replacements one{{"motion: {time_step: 1.5 ms}", statics},
+                   {"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}};
+  one.insert(kNoHold.begin(), kNoHold.end());
+  EXPECT_EQ(MessageAfter(one), "nothing was refused");
+  const PredictionStudy study = ReadBarStudy(folder_.Path(), one);
+  EXPECT_EQ(study.recordings[0].frames.size(), 2u);
+  EXPECT_NEAR(study.time_step, 0.01, 1e-12);  // a step a frame
+  // Frames far from each other: no start in motion.
+  WriteBarRecording(folder_.Path(), Moving(0.001, 0));
+  EXPECT_EQ(MessageAfter(one), "nothing was refused");
+}
+
+TEST_F(ReadingAPredictionStudy, TellsOfASlowRecording) {
+  PredictionStudy study = ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}\n", ""}});
+  EXPECT_THAT(StudyWarnings(study), ElementsAre());
+  for (double& time : study.recordings[0].recording.times) time *= 1000;  // a frame in 10 s
+  study.recordings[0].fit_until *= 1000;
+  EXPECT_THAT(StudyWarnings(study),
+              ElementsAre(HasSubstr("50000 steps of 5 ms for 26 frames: if the object is in "
+                                    "equilibrium")));
+  study.scheme = TimeScheme::kQuasiStatic;
+  EXPECT_THAT(StudyWarnings(study), ElementsAre());
+}
+
+TEST_F(ReadingAPredictionStudy, TellsOfFramesWithoutMarkers) {
+  std::vector<Eigen::Matrix3Xd> markers = Moving(0.001);
+  for (const int frame : {12, 13})
+    markers[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+  markers[14].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(StudyWarnings(ReadBarStudy(folder_.Path())),
+              ElementsAre("bar: 2 of 26 frames show no marker, the first is frame 12; they are not "
+                          "compared"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesStepsThatFollowNoMotion) {
+  EXPECT_THAT(MessageAfter({{"time_step: 1.5 ms", "time_step: 0.1 s"}}),
+              HasSubstr("motion.time_step: makes 2.5 steps"));
+  EXPECT_THAT(MessageAfter({{"time_step: 1.5 ms", "time_step: 1e-12 s"}}),
+              HasSubstr("motion.time_step: makes 2.5e+11 steps"));
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesTwoRecordingsOfOneName) {
+  std::string text = BarExperiment(folder_.Path());
+  const std::string entry = text.substr(text.find("  - recording: "));
+  const std::string message = MessageOf(text + entry);
+  EXPECT_THAT(message, HasSubstr("recordings[1].name: \""));
+  EXPECT_THAT(message, HasSubstr("is that of another recording already"));
+}
+
+TEST_F(ReadingAPredictionStudy, TakesTheNoiseOfRestForNoMotion) {
+  // Moved in the middle, and at rest in the end where it was in the beginning.
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 1e-4);
+  for (const double far : {0.0, 0.01}) {
+    std::vector<Eigen::Matrix3Xd> markers;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const double away = frame > 8 && frame < 18 ? far : 0;
+      markers.emplace_back(BarMarkerPlaces().array() + away + 2e-3);
+      for (double& value : markers.back().reshaped()) value += normal(random);
+    }
+    WriteBarRecording(folder_.Path(), markers);
+    EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
+  }
+}
+
+TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
+  WriteBarRecording(folder_.Path(), Moving(0.001, 0));
+  EXPECT_EQ(MessageAfter({}), "nothing was refused");  // held until 0.04 s
+  auto markers = Moving(0, 0);
+  for (size_t frame = 1; frame < markers.size(); ++frame) markers[frame].array() += 0.001;
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  // The first marker is not seen at first: the others tell.
+  markers[0].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
+  WriteBarRecording(folder_.Path(), markers);
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  WriteBarRecording(folder_.Path(), Moving(0.001));
+  EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+// What a user gets wrong in an experiment or a scene, and what the program says.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "experiment/scene.h"
+#include "reconstruction/reconstruction_study.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+// The message that reading the demo's experiment gives after one change.
+std::string MessageAfter(const std::string& from, const std::string& to) {
+  const TemporaryFolder folder;
+  const std::filesystem::path experiments =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments";
+  std::string text = FileContent(experiments / "bend.yaml");
+  const auto replace = [&text](const std::string& a, const std::string& b) {
+    const size_t at = text.find(a);
+    EXPECT_NE(at, std::string::npos) << a;
+    text.replace(at, a.size(), b);
+  };
+  replace("recordings/bend/truth", (experiments / "recordings/bend/truth").string());
+  replace(from, to);
+  if (from.find("recording:") == std::string::npos)
+    replace("recording: recordings/bend",
+            "recording: " + (experiments / "recordings/bend").string());
+  std::ofstream(folder / "e.yaml") << text;
+  try {
+    ReadReconstruction(Config::Load(folder / "e.yaml"));
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "nothing was refused";
+}
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+TEST(StudyErrors, NameTheLineAndTheField) {
+  EXPECT_THAT(MessageAfter("poisson_ratio: 0.35", "poisson_ratio: 0.5"),
+              ContainsRegex("e.yaml:[0-9]+:[0-9]+: material.poisson_ratio: got \"0.5\""));
+  EXPECT_THAT(MessageAfter("young_modulus: 0.1 MPa", "young_modulus: 0.1"),
+              HasSubstr("a unit is missing"));
+  EXPECT_THAT(MessageAfter("radius_edge_ratio", "radius_edge_ration"),
+              HasSubstr("mesh.radius_edge_ration: unknown key; did you mean "
+                        "\"radius_edge_ratio\"?"));
+  EXPECT_THAT(MessageAfter("law: corotational", "law: corotated"),
+              HasSubstr("did you mean \"corotational\"?"));
+  EXPECT_THAT(MessageAfter("model: smooth", "model: footprint"), HasSubstr("needs a region"));
+  EXPECT_THAT(MessageAfter("schema_version: 1", "schema_version: 2"),
+              HasSubstr("schema_version: got \"2\""));
+  EXPECT_THAT(MessageAfter("recording: recordings/bend", "recording: recordings/bent"),
+              HasSubstr("bent"));
+  EXPECT_THAT(MessageAfter("recordings/bend/truth", "recordings/bend/lies"),
+              HasSubstr("validation.true_surfaces: there is no "));
+  EXPECT_THAT(MessageAfter("{every: 1}", "{last: 0}"), HasSubstr("has one frame"));
+  EXPECT_THAT(MessageAfter("poisson_ratio: 0.35", "poison_ratio: 0.35"),
+              HasSubstr("material.poisson_ratio: is missing (\"poison_ratio\" is no key)"));
+  const std::string gravity = "{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}";
+  EXPECT_THAT(MessageAfter("effects: []", "effects: [" + gravity + ", " + gravity + "]"),
+              HasSubstr("effects[1].type: gravity is listed twice"));
+  EXPECT_THAT(MessageAfter("output: ../results/bend ", "output: \"\" "),
+              HasSubstr("output: is empty"));
+}
+
+TEST(StudyErrors, TheUnchangedExperimentIsSound) {
+  EXPECT_EQ(MessageAfter("seed: 1", "seed: 2"), "nothing was refused");
+}
+
+TEST(StudyErrors, ValuesFarFromTheUsualAreAWarning) {
+  const auto effects = [](const char* modulus) {
+    return ReadEffects(Config::Parse(
+        std::string("material: {law: linear, poisson_ratio: 0.3, young_modulus: ") + modulus + "}",
+        "e.yaml"));
+  };
+  EXPECT_TRUE(ImplausibleParameters(effects("0.1 MPa")).empty());
+  const auto warnings = ImplausibleParameters(effects("210 GPa"));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("young_modulus"));
+}
+
+TEST(StudyErrors, ASceneIsCheckedBeforeItRuns) {
+  const std::filesystem::path file =
+      std::filesystem::path(LACUNA_SOURCE_DIR) / "experiments/scenes/bend.yaml";
+  EXPECT_NO_THROW(ReadScene(Config::Load(file)));
+  std::string text = FileContent(file);
+  text.replace(text.find("edge_radius: 5 mm"), 17, "edge_radius: 50 mm");
+  EXPECT_THROW(ReadScene(Config::Parse(text, file.string())), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
