@@ -1,8 +1,8 @@
 // How a prediction study's parameters are found: from far away, or on from near the solution.
 //
-// All fits are over the fitted frames of the fitted recordings, and leave the problem's model at
-// what they found. Of scans, the points' places on the surface are kept during a fit and sought
-// again after it, until the parameters settle; where they do not, the result is not usable.
+// All fits are over the fitted frames of the fitted recordings. Of scans, the points' places on the
+// surface are kept during a fit and sought again after it, until the parameters settle; where they
+// do not, the result is not usable.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 #define LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 

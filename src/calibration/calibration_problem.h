@@ -65,31 +65,38 @@ class CalibrationProblem {
   const std::vector<RecordingModel>& models() const { return models_; }
   const std::shared_ptr<const Body>& body() const { return body_; }
   bool HasScans() const { return scan_noise_ > 0; }
-  // The study, with what this problem has estimated or chosen given (noise, patches): for another
-  // problem whose misfit is to be compared with this one's.
-  PredictionStudy AsChosen() const;
-  // Recording r's nuisances: among the parameters where it is fitted; else found from its first
-  // tenth, the model staying as `values` have set it (SetModel).
+  // The study with what this problem has estimated or chosen (noise, patches), for another problem
+  // whose misfit is to be compared with this one's; and the same with the effects at these values
+  // of the problem's parameters.
+  PredictionStudy WithEstimatedNoise() const;
+  PredictionStudy StudyAt(const Eigen::VectorXd& values) const;
+  // The model of a recording at these values of the problem's parameters.
+  RecordingModel ModelAt(size_t recording, const Eigen::VectorXd& values) const;
+  // A recording's nuisances: among the parameters where it is fitted; else found from its first
+  // tenth, with the model at `values`.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
   // Which recording tells the errors of the marker places of one that is not fitted: the first
   // fitted one that has markers of the same names at the same places. They are on the object, and
   // so the same in both. None where no recording has, and of scans.
   std::optional<size_t> PlacesToldBy(size_t recording) const;
 
-  // Gives the study's effects, which other problems may share and have changed, these values.
-  void SetModel(const Eigen::VectorXd& values) const;
+  // What the predictions of one fit hand on from one to the next.
+  struct FitMemory {
+    // What the frames of each fitted recording are compared with; empty: found by the next
+    // prediction that reaches the end.
+    std::vector<std::vector<Observed>> correspondences;
+    // Of each recording: the equilibrium before the motion, near which the next one is sought.
+    std::vector<Eigen::VectorXd> equilibria;
+  };
 
   // The whitened misfit over the fitted frames not later than `horizon` seconds after the start of
   // each recording, with derivatives by the parameters. Scanned points go with the places of the
-  // surface nearest to them in this prediction. Not usable where most points of a scan have none.
+  // surface nearest to them in this prediction or, where `memory` has correspondences, with those.
+  // Not usable where most points of a scan have none. A function of its arguments alone: problems
+  // and predictions may run side by side.
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                     double horizon = std::numeric_limits<double>::infinity()) const;
-
-  // Of each fitted recording, what its frames are compared with; empty: found while predicting, and
-  // left empty by a prediction that is not usable.
-  using Correspondences = std::vector<std::vector<Observed>>;
-  Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
-                     Correspondences* correspondences) const;
+                     double horizon = std::numeric_limits<double>::infinity(),
+                     FitMemory* memory = nullptr) const;
 
   // `directions` are those of each recording alike; without a Jacobian only the residual is there.
   // Compared with what `same`, where given, was compared with.
@@ -104,18 +111,16 @@ class CalibrationProblem {
   // What a recording's Misfit is differentiated by: the places of the study's parameters,
   // `further`, the recording's own nuisances; and those columns as ∂/∂(parameters), then by
   // `further` of them.
-  std::vector<MisfitDirection> DirectionsFor(size_t recording,
+  std::vector<MisfitDirection> DirectionsFor(const RecordingModel& model,
                                              const std::vector<MisfitDirection>& further) const;
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
 
   std::vector<size_t> FittedRecordings() const;
-  // One recording's part of Predict() and of Linearise(), the model as it is set: recordings are
-  // predicted side by side. `compared_with`, where given: what its frames are; `observed` is what
-  // they were.
+  // One recording's part of Predict() and of Linearise(); recordings are predicted side by side.
+  // `misfit` is what the prediction was made from.
   Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
-                              double horizon, const std::vector<Observed>* compared_with,
-                              std::vector<Observed>* observed) const;
+                              double horizon, const PredictionHints& hints, Misfit* misfit) const;
   struct LinearisedRecording {
     std::string message;  // why it is not usable; empty: it is
     LinearisedMisfit::Part part;

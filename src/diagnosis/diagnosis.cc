@@ -59,7 +59,7 @@ bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
 
 // The study until soon after the start of each fitted recording.
 PredictionStudy EarlyPart(const CalibrationProblem& problem) {
-  PredictionStudy early = problem.AsChosen();
+  PredictionStudy early = problem.WithEstimatedNoise();
   for (PredictedRecording& item : early.recordings) {
     const std::vector<double>& times = item.recording.times;
     const double start = item.StartTime();
@@ -82,7 +82,6 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   std::vector<ScoredEffect> found;
   if (first.parameters.size() == values.size())
     found = RankEffects(of_early, first.parameters, progress, without).effects;
-  problem.SetModel(values);
   return found;
 }
 
@@ -326,7 +325,7 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
                      RefitStore* kept) {
   EffectRanking ranking = RankEffects(problem, fitted, progress, options.without);
   if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking)) {
-    PredictionStudy study = problem.AsChosen();
+    PredictionStudy study = problem.WithEstimatedNoise();
     study.time_step /= 2;
     progress->Begin("time step", 0);
     progress->End(
@@ -336,7 +335,6 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
     if (fit.parameters.size() == fitted.size()) {
       Diagnosis diagnosis =
           DiagnoseAt(shorter, fit.parameters, options, halvings - 1, progress, kept);
-      problem.SetModel(fitted);
       return diagnosis;
     }
   }
@@ -369,7 +367,6 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
     diagnosis.instead = refits.RunInstead(options.refits);
     DecideAgainstNuisances(&diagnosis);
   }
-  problem.SetModel(fitted);
   return diagnosis;
 }
 

@@ -174,11 +174,10 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
 FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without) {
-  const PredictionStudy study = WithEffect(present.problem.AsChosen(), effect);
+  const PredictionStudy study = WithEffect(present.problem.StudyAt(present.values), effect);
   const CalibrationProblem with(study, present.problem.body()->mesh);
   const EffectRanking ranking =
       RankEffects(with, refit.calibration.parameters, present.progress, without);
-  present.problem.SetModel(present.values);
   FurtherEvidence best;
   const auto other = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),
@@ -245,7 +244,7 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
   const LinearisedMisfit& misfit = present.misfit;
   const ExtendedProblem extended(present, effect, adopted);
-  const CalibrationProblem with = extended.Fresh();
+  const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
   const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
   EffectRefit refit;
@@ -276,7 +275,7 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
     refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
     if (effect != nullptr) {
-      refit.effect = extended.OwnEffect().Parameters();
+      refit.effect = extended.OwnParameters(refit.calibration.parameters);
       refit.sizes = extended.SizesIn(refit.calibration);
       refit.others = extended.OthersIn(refit.calibration);
     }
@@ -290,8 +289,6 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                                            std::move(refit.hypothesis));
     }
   }
-  // The refit has changed effects that both models share.
-  present.problem.SetModel(present.values);
   return refit;
 }
 

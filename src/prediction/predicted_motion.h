@@ -45,10 +45,20 @@ struct MisfitDirection {
   Perturbation perturbation = {};  // of the model
 };
 
+// What is known before a prediction from others like it.
+struct PredictionHints {
+  // What each of the frames is compared with; null: what the observer makes of a frame at the
+  // predicted positions.
+  const std::vector<Observed>* observed = nullptr;
+  // 3n, m: where the equilibrium before the motion is sought first, a tenth of the work near it;
+  // null: at the rest shape. The result is the same within the tolerance of that equilibrium.
+  const Eigen::VectorXd* near_equilibrium = nullptr;
+};
+
 // The model in the place of one recording.
 class RecordingModel {
  public:
-  // `effects`: the study's, shared between its recordings; `patches`: of scans. Throws InputError
+  // `patches`: of scans. Throws InputError
   // when a region holds no node, a scan misses the object or is one of an object that moves
   // already.
   RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
@@ -72,12 +82,16 @@ class RecordingModel {
   };
   const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
-  // With the effects as they are, `nuisance` in the order of nuisances(), for the chosen `frames`
-  // (ascending). Compared with `observed`, one for each frame, or, null, with what the observer
-  // makes of the frames at the predicted positions.
+  // The same with other values of the study's effects: the first of model().effects, of the same
+  // types and in the same order.
+  RecordingModel With(const EffectList& effects) const;
+
+  // The misfit in the chosen `frames` (ascending) with `nuisance` in the order of nuisances(), and
+  // its derivatives in these directions. Depends on nothing but its arguments and this model, and
+  // may run beside others.
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
-                 const std::vector<MisfitDirection>& directions,
-                 const std::vector<Observed>* observed = nullptr) const;
+                 const std::vector<MisfitDirection>& directions = {},
+                 const PredictionHints& hints = {}) const;
 
   std::vector<int> FittedFrames() const;
 
@@ -105,10 +119,9 @@ class RecordingModel {
   void RequireThatScansShowTheObject();
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
-  std::unique_ptr<const Observer> observer_;
+  std::shared_ptr<const Observer> observer_;
   double shown_ = 0;  // share of the first scan's points that the undeformed surface has
   std::vector<Nuisance> nuisances_;
-  mutable Eigen::VectorXd held_;  // 3n, m: the last equilibrium; the next one is sought from there
 };
 
 }  // namespace lacuna

@@ -17,6 +17,7 @@
 #include "experiment/model_reader.h"
 #include "experiment/scan_frames.h"
 #include "experiment/scan_settings.h"
+#include "fem/model.h"
 #include "fem/step_equation.h"
 #include "fit/calibration.h"
 #include "geometry/surface_patches.h"
@@ -44,7 +45,7 @@ struct PredictedRecording {
   // By how much its measuring frame may be shifted, m, and turned, rad, against the fixture
   // (priors, of each axis); 0: not at all.
   double shift_deviation = 0, turn_deviation = 0;
-  std::vector<std::shared_ptr<Effect>> effects;  // of this recording only, e.g. a hung mass
+  EffectList effects;  // of this recording only, e.g. a hung mass
 
   // Until then the object is at rest, s.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
@@ -52,14 +53,23 @@ struct PredictedRecording {
 
 // A number of the model that may be fitted, and what is known of it before.
 struct ModelParameter {
-  // Of the effects that have it: a damping whose modulus is the material's shares it.
-  std::vector<std::pair<std::shared_ptr<Effect>, int>> places;
+  // The effects that have it, by their place in PredictionStudy::effects, and its index on their
+  // cards. There are several where an effect shares a modulus with the material.
+  struct Place {
+    size_t effect = 0;
+    int index = 0;
+    bool operator==(const Place&) const = default;
+  };
+  std::vector<Place> places;
   CalibratedParameter prior;  // name "young_modulus" of the material, "gravity.acceleration_z"
   std::string unit;           // SI
 };
 // All of them, settings excepted; bounds and priors as their cards say.
-std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Effect>>& effects);
-void SetParameter(const ModelParameter& parameter, double value);
+std::vector<ModelParameter> ModelParameters(const EffectList& effects);
+// The same effects with these values of the parameters (SI, in the order of `parameters`; further
+// entries are not read).
+EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,
+                      const Eigen::VectorXd& values);
 
 struct PredictionStudy {
   std::filesystem::path file;  // the experiment
@@ -67,8 +77,8 @@ struct PredictionStudy {
   std::filesystem::path output;
   MeshSettings mesh;
   int sheet_layers = 1;
-  double density = 0;                            // kg/m³
-  std::vector<std::shared_ptr<Effect>> effects;  // the material first
+  double density = 0;  // kg/m³
+  EffectList effects;  // the material first
   TimeScheme scheme = TimeScheme::kTwoStep;
   double time_step = 0.005;         // s; of a quasi-static one at most
   bool chooses_time_step = false;   // the fit shortens it as far as the recordings ask for

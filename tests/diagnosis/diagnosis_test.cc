@@ -10,8 +10,8 @@
 
 #include "diagnosis/diagnosis_record.h"
 #include "diagnosis/verdict.h"
-#include "support/held_bar.h"
 #include "support/temporary_folder.h"
+#include "diagnosis/diagnosed_bar.h"
 
 namespace lacuna {
 namespace {

@@ -6,8 +6,8 @@
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
 #include "effects/catalogue.h"
-#include "support/held_bar.h"
 #include "support/temporary_folder.h"
+#include "diagnosis/diagnosed_bar.h"
 
 namespace lacuna {
 namespace {
