@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "fit/step_force_fitter.h"
 #include "geometry/surface_tracks.h"
 #include "registration/surface_alignment.h"
 #include "study/followed_sensitivity.h"
