@@ -103,9 +103,9 @@ TEST(LinearSolver, RotatesItsFactorWithTheBody) {
   EXPECT_FALSE(rotated.factorised);
   EXPECT_LE(rotated.iterations, when_new + 1);
   // A solver that is not given the rotation renews its factor.
-  LinearSolver untold(lattice.pattern, lattice.fixed, {});
-  untold.Solve(lattice.Stiffness(0, 0.01), b, &x);
-  EXPECT_TRUE(untold.Solve(lattice.Stiffness(angle, 0.01), b, &x).factorised);
+  LinearSolver without_rotations(lattice.pattern, lattice.fixed, {});
+  without_rotations.Solve(lattice.Stiffness(0, 0.01), b, &x);
+  EXPECT_TRUE(without_rotations.Solve(lattice.Stiffness(angle, 0.01), b, &x).factorised);
 }
 
 TEST(LinearSolver, StartsFromEarlierSolutionsIfTheyHelp) {

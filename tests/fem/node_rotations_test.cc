@@ -34,9 +34,9 @@ TEST_P(NodeRotationsOfOrder, AreTheRotationOfABodyThatIsAlsoStretchedAndTranslat
   const Eigen::VectorXd position = Moved(body, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     return rotation * stretch.cwiseProduct(x) + Eigen::Vector3d(3, -2, 1);
   });
-  for (const Eigen::Matrix3d& rotation : NodeRotations(body, position)) {
+  for (const Eigen::Matrix3d& found : NodeRotations(body, position)) {
     // Rounding of positions at about 4 m from the origin, with elements of 0.05 m.
-    EXPECT_LT((rotation - rotation).norm(), 1e-12);
+    EXPECT_LT((found - rotation).norm(), 1e-12);
   }
 }
 

@@ -179,7 +179,7 @@ void ExpectDerivative(HeldBar* bar, const Perturbation& perturbation, double ste
     EXPECT_LE((here.velocity_jacobian[k].col(0) - velocity_jacobian).norm(),
               1e-5 * velocity_jacobian.norm())
         << times[k];
-    EXPECT_GT(by.norm(), 0);
+    EXPECT_GT(derivative.norm(), 0);
   }
 }
 
