@@ -299,7 +299,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         Eigen::VectorXd predicted = *seen.rows * state.position;
         Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
-        if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        if (!perturbations.empty()) by = *seen.rows * state.position_jacobian;
         std::vector<Eigen::Matrix3d> deformation = seen.deformation;
         if (is_registered) {
           Turn(registration.linear(), &predicted);

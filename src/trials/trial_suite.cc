@@ -142,7 +142,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     add(ChangeBy(hidden, problem, values, misfit), {{}});
   else
     add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
-  const LinearModel model(
+  const LinearGaussianModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
       WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
   std::vector<int> taken(own);
