@@ -31,7 +31,7 @@ Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, 
   double sum = 0, squares = 0, seen = 0;
   for (const int frame : frames) {
     const double value = item.recording.markers.positions[frame](axis, marker) -
-                         item.recording.marker_places(axis, marker);
+                         item.recording.markers.places(axis, marker);
     if (std::isnan(value)) continue;
     sum += value;
     squares += value * value;
@@ -50,7 +50,7 @@ bool IsAtRest(const PredictedRecording& item) {
   // Rounding of the mean square must not look like motion where there is no noise.
   constexpr double kRounding = 1e-9;  // m
   const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
-  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker)
+  for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       if (SpreadOf(item, frames, axis, marker).deviation > least) return false;
   return true;
@@ -122,7 +122,7 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
 double RestDeformation(const PredictedRecording& item) {
   const std::vector<int> frames = FittedFrames(item);
   double largest = 0;
-  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker) {
+  for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker) {
     Eigen::Vector3d mean;
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       mean[axis] = SpreadOf(item, frames, axis, marker).mean;

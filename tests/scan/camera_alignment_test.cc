@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/nearest.h"
+#include "scan/recording.h"
 #include "scan/scan_writer.h"
 #include "scan/test_files.h"
 #include "support/shapes.h"
@@ -123,16 +124,14 @@ TEST(CameraAlignment, SaysWhyItDidNothing) {
 TEST(CameraAlignment, OfADepthRecordingIsAppliedAndReported) {
   const TestFolder folder;
   std::vector<VirtualCamera> cameras = Cameras(6);
-  ScannedObject object;
-  object.name = "body";
   const std::filesystem::path exact_folder = folder / "exact", wrong_folder = folder / "wrong";
-  WriteScan(exact_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
+  WriteScan(exact_folder, "body", {}, {{Body()}, {0}, cameras, Noise()}, WriteDepthFrames);
   // The images are those of the true poses; the recording tells wrong ones.
   for (int i = 1; i < 6; ++i) {
     Eigen::Isometry3d& pose = cameras[i].camera.world_from_camera;
     pose = Disturbance(i) * pose;
   }
-  WriteScan(wrong_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
+  WriteScan(wrong_folder, "body", {}, {{Body()}, {0}, cameras, Noise()}, WriteDepthFrames);
   std::filesystem::remove_all(wrong_folder / "frames");
   std::filesystem::copy(exact_folder / "frames", wrong_folder / "frames");
   const auto error = [](const Recording& recording) {

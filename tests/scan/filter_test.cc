@@ -92,7 +92,7 @@ TEST(Filter, EstimatesNormalsOfASphereOutward) {
           .colwise()
           .sum();
   EXPECT_GT(cosine.minCoeff(), 0.97);  // noise 0.1 mm over a neighbourhood of 4 mm: some 3°
-  EXPECT_EQ(result.orientation.by, OrientedBy::kPropagation);
+  EXPECT_EQ(result.orientation.method, OrientationMethod::kPropagation);
   EXPECT_EQ(result.orientation.component_count, 1);
   EXPECT_EQ(result.orientation.doubtful_component_count, 0);
   EXPECT_EQ(result.orientation.disagreement, 0);
@@ -122,7 +122,7 @@ TEST(Filter, TurnsAnOpenSheetTowardsItsSensor) {
     Sensors sensors;
     sensors.positions = Eigen::Vector3d(0.02, 0.01, side);
     const FilterResult result = FilterCloud(cloud, sensors, OnlyNormals());
-    EXPECT_EQ(result.orientation.by, OrientedBy::kSensorsAround);
+    EXPECT_EQ(result.orientation.method, OrientationMethod::kSensorsAround);
     EXPECT_EQ(result.orientation.doubtful_component_count, 0);
     EXPECT_GT((side * result.cloud.normals.row(2)).minCoeff(), 0.9);
   }
@@ -149,7 +149,7 @@ TEST(Filter, FacesEachPointTowardsTheSensorThatSawIt) {
   sensors.seen_by = Eigen::VectorXi(sensors.seen_by(faces));
   // The plate is thinner than the points are apart, so its normals come from both faces at once.
   const FilterResult result = FilterCloud(seen, sensors, OnlyNormals());
-  EXPECT_EQ(result.orientation.by, OrientedBy::kSensorOfEachPoint);
+  EXPECT_EQ(result.orientation.method, OrientationMethod::kSensorOfEachPoint);
   EXPECT_GT(truth.cwiseProduct(result.cloud.normals).colwise().sum().minCoeff(), 0.5);
   EXPECT_EQ(result.sensors.seen_by, sensors.seen_by);
 }
@@ -160,7 +160,7 @@ TEST(Filter, KeepsGivenNormalsUnlessAsked) {
   cloud.normals *= -1;  // inward, as no estimate would have it
   FilterOptions options = OnlyNormals();
   const FilterResult kept = FilterCloud(cloud, {}, options);
-  EXPECT_EQ(kept.orientation.by, OrientedBy::kGiven);
+  EXPECT_EQ(kept.orientation.method, OrientationMethod::kGiven);
   EXPECT_LT((kept.cloud.normals - cloud.normals).cwiseAbs().maxCoeff(), 1e-12);
   options.renew_normals = true;
   const FilterResult renewed = FilterCloud(cloud, {}, options);
