@@ -123,7 +123,7 @@ void AddWhatTheRecordingsTell(const std::filesystem::path& run, const Calibratio
       const Recording& now = study.recordings[r].recording;
       if (!recording.is_scan) recording.markers = now.markers.names;
       recording.grip_distance = GripDistances(
-          now, recording.is_scan ? record.recordings[r].scan->places : now.marker_places,
+          now, recording.is_scan ? record.recordings[r].scan->places : now.markers.places,
           body.mesh.nodes);
     }
   } catch (const InputError& error) {

@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// The published data sets as a user would describe them, from a folder of their own.
+// The published data sets, described as users would in a folder of their own.
 class PublishedData : public RecordingTest {
  protected:
   void SetUp() override {
@@ -37,7 +37,7 @@ TEST_F(PublishedData, RubberStripIsATrackedSheet) {
   EXPECT_EQ(LoadFrame(recording, 0).triangles.cols(), 722);
 }
 
-TEST_F(PublishedData, LiverTellsForcesNodesAndTetMesh) {
+TEST_F(PublishedData, LiverGivesForcesNodesAndTetMesh) {
   const Recording recording = Load(Yaml(
       "  {kind: points, files: sequences/linear/s1/pointclouds/*.txt, rate: 1 Hz}\n",
       Folder("liver_sequence") +

@@ -67,11 +67,11 @@ TEST(VirtualScanner, SeesOnlyWhatNothingHides) {
   ScannerOptions options = Perfect();
   options.max_incidence = 1.57;
   const ScanResult scan = Scan(sphere, {camera}, options, 0);
-  // The visible cap ends where the view touches: n·eye = r; facets add a little.
+  // The visible cap ends where rays are tangent to the sphere, n·eye = r; facets add a little.
   const Eigen::VectorXd along = (scan.cloud.points.transpose() * eye.normalized()) / 0.1;
   EXPECT_GT(along.minCoeff(), 0.1 / eye.norm() - 0.02);
   EXPECT_LT(along.minCoeff(), 0.1 / eye.norm() + 0.05);
-  // Every pixel within the outline is covered: no gaps along shared edges.
+  // Every pixel inside the outline is covered: there are no gaps along shared edges.
   const RenderedView view = Render(sphere, camera);
   for (Eigen::Index v = 0; v < view.depth.rows(); ++v) {
     Eigen::Index first = -1, last = -1, seen = 0;
@@ -183,7 +183,8 @@ TEST(VirtualScanner, DependsOnTheSeedAndNotOnThreads) {
 TEST(VirtualScanner, ShufflesItsPoints) {
   const std::vector<VirtualCamera> cameras = PlaceCameras(RingAround(Eigen::Vector3d::Zero()));
   const ScanResult scan = Scan(Icosphere(0.1, 3), cameras, Perfect(), 0);
-  // In rendering order the camera changes three times; shuffled, at three of four points.
+  // In the order of rendering the camera changes three times; after shuffling, at three of four
+  // points.
   int changes = 0;
   for (Eigen::Index i = 1; i < scan.cloud.Size(); ++i) {
     changes += scan.sensors.seen_by[i] != scan.sensors.seen_by[i - 1];
