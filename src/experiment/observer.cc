@@ -14,7 +14,7 @@ Eigen::MatrixXd ObservationMatrix::operator*(const Eigen::Ref<const Eigen::Matri
 }
 
 MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
-    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.marker_places)) {
+    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.markers.places)) {
   ObservationMatrix rows;
   for (Eigen::Index m = 0; m < places_.tet.size(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {

@@ -59,9 +59,9 @@ class MarkerObserver : public Observer {
  public:
   // Both must outlive it.
   MarkerObserver(const Recording& recording, const TetMesh& mesh);
-  int PointCount() const override { return static_cast<int>(recording_.marker_places.cols()); }
+  int PointCount() const override { return static_cast<int>(recording_.markers.places.cols()); }
   int Components() const override { return 3; }
-  const Eigen::Matrix3Xd& Places() const override { return recording_.marker_places; }
+  const Eigen::Matrix3Xd& Places() const override { return recording_.markers.places; }
   Observed Observe(int frame, const Eigen::VectorXd& position) const override;
   const Embedding& places_in_mesh() const { return places_; }
   // W: x, y and z of each marker from the nodes.

@@ -184,8 +184,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder) {
   CHECK(motion.IsUsable() && scene.scanner.has_value());
-  ScannedObject object;
-  object.name = scene.name;
+  RecordedObject object;
   object.density = scene.density;
   for (const SceneGrip& grip : scene.grips)
     if (IsHeld(grip)) object.fixed.push_back(grip.region);
@@ -201,11 +200,10 @@ void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
       force.forces.col(k) = load.profile.At(force.times[k]) * load.force;
     object.forces.push_back(force);
   }
-  std::vector<TriMesh> surfaces;
+  VirtualScan scan{{}, motion.times, PlaceCameras(scene.scanner->ring), scene.scanner->options};
   for (const Eigen::Matrix3Xd& nodes : motion.positions)
-    surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
-  WriteScan(folder, object, surfaces, motion.times, PlaceCameras(scene.scanner->ring),
-            scene.scanner->options, ScanOutput::kPoints);
+    scan.surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
+  WriteScan(folder, scene.name, object, scan, WritePointFrames);
 }
 
 }  // namespace lacuna

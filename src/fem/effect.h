@@ -13,8 +13,8 @@
 // the caller sums over effects. The caller provides outputs of the right size.
 //
 // Ownership. A Kinematics and everything it refers to are valid during the call only. An effect
-// owns its parameters; internal variables belong to the caller, so that one effect can serve
-// several simulations at the same time.
+// owns its parameters and does not change; WithParameters makes another one. Internal variables
+// belong to the caller, so that one effect can serve several simulations at the same time.
 //
 // Threads. A simulation calls its effects one after another from a single thread. Effects are
 // shared by simulations on different threads, so const functions may run concurrently and must not
@@ -30,11 +30,11 @@
 //
 // Example: a uniform lift f_i = a m_i e_z with the acceleration a (m/s²) as its only parameter
 // (tests/fem/effect_test.cc).
-//   class Lift final : public Effect {
+//   class Lift final : public CloneableEffect<Lift> {
 //    public:
 //     const EffectCard& Card() const override { return LiftCard(); }
 //     Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, a_); }
-//     void SetParameters(const Eigen::VectorXd& values) override { a_ = values[0]; }
+//     void SetParameters(const Eigen::VectorXd& values) { a_ = values[0]; }  // of a new copy
 //     void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
 //       force->reshaped(3, at.body.NodeCount()).row(2) += a_ * at.body.node_mass.transpose();
 //     }
@@ -89,10 +89,8 @@ class Effect {
 
   // The values of the parameters in the order of the card, SI.
   virtual Eigen::VectorXd Parameters() const = 0;
-  // A copy of the effect with other values. Effects do not change: models that are fitted, refitted
-  // and predicted side by side share them. What an effect has derived from the rest shape of its
-  // body is shared by its copies as long as it does not depend on what changes
-  // (cloneable_effect.h).
+  // A copy of the effect with other values (cloneable_effect.h). What an effect has derived from
+  // the rest shape of its body is shared by its copies where it does not depend on what changes.
   virtual std::shared_ptr<const Effect> WithParameters(const Eigen::VectorXd& values) const = 0;
 
   // Adds the nodal forces f, N.

@@ -174,7 +174,7 @@ void AskMore(const Table1Study& study, const Table1Options& options, const Outer
     OuterParameters at = truth;
     at.young_modulus *= factor;
     ModulusPoint point{factor, Kept(problem, at, folder / "modulus_fitted.jsonl", key), {}};
-    if (!problem.study.recording.forces.empty())
+    if (!problem.study.recording.object.forces.empty())
       point.known = Kept(known, at, folder / "modulus_known.jsonl", key);
     result->profile.push_back(point);
     progress->Report(static_cast<int64_t>(result->profile.size()));
@@ -228,12 +228,12 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
 Recording AnnouncedRecording(const Scene& scene) {
   Recording recording;
   recording.name = scene.name;
-  recording.density = scene.density;
+  recording.object.density = scene.density;
   for (int k = 0; k < scene.frames; ++k) recording.times.push_back(k / scene.frame_rate);
   const Eigen::Vector2d covered(recording.times.front(), recording.times.back());
   for (const SceneLoad& load : scene.loads)
     if (load.measured)
-      recording.forces.push_back(
+      recording.object.forces.push_back(
           {load.region.name, load.region, covered, Eigen::Matrix3Xd::Zero(3, 2), {}});
   return recording;
 }

@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/text_file.h"
 #include "geometry/embedding.h"
+#include "scan/marker_frames.h"
 #include "scan/random_bits.h"
 #include "scan/scan_writer.h"
 #include "trials/clamp_motion.h"
@@ -98,25 +99,18 @@ void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& mot
     frames.push_back(PointsAt(at, mesh, position));
   AddNoise(trial, recording, &frames);
   if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
-  std::string csv = "t";
-  for (int m = 0; m < kMarkers; ++m) csv += fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
-  for (size_t f = 0; f < frames.size(); ++f) {
-    csv += fmt::format("\n{}", kTrialSpacing * static_cast<double>(f));
-    for (const double coordinate : frames[f].reshaped()) csv += fmt::format(",{:.9f}", coordinate);
-  }
-  WriteFileAtomically(folder / "markers.csv", csv + "\n");
-  std::string yaml = fmt::format(
-      "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n"
-      "  kind: markers\n  file: markers.csv\n  columns: {{time: t}}\n  marker_places:\n",
-      recording + 1, kTrialDensity);
-  const Eigen::Matrix3Xd places = MarkerPlaces(trial.size);
+  std::vector<double> times;
+  for (size_t f = 0; f < frames.size(); ++f)
+    times.push_back(kTrialSpacing * static_cast<double>(f));
+  Markers markers{{}, MarkerPlaces(trial.size), frames};
   for (int m = 0; m < kMarkers; ++m) {
-    Eigen::Vector3d place = places.col(m);
+    markers.names.push_back(fmt::format("m{}", m));
     for (int axis = 0; axis < 3; ++axis)
-      place[axis] += kTrialPlaceError * Gauss(trial, 30, m, axis);
-    yaml += fmt::format("    - {{name: m{}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n", m,
-                        place.x(), place.y(), place.z());
+      markers.places(axis, m) += kTrialPlaceError * Gauss(trial, 30, m, axis);
   }
+  const std::string yaml = fmt::format(
+      "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n{}",
+      recording + 1, kTrialDensity, WriteMarkerFrames(folder, times, markers));
   WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
 }
 
@@ -141,10 +135,10 @@ void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motio
   ScannerOptions scanner;
   scanner.noise = trial.noise;
   scanner.seed = RandomBits({trial.seed, 70, static_cast<uint64_t>(recording)});
-  ScannedObject object;
-  object.name = fmt::format("recording {}", recording + 1);
+  RecordedObject object;
   object.density = kTrialDensity;
-  WriteScan(folder, object, surfaces, times, PlaceCameras(ring), scanner, ScanOutput::kPoints);
+  WriteScan(folder, fmt::format("recording {}", recording + 1), object,
+            {surfaces, times, PlaceCameras(ring), scanner}, WritePointFrames);
   std::filesystem::remove_all(folder / "truth");
   const std::filesystem::path description = folder / "recording.yaml";
   WriteFileAtomically(description, ReadWholeFile(description) + ShapeAndClamp());

@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "fem/cloneable_effect.h"
 #include "fem/simulate.h"
 #include "support/box_mesh.h"
 
@@ -19,11 +20,11 @@ const EffectCard& LiftCard() {
   return card;
 }
 
-class Lift final : public Effect {
+class Lift final : public CloneableEffect<Lift> {
  public:
   const EffectCard& Card() const override { return LiftCard(); }
   Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, a_); }
-  void SetParameters(const Eigen::VectorXd& values) override { a_ = values[0]; }
+  void SetParameters(const Eigen::VectorXd& values) { a_ = values[0]; }
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     force->reshaped(3, at.body.NodeCount()).row(2) += a_ * at.body.node_mass.transpose();
   }
@@ -39,8 +40,7 @@ class Lift final : public Effect {
 TEST(Effect, TheExampleOfTheHeaderAcceleratesAFreeBody) {
   constexpr double kAcceleration = 3, kTimeStep = 0.01;  // m/s², s
   constexpr int kSteps = 5;
-  const auto lift = std::make_shared<Lift>();
-  lift->SetParameters(Eigen::VectorXd::Constant(1, kAcceleration));
+  const auto lift = Lift().WithParameters(Eigen::VectorXd::Constant(1, kAcceleration));
   Model model;
   model.body =
       std::make_shared<const Body>(MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1}), 1000));
