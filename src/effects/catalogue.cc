@@ -43,7 +43,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       CorotationalElasticity(),
       SaintVenantKirchhoff(),
       NeoHookean(),
-      // What the material does besides.
+      // Further behaviour of the material.
       StrainStiffening(),
       FibreStiffness(),
       Inclusion(),
@@ -66,7 +66,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       PlaneContact(),
       ElasticSupport(),
       SlippingSupport(),
-      // The user's own.
+      // A force law that the user writes.
       ExpressionForce(),
   };
   return entries;
@@ -85,7 +85,7 @@ std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string&
   return entry->make(entry->read(*entry->card, config, material));
 }
 
-// What a parameter is when it is left out: the card's default, else what the material has under the
+// The values of omitted parameters: the default of the card, else the material's parameter of the
 // same name, else NaN.
 Eigen::VectorXd DefaultValues(const EffectCard& card, const Effect* material) {
   Eigen::VectorXd values(card.parameters.size());
@@ -119,12 +119,6 @@ const CatalogueEntry* FindEntry(const std::string& type) {
     if (entry.card->type == type) return &entry;
   }
   return nullptr;
-}
-
-int ParameterIndex(const EffectCard& card, const std::string& name) {
-  for (size_t k = 0; k < card.parameters.size(); ++k)
-    if (card.parameters[k].name == name) return static_cast<int>(k);
-  return -1;
 }
 
 std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material) {

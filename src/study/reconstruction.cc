@@ -7,6 +7,7 @@
 
 #include "core/hash.h"
 #include "core/interrupt.h"
+#include "effects/gravity.h"
 #include "record/run_directory.h"
 #include "study/follow.h"
 #include "study/frame_states.h"
@@ -216,10 +217,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   CheckMeasuredForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
-  const bool has_gravity =
-      std::any_of(study.effects.begin(), study.effects.end(),
-                  [](const auto& effect) { return effect->Card().type == "gravity"; });
-  if (study.recording.gravity && !has_gravity) {
+  if (study.recording.gravity && !GravityOf(study.effects)) {
     study.recording.warnings.push_back(
         "the recording was made in gravity, the model has none; sound where the reference shape "
         "was scanned in the same gravity");

@@ -36,7 +36,7 @@ TEST(Catalogue, NamesOnlyLookAlikesThatExist) {
   }
 }
 
-// What one is easily taken for is easily taken for it.
+// To be a look-alike is a symmetric relation.
 TEST(Catalogue, NamesLookAlikesBothWays) {
   for (const CatalogueEntry& entry : Catalogue()) {
     for (const std::string& other : entry.card->look_alikes) {

@@ -7,7 +7,7 @@
 namespace lacuna {
 namespace {
 
-TEST(Gravity, IsAnEffect) {
+TEST(Gravity, PassesTheEffectChecks) {
   const auto gravity = MakeEffect(
       "gravity", {{"acceleration_x", 1}, {"acceleration_y", -2}, {"acceleration_z", -9.81}});
   CheckEffect(gravity.get(), {.depends_on_position = false});
