@@ -143,7 +143,8 @@ std::string TriedAtText(const CatalogueEntry& entry) {
     std::string operator()(const TriedOnce&) const { return "Tried once."; }
     std::string operator()(const TriedAtPlaces& places) const {
       return fmt::format(
-          "Tried at {} places along the length of a bar, or spread over the volume of any other body.",
+          "Tried at {} places along the length of a bar, or spread over the volume of any other "
+          "body.",
           places.length_shares.size());
     }
     std::string operator()(const TriedAlongDirections&) const {
@@ -220,9 +221,9 @@ int Explain(const std::string& type) {
   PrintParameters(entry);
   PrintSection("When it is missing", card.residual_when_missing);
   PrintSection("To tell it apart", card.separating_experiment + ".");
-  if (!card.look_alikes.empty()) {
+  if (const auto look_alikes = LookAlikesOf(card); !look_alikes.empty()) {
     fmt::print("\nEasily taken for\n");
-    for (const std::string& other : card.look_alikes)
+    for (const std::string& other : look_alikes)
       fmt::print("  {:22} {}\n", other, FindEntry(other)->card->title);
   }
   PrintSection("In a diagnosis", TriedAtText(entry));

@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -119,6 +120,18 @@ const CatalogueEntry* FindEntry(const std::string& type) {
     if (entry.card->type == type) return &entry;
   }
   return nullptr;
+}
+
+std::vector<std::string> LookAlikesOf(const EffectCard& card) {
+  const auto contains = [](const std::vector<std::string>& list, const std::string& type) {
+    return std::find(list.begin(), list.end(), type) != list.end();
+  };
+  std::vector<std::string> types = card.look_alikes;
+  for (const CatalogueEntry& other : Catalogue()) {
+    if (contains(other.card->look_alikes, card.type) && !contains(types, other.card->type))
+      types.push_back(other.card->type);
+  }
+  return types;
 }
 
 std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material) {

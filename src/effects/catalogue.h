@@ -46,6 +46,11 @@ const std::vector<CatalogueEntry>& Catalogue();
 // The entry of this type, or null.
 const CatalogueEntry* FindEntry(const std::string& type);
 
+// The types of the effects that are easily confused with this one: those on its own card in their
+// order, then those whose cards name this effect. A new effect thus names its look-alikes on its
+// own card alone.
+std::vector<std::string> LookAlikesOf(const EffectCard& card);
+
 // The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes. Throws InputError at the key
 // when the type is unknown or a parameter is missing, has the wrong unit or is out of bounds.
 std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material = nullptr);

@@ -3,10 +3,9 @@
 //
 // The card stands beside the effect's code (src/effects/NAME.cc) and is the only place for these
 // facts. The YAML check reads the parameters; `lacuna effects` and `lacuna explain` print the card;
-// the diagnosis reads `tried_at` to enumerate the variants that it tries, and `look_alikes` to say
-// what a finding may be confused with; the sealed trials read `trial` to hide the effect in a
-// synthetic recording. Values are in SI units. Cards are constant after their construction, so that
-// any thread may read them.
+// the diagnosis reads `tried_at` to enumerate the variants that it tries, and the experiment that
+// it recommends; the sealed trials read `trial` to hide the effect in a synthetic recording. Values
+// are in SI units. Cards are constant after their construction, so that any thread may read them.
 #ifndef LACUNA_RECORD_EFFECT_CARD_H_
 #define LACUNA_RECORD_EFFECT_CARD_H_
 
@@ -117,7 +116,9 @@ struct EffectCard {
   // An experiment that distinguishes the effect from its look-alikes; without a final full stop, so
   // that the diagnosis can append alternatives.
   std::string separating_experiment;
-  std::vector<std::string> look_alikes;  // types of effects that are easily confused with it
+  // Types of effects that are easily confused with this one. The relation is symmetric and need be
+  // stated on one of the two cards only (LookAlikesOf in effects/catalogue.h).
+  std::vector<std::string> look_alikes;
   TriedAt tried_at = TriedOnce{};
   TrialDesign trial = {};
   bool repeatable = false;  // a model may contain several, e.g. several walls

@@ -52,7 +52,8 @@ std::vector<std::string> StringLiterals(const std::string& source) {
     } else if (source[at] == '"' || source[at] == '\'') {
       // A quote between digits separates them: 1'000.
       const char quote = source[at];
-      const bool separates = quote == '\'' && at > 0 && std::isalnum(source[at - 1]) != 0;
+      const bool separates =
+          quote == '\'' && at > 0 && std::isalnum(static_cast<unsigned char>(source[at - 1])) != 0;
       size_t end = at + 1;
       while (!separates && end < source.size() && source[end] != quote)
         end += source[end] == '\\' ? 2 : 1;

@@ -1,3 +1,5 @@
+#include "effects/plane_contact.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -216,6 +218,25 @@ TEST(PlaneContact, IsReadFromYaml) {
   EXPECT_LT((MakeEffect(items[0])->Parameters() - all).norm(), 1e-8);
   EXPECT_LT((MakeEffect(items[1])->Parameters() - few).norm(), 1e-8);
   config.RefuseUnknownKeys();
+}
+
+TEST(PlaneContact, IsFoundByItsTypeWithItsPlane) {
+  const auto damping = MakeEffect("mass_damping", {{"alpha", 1}});
+  const auto contact =
+      MakePlaneContact({.normal = {0, 2, 1}, .offset = 0.05, .stiffness = 1e6, .friction = 0.3});
+  EXPECT_EQ(contact->Parameters(), MakeEffect("plane_contact", {{"stiffness", 1e6},
+                                                                {"normal_y", 2},
+                                                                {"normal_z", 1},
+                                                                {"offset", 0.05},
+                                                                {"friction", 0.3}})
+                                       ->Parameters());
+  EXPECT_EQ(FindPlaneContact({damping}), nullptr);
+  EXPECT_EQ(FindPlaneContact({damping, contact}), contact.get());
+  EXPECT_FALSE(ContactPlaneOf(*damping).has_value());
+  EXPECT_EQ(ContactPlaneOf(*contact)->normal, Eigen::Vector3d(0, 2, 1));
+  EXPECT_EQ(ContactPlaneOf(*contact)->offset, 0.05);
+  EXPECT_EQ(ContactPlaneOf(*contact)->stiffness, 1e6);
+  EXPECT_EQ(ContactPlaneOf(*contact)->friction, 0.3);
 }
 
 TEST(PlaneContact, RefusesAPlaneWithoutDirection) {
