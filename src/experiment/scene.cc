@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/interrupt.h"
+#include "effects/gravity.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
 #include "scan/scan_writer.h"
@@ -188,8 +189,7 @@ void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
   object.density = scene.density;
   for (const SceneGrip& grip : scene.grips)
     if (IsHeld(grip)) object.fixed.push_back(grip.region);
-  for (const auto& effect : scene.effects)
-    if (effect->Card().type == "gravity") object.gravity = effect->Parameters();
+  object.gravity = GravityOf(scene.effects);
   for (const SceneLoad& load : scene.loads) {
     if (!load.measured) continue;
     MeasuredForce force{load.region.name, load.region, {}, {}, {}};

@@ -148,9 +148,9 @@ std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
 }
 
 // What only the first seed is asked for.
-void AskMore(const Table1Study& study, const Table1Options& options, const OuterProblem& problem,
-             const std::filesystem::path& folder, const std::string& key, Table1Result* result,
-             Progress* progress) {
+void RunFirstSeedExtras(const Table1Study& study, const Table1Options& options,
+                        const OuterProblem& problem, const std::filesystem::path& folder,
+                        const std::string& key, Table1Result* result, Progress* progress) {
   const OuterParameters truth = TruthOf(study, study.configurations.front());
   progress->Begin("mesh noise", options.turns);
   for (int k = 0; k < options.turns; ++k) {
@@ -211,7 +211,7 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
     search.at_truth = Kept(problem, TruthOf(study, configuration), place / "truth.jsonl", key);
     if (seed == 1) {
       if (&configuration == &study.configurations.front())
-        AskMore(study, options, problem, folder, key, result, progress);
+        RunFirstSeedExtras(study, options, problem, folder, key, result, progress);
       if (options.in_loop && search.found.IsUsable()) {
         problem.registration_in_loop = true;
         const auto& at = search.found.parameters;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/gravity.h"
 #include "experiment/scan_settings.h"
 
 namespace lacuna {
@@ -193,10 +194,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   CheckMeasuredForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
-  const bool has_gravity =
-      std::any_of(study.effects.begin(), study.effects.end(),
-                  [](const auto& effect) { return effect->Card().type == "gravity"; });
-  if (study.recording.object.gravity && !has_gravity) {
+  if (study.recording.object.gravity && !GravityOf(study.effects)) {
     study.recording.warnings.push_back(
         "the recording was made in gravity, the model has none; sound where the reference shape "
         "was scanned in the same gravity");

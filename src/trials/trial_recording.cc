@@ -43,18 +43,19 @@ void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3X
   }
 }
 
-// One frame shifted and turned.
+// Moves one frame by a random rigid motion, as a failed registration would.
 void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
   const size_t bad = 20 + RandomBits({trial.seed, 60}) % (frames->size() - 25);
-  Eigen::Vector3d shift, turn;
+  Eigen::Vector3d shift, rotation;
   for (int axis = 0; axis < 3; ++axis) {
     shift[axis] = 8e-4 * Gauss(trial, 61, axis, recording);
-    turn[axis] = 0.01 * Gauss(trial, 62, axis, recording);
+    rotation[axis] = 0.01 * Gauss(trial, 62, axis, recording);
   }
-  for (auto place : (*frames)[bad].colwise()) place += shift + turn.cross(Eigen::Vector3d(place));
+  for (auto place : (*frames)[bad].colwise())
+    place += shift + rotation.cross(Eigen::Vector3d(place));
 }
 
-// The shape as the model has it.
+// The shape of the body in the model.
 void WriteBox(const TrialCase& trial, const std::filesystem::path& file) {
   std::string box = "OFF\n8 12 0\n";
   for (int corner = 0; corner < 8; ++corner)
@@ -74,13 +75,13 @@ void WriteClampPath(int recording, const std::filesystem::path& file) {
     const ClampMotion motion = ClampMotionAt(recording, time);
     path += fmt::format("{}", time);
     for (const double coordinate : motion.shift) path += fmt::format(",{:.9f}", coordinate);
-    for (const double angle : motion.turn) path += fmt::format(",{:.9f}", angle);
+    for (const double angle : motion.rotation) path += fmt::format(",{:.9f}", angle);
     path += "\n";
   }
   WriteFileAtomically(file, path);
 }
 
-// Of recording.yaml, what tells the shape and the clamp.
+// The part of recording.yaml that describes the shape and the clamp.
 std::string ShapeAndClamp() {
   return fmt::format(
       "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
@@ -90,7 +91,7 @@ std::string ShapeAndClamp() {
       kTrialFace);
 }
 
-void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motion,
                   const std::filesystem::path& folder) {
   const TetMesh& mesh = motion.body->mesh;
   const Embedding at = Embed(mesh, MarkerPlaces(trial.true_size));
@@ -114,7 +115,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& mot
   WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
 }
 
-void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
                 const std::filesystem::path& folder) {
   std::vector<Eigen::Matrix3Xd> frames = motion.positions;
   if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
@@ -126,7 +127,7 @@ void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motio
   }
   CameraRing ring;
   ring.center = {0.5 * trial.size[0], 0, 0};
-  ring.up = Eigen::Vector3d::UnitX();  // so that both ends are seen
+  ring.up = Eigen::Vector3d::UnitX();  // so that both ends are visible
   ring.radius = 0.3;
   ring.elevation = 0.6;
   ring.width = 120;
@@ -150,7 +151,7 @@ double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
   return Normal(RandomBits({trial.seed, stream, i, j}));
 }
 
-void WriteRecording(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteRecording(const TrialCase& trial, int recording, const TrueMotion& motion,
                     const std::filesystem::path& folder) {
   MakeFolder(folder);
   WriteBox(trial, folder / "box.off");

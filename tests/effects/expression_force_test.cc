@@ -45,7 +45,7 @@ Eigen::Vector3d Total(const Eigen::VectorXd& force) {
   return force.reshaped(3, force.size() / 3).rowwise().sum();
 }
 
-TEST(ExpressionForce, IsAnEffect) {
+TEST(ExpressionForce, PassesTheEffectChecks) {
   CheckEffect(FromYaml(kMagnet).get());
   CheckEffect(MakeLaw("area", "[-k*abs(vx)*vx, -k*vy + k*nx, '-k*vz*c*(1 + nz^2)']", "3 Pa s/m",
                       "  c: {value: 0.4, plausible: [0, 1]}\n")
