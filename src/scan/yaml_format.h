@@ -3,17 +3,13 @@
 #ifndef LACUNA_SCAN_YAML_FORMAT_H_
 #define LACUNA_SCAN_YAML_FORMAT_H_
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
 #include <string>
 
 namespace lacuna {
 
 // Three quantities of one unit as Config::Vector reads them, e.g. "[0 m, 0.1 m, 0 m]".
-inline std::string FormatVector(const Eigen::Vector3d& vector, const char* unit) {
-  return fmt::format("[{0} {3}, {1} {3}, {2} {3}]", vector.x(), vector.y(), vector.z(), unit);
-}
+std::string FormatVector(const Eigen::Vector3d& vector, const char* unit);
 
 }  // namespace lacuna
 
