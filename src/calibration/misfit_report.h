@@ -1,28 +1,26 @@
-// What is kept of a fit's misfits beside their sizes.
+// The details of a fit's residuals that a run keeps.
 #ifndef LACUNA_CALIBRATION_MISFIT_REPORT_H_
 #define LACUNA_CALIBRATION_MISFIT_REPORT_H_
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
-#include "calibration/calibration_record.h"
+#include "calibration/calibration_problem.h"
+#include "calibration/recording_misfit.h"
+#include "record/calibration_record.h"
 #include "record/csv_table.h"
 
 namespace lacuna {
 
-// misfit.csv: every point of every frame, measured place and predicted − measured, m. The
-// difference of a patch is its error times the surface's normal, its place the mean of its scanned
-// points.
+// The table misfit.csv: for each point of each frame of each recording, the measured place and the
+// difference predicted − measured, m. For a patch of a surface the measured place is the mean of
+// its scanned points, and the difference is the residual times the surface normal. The difference
+// is NaN where the point was not observed.
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits);
 
-// What the fit took for granted against its prior, in sentences: points far from where the
-// recording has them, a clock or a hold far from what was allowed, scans that lose the model.
-std::vector<std::string> Strains(const CalibrationProblem& problem,
-                                 const std::vector<RecordingMisfit>& misfits);
-
-// Of a recording of scans, σ being the noise of one scanned point.
+// What the record keeps of a recording of scans. `places`: of the patches on the undeformed object,
+// m. `noise`: σ of one scanned point, m.
 FittedScan DescribeScan(const RecordingMisfit& misfit, const Eigen::Matrix3Xd& places,
                         double noise);
 

@@ -7,19 +7,9 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
-
-// How far predictions are from measurements in a set of frames. Distances are of markers, or of
-// patches of a surface along its normal, after the part of a point's error that is its place on the
-// object (or the object's shape) has been taken away.
-struct MisfitMeasure {
-  int frames = 0;
-  int points = 0;       // markers or patches seen, over all frames
-  double rms = 0;       // m, of the distances
-  double largest = 0;   // m
-  double in_noise = 0;  // rms of the components, each in standard deviations of its noise
-};
 
 // The misfit of one recording, all frames.
 struct RecordingMisfit {

@@ -138,13 +138,6 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
 
 }  // namespace
 
-double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale) {
-  const double change =
-      log_scale && other > 0 ? std::log(other / estimate.value) : other - estimate.value;
-  if (estimate.posterior_deviation > 0) return change / estimate.posterior_deviation;
-  return change == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), change);
-}
-
 void CountModelError(const CalibratedParameter& parameter, double other,
                      ParameterEstimate* estimate) {
   const double change = ToFree(parameter, other) - ToFree(parameter, estimate->value);

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "record/parameter_estimate.h"
+
 namespace lacuna {
 
 struct CalibratedParameter {
@@ -53,30 +55,6 @@ struct CalibrationOptions {
   // the residuals. Where the end is none, once more from there.
   double near_rms = 0;
 };
-
-// What the data says of one parameter.
-struct ParameterEstimate {
-  double value = 0;  // SI
-  // Standard deviation of φ: from the data alone, with all other parameters free, and with the
-  // prior; of noise as Calibration::inflation and memory say. Infinite where the data says nothing.
-  double deviation = std::numeric_limits<double>::infinity();
-  double posterior_deviation = std::numeric_limits<double>::infinity();
-  // 95 % interval of θ, prior included, and the error of the model where CountModelError was told
-  // of it.
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  // kDead: the predictions do not depend on it. kFlat: they do, but a change of `typical` is within
-  // the noise. kTradedOff: other parameters can undo its changes. kAtBound: the best value lies at
-  // a bound, the interval means little.
-  enum class Verdict { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };
-  Verdict verdict = Verdict::kPinnedDown;
-  std::string traded_with;  // the parameter that it is most correlated with
-  double correlation = 0;   // with it
-};
-
-// From the estimate to another value, in its posterior deviations (of φ); infinite where it has
-// none and the other value is not the same.
-double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale);
 
 // Widens the interval by an error of the model that is known: without it `other` would be fitted,
 // and the way there counts as one more standard deviation. The posterior deviation stays that of

@@ -49,12 +49,13 @@ CaseOutcome Fit(const Config& experiment, Progress* progress) {
   outcome.done = record.usable;
   if (!record.usable) outcome.message = record.message;
   auto& numbers = outcome.numbers;
-  numbers = {{"rms_in_noise", record.rms}, {"start_rms_in_noise", record.start_rms}};
+  numbers = {{"rms_over_sigma", record.rms}, {"start_rms_over_sigma", record.start_rms}};
   for (const FittedRecording& recording : record.recordings) {
     const auto add = [&](const char* kind, const MisfitMeasure& measure) {
       if (measure.frames == 0) return;
       numbers.emplace_back(fmt::format("{}.{}_rms_m", recording.name, kind), measure.rms);
-      numbers.emplace_back(fmt::format("{}.{}_in_noise", recording.name, kind), measure.in_noise);
+      numbers.emplace_back(fmt::format("{}.{}_rms_over_sigma", recording.name, kind),
+                           measure.rms_over_sigma);
     };
     add("fitted", recording.in_fit);
     add("held_out", recording.held_out);

@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "record/verdict.h"
 #include "trials/trial_case.h"
 
 namespace lacuna {
 
 // What a diagnosis made of a case, and how its hidden effect fared when it was fitted.
 struct TrialOutcome {
-  std::string verdict;
+  Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> named;  // effects and nuisances of the verdict, the first the best
   std::vector<std::string>
       ranked;               // all effects, by evidence (that of the refit where there is one)
