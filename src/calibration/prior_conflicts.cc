@@ -54,9 +54,10 @@ void AddMarkerConflicts(const PredictionStudy& study, const RecordingMisfit& mis
 void AddReferenceShapeConflict(const PredictionStudy& study, const PredictedRecording& item,
                                const Body& body, std::vector<PriorConflict>* conflicts) {
   const Recording& recording = item.recording;
-  if (!recording.tracked || recording.reference.source == ReferenceSource::kFirstFrame) return;
+  if (!HasTrackedPoints(recording) || recording.reference.source == ReferenceSource::kFirstFrame)
+    return;
   const Eigen::VectorXd distance =
-      SurfaceSearch(body.boundary.surface).Nearest(recording.marker_places).distance;
+      SurfaceSearch(body.boundary.surface).Nearest(recording.markers.places).distance;
   const double rms = std::sqrt(distance.squaredNorm() / static_cast<double>(distance.size()));
   if (rms > kConflict * study.place_deviation)
     conflicts->emplace_back(

@@ -1,4 +1,5 @@
-// How far a fitted model is from each of its recordings, fitted or not.
+// The distance of a fitted model from each of its recordings, whether the recording was fitted or
+// not.
 #ifndef LACUNA_CALIBRATION_RECORDING_MISFIT_H_
 #define LACUNA_CALIBRATION_RECORDING_MISFIT_H_
 
@@ -11,19 +12,20 @@
 
 namespace lacuna {
 
-// The misfit of one recording, all frames.
+// The misfit of one recording over all of its frames.
 struct RecordingMisfit {
   std::string name;
   Misfit misfit;
   Eigen::VectorXd nuisance;        // in the order of RecordingModel::nuisances
-  std::vector<char> fitted;        // per frame of the misfit
+  std::vector<char> fitted;        // for each frame of the misfit
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
-  bool has_own_places = true;      // false: they are those that fitted recordings tell
-  MisfitMeasure in_fit, held_out;  // held out in time, or the whole recording
+  bool has_own_places = true;      // false: the offsets are taken from a fitted recording
+  MisfitMeasure in_fit, held_out;  // held out: later frames, or the whole recording
 };
 
-// Of every recording at these values of the problem's parameters; of one that is not fitted, as
-// CalibrationProblem::NuisanceOf and PlacesToldBy have it.
+// The misfits of all recordings at these values of the problem's parameters. For a recording that
+// is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
+// PlacesToldBy.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values);
 

@@ -58,7 +58,7 @@ bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
 
 // The study until soon after the start of each fitted recording.
 PredictionStudy EarlyPart(const CalibrationProblem& problem) {
-  PredictionStudy early = problem.AsChosen();
+  PredictionStudy early = problem.WithEstimatedNoise();
   for (PredictedRecording& item : early.recordings) {
     const std::vector<double>& times = item.recording.times;
     const double start = item.StartTime();
@@ -81,7 +81,6 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   std::vector<ScoredEffect> found;
   if (first.parameters.size() == values.size())
     found = RankEffects(of_early, first.parameters, progress, without).effects;
-  problem.SetModel(values);
   return found;
 }
 
@@ -327,7 +326,7 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
                      RefitStore* kept) {
   EffectRanking ranking = RankEffects(problem, fitted, progress, options.without);
   if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking)) {
-    PredictionStudy study = problem.AsChosen();
+    PredictionStudy study = problem.WithEstimatedNoise();
     study.time_step /= 2;
     progress->Begin("time step", 0);
     progress->End(
@@ -337,7 +336,6 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
     if (fit.parameters.size() == fitted.size()) {
       Diagnosis diagnosis =
           DiagnoseAt(shorter, fit.parameters, options, halvings - 1, progress, kept);
-      problem.SetModel(fitted);
       return diagnosis;
     }
   }
@@ -370,7 +368,6 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
     diagnosis.alternatives = refits.RunAlternatives(options.refits);
     DecideAgainstNuisances(&diagnosis);
   }
-  problem.SetModel(fitted);
   return diagnosis;
 }
 

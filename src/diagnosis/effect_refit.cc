@@ -90,9 +90,10 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
   hypothesis.left = hypothesis.misfit.residual;
   if (adopted.by.cols() > 0) {
-    const LinearFit fit = LinearModel(WhitenedRows(hypothesis.left, same, 0, false),
-                                      WhitenedRows(adopted.by, same, 0, false), adopted.priors)
-                              .FitAll(1);
+    const LinearFit fit =
+        LinearGaussianModel(WhitenedRows(hypothesis.left, same, 0, false),
+                            WhitenedRows(adopted.by, same, 0, false), adopted.priors)
+            .FitAll(1);
     hypothesis.left += adopted.by * fit.change;
   }
   return hypothesis;
@@ -110,8 +111,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
   // What was adopted is linear, hence at its best; the parameters are where they are.
   const LinearFit adopted =
-      LinearModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
-                  {own, hypothesis.priors.end()})
+      LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
+                          {own, hypothesis.priors.end()})
           .FitAll(noise.variance);
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
@@ -121,9 +122,9 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
       prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
   // The determinant is that of the linear model, whatever its residual.
-  const LinearFit nothing =
-      LinearModel(Eigen::VectorXd::Zero(residual.size()), columns, WithoutMeans(hypothesis.priors))
-          .FitAll(noise.variance);
+  const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
+                                                WithoutMeans(hypothesis.priors))
+                                .FitAll(noise.variance);
   HypothesisEvidence evidence;
   evidence.misfit = adopted.misfit;
   evidence.log_evidence =
@@ -150,8 +151,9 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
     columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.by.cols()) = variant.by;
     priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
   }
-  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-                          WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
+  const LinearGaussianModel model(
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+      WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
   std::vector<int> chosen(hypothesis.priors.size());
   std::iota(chosen.begin(), chosen.end(), 0);
   const double before = model.Fit(chosen, noise.variance).log_evidence;
@@ -175,11 +177,10 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
 FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without) {
-  const PredictionStudy study = WithEffect(present.problem.AsChosen(), effect);
+  const PredictionStudy study = WithEffect(present.problem.StudyAt(present.values), effect);
   const CalibrationProblem with(study, present.problem.body()->mesh);
   const EffectRanking ranking =
       RankEffects(with, refit.calibration.parameters, present.progress, without);
-  present.problem.SetModel(present.values);
   FurtherEvidence best;
   const auto other = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),
@@ -198,8 +199,8 @@ namespace {
 // To first order, at the parameters that are best for all frames.
 LinearFit BestNear(const FittedHypothesis& hypothesis) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  return LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                     WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
+  return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
+                             WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
       .FitAll(1);
 }
 
@@ -246,7 +247,7 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
   const LinearisedMisfit& misfit = present.misfit;
   const ExtendedProblem extended(present, effect, adopted);
-  const CalibrationProblem with = extended.Fresh();
+  const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
   const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
   EffectRefit refit;
@@ -277,7 +278,7 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
     refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
     if (effect != nullptr) {
-      refit.effect = extended.OwnEffect().Parameters();
+      refit.effect = extended.OwnParameters(refit.calibration.parameters);
       refit.sizes = extended.SizesIn(refit.calibration);
       refit.others = extended.OthersIn(refit.calibration);
     }
@@ -291,8 +292,6 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
                                            std::move(refit.hypothesis));
     }
   }
-  // The refit has changed effects that both models share.
-  present.problem.SetModel(present.values);
   return refit;
 }
 

@@ -36,12 +36,11 @@ class ExtendedProblem {
   ExtendedProblem(const PresentModel& present, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted);
 
-  // One that has predicted nothing yet. Predictions begin where the last one ended, and so depend
-  // on it in their last digits: each fit has a problem of its own, whether those before it were
-  // made or read back.
-  CalibrationProblem Fresh() const { return {study_, present_.problem.body()->mesh}; }
-  // The effect that the problem has more; with the values of the last prediction.
-  const Effect& OwnEffect() const;
+  // The problem that has the effect, without the amounts of nuisances.
+  const CalibrationProblem& problem() const { return with_; }
+  // The parameters of the effect that the problem has more, in the order of its card, at these
+  // values of the problem's parameters.
+  Eigen::VectorXd OwnParameters(const Eigen::VectorXd& values) const;
   Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
   // Of a calibration's estimates, those of what makes the effect's size, and its others.
   std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const;
@@ -68,8 +67,8 @@ class ExtendedProblem {
                    const std::function<Calibration()>& fit) const;
   std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
                     const std::string& what) const;
-  Prediction Predict(const CalibrationProblem& with, const Eigen::VectorXd& at,
-                     bool with_jacobian) const;
+  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian,
+                     CalibrationProblem::FitMemory* memory = nullptr) const;
   double Missed(const Eigen::VectorXd& at) const;
   // From the present parameters towards others, and the effect from nothing towards the size that
   // it begins with.

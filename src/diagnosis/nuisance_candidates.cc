@@ -51,7 +51,7 @@ std::optional<NuisanceCandidate> MeshNuisance(const CalibrationProblem& problem,
   const std::optional<FinerMesh> finer =
       MakeFinerMesh(problem, values, misfit, /*fitted_only=*/false);
   if (!finer) return std::nullopt;
-  const PredictionStudy study = problem.AsChosen();
+  const PredictionStudy study = problem.WithEstimatedNoise();
   const auto residual = [&](const CalibrationProblem& with_part, double ratio) {
     const Eigen::VectorXd change = finer->ToRatio(ratio) * finer->change;
     return with_part.Linearise(MovedBy(problem.parameters(), values, change), false).residual;
@@ -89,7 +89,7 @@ std::optional<NuisanceCandidate> StepNuisance(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& values,
                                               const LinearisedMisfit& misfit) {
   const auto with_steps = [&](double ratio) {
-    PredictionStudy slow = problem.AsChosen();
+    PredictionStudy slow = problem.WithEstimatedNoise();
     slow.time_step /= ratio;
     return CalibrationProblem(slow, problem.body()->mesh).Linearise(values, false).residual;
   };
@@ -116,7 +116,7 @@ std::optional<NuisanceCandidate> ShapeNuisance(const CalibrationProblem& problem
   Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
   if (!model.grips.empty() && model.grips.front().nodes.size() > 0)
     centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
-  const PredictionStudy study = problem.AsChosen();
+  const PredictionStudy study = problem.WithEstimatedNoise();
   NuisanceCandidate candidate{"shape", "the object's dimensions", "measure the object again"};
   candidate.by = Eigen::MatrixXd::Zero(misfit.residual.size(), 3);
   candidate.is_always_taken = true;
@@ -141,7 +141,6 @@ std::vector<NuisanceCandidate> NuisancesAlwaysTaken(const CalibrationProblem& pr
   for (const auto& make : {MeshNuisance, StepNuisance, ShapeNuisance})
     if (std::optional<NuisanceCandidate> candidate = make(problem, values, misfit))
       all.push_back(*std::move(candidate));
-  problem.SetModel(values);  // the changed models share its effects
   return all;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "effects/gravity.h"
 #include "fem/prediction.h"
 
 namespace lacuna {
@@ -74,11 +75,9 @@ Eigen::MatrixXd Ways(const PredictionStudy& study, const Eigen::Vector3d& larges
   };
   for (const double sign : {1.0, -1.0})
     for (int axis = 0; axis < 3; ++axis) add(sign * Eigen::Vector3d::Unit(axis));
-  for (const auto& effect : study.effects) {
-    if (effect->Card().type != "gravity") continue;
-    const Eigen::Vector3d gravity = effect->Parameters().head<3>();
-    add(gravity);
-    add(-gravity);
+  if (const std::optional<Eigen::Vector3d> gravity = GravityOf(study.effects)) {
+    add(*gravity);
+    add(-*gravity);
   }
   add(largest_misfit);
   Eigen::MatrixXd all(3, static_cast<Eigen::Index>(ways.size()));
@@ -134,7 +133,6 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
 std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
                                          const LinearisedMisfit& misfit) {
-  problem.SetModel(values);
   std::vector<Eigen::Matrix3Xd> displacements;
   Eigen::Vector3d largest = Eigen::Vector3d::Zero();
   double noise = 0;
@@ -168,8 +166,8 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
   Reach of_body(of_points.way(Eigen::all, crossed));
   for (size_t p = 0; p < misfit.parts.size(); ++p) {
     const size_t recording = misfit.parts[p].recording;
-    AddBody(problem.models()[recording], problem.NuisanceOf(recording, values), displacements[p],
-            &of_body);
+    AddBody(problem.ModelAt(recording, values), problem.NuisanceOf(recording, values),
+            displacements[p], &of_body);
   }
   for (Eigen::Index k = 0; k < of_body.way.cols(); ++k) {
     const double crossing = of_body.model[k] - of_body.object[k];

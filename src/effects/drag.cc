@@ -2,13 +2,14 @@
 //
 // |v| v and its derivative |v| I + v vᵀ/|v| are continuous at v = 0, where both vanish, and the
 // derivative is positive semi-definite: no smoothing is needed and the exact tangent is definite.
-// The law knows neither the wake nor the added mass of the medium, and the shape only through c.
+// The law neglects the wake and the added mass of the medium; the shape enters through c only.
 #include <glog/logging.h>
 
 #include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr Dimension kLinearResistance{-2,          1,       -1, 0, 0, "a pressure per velocity",
                                       "10 Pa s/m", "Pa s/m"};
 
-class DragEffect final : public Effect {
+class DragEffect final : public CloneableEffect<DragEffect> {
  public:
   enum Parameter { kCoefficient, kLinear };
   static constexpr int kParameters = kLinear + 1;
@@ -53,12 +54,13 @@ class DragEffect final : public Effect {
               .default_value = 0,
               .log_scale = false}},
         .residual_when_missing =
-            "a force against the velocity on the surface only, that quadruples when the velocity "
-            "doubles: large swings die out faster than the model's, small ones do not",
+            "The residual is a force against the velocity, on the surface only, which quadruples "
+            "when the velocity doubles: large oscillations decay faster than predicted, small ones "
+            "do not.",
         .separating_experiment =
-            "let it swing from a large and from a small amplitude: under drag the decay rate "
-            "grows in proportion to the amplitude, with damping linear in the velocity it does "
-            "not; or swing it in another medium",
+            "Let the body oscillate from a large and from a small amplitude: under drag the decay "
+            "rate grows in proportion to the amplitude, with damping linear in the velocity it "
+            "does not. Or repeat the motion in another medium",
         .look_alikes = {"mass_damping", "stiffness_damping"},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
@@ -69,7 +71,7 @@ class DragEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     parameters_ = values;
   }
@@ -117,7 +119,7 @@ class DragEffect final : public Effect {
 
 CatalogueEntry Drag() {
   return {&DragEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<DragEffect>(parameters);
           },
           &ReadParameters};

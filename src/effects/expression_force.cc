@@ -1,15 +1,15 @@
-// A force law of the user's own, written as an expression in the YAML file.
+// A force law that the user writes as expressions in the YAML file (expression_law.h).
 //
 //   f_i = M_i F(x_i, X_i, v_i, t, N_i; p),
 // with M_i the lumped mass (per: mass), the volume at rest (per: volume) or the boundary area at
 // rest (per: area) of node i, and F three expressions, one for each axis, in N per that measure.
-// N_i is the outward unit normal of the boundary at rest, 0 inside: measures and normals do not
-// follow the deformation (a dead load), and so a node's force depends on its own place and velocity
-// alone and the tangents are blocks on the diagonal. The stand-in of `convexify` is the negative
-// semi-definite part of the symmetric part of each block.
+// N_i is the outward unit normal of the boundary at rest, and 0 inside. Measures and normals do not
+// follow the deformation (a dead load), so that the force of a node depends on its own place and
+// velocity alone and the tangents are diagonal blocks. With `convexify` a block is replaced by the
+// negative semi-definite part of its symmetric part.
 //
-// docs/expression.md describes the language and the YAML. Where an expression is not defined, the
-// force is NaN, the step fails, and the first such place is told in a warning.
+// docs/expression.md describes the language and the YAML. Where an expression is undefined the
+// force is NaN, the step fails, and a warning names the first such node.
 #include <fmt/format.h>
 #include <glog/logging.h>
 
@@ -24,6 +24,7 @@
 #include "core/parallel.h"
 #include "effects/catalogue.h"
 #include "effects/expression_law.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -46,10 +47,10 @@ const EffectCard& TheCard() {
       .citation = "the user's own",
       .parameters = {},
       .residual_when_missing =
-          "an unexplained force that depends on place, velocity and time as "
-          "the expression says",
+          "The residual is a force that depends on place, velocity and time as the expression "
+          "says.",
       .separating_experiment =
-          "change what the expression depends on and nothing else: turn the fixture for a force "
+          "Change what the expression depends on and nothing else: turn the fixture for a force "
           "that depends on place, repeat at another speed for one that depends on velocity",
       .look_alikes = {},
       .repeatable = true,
@@ -65,14 +66,14 @@ Eigen::Matrix3d NegativePart(const Eigen::Matrix3d& matrix) {
          eigen.eigenvectors().transpose();
 }
 
-class ExpressionForceEffect final : public Effect {
+class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect> {
  public:
   explicit ExpressionForceEffect(ExpressionLaw law) : law_(std::move(law)) {}
 
   const ExpressionLaw& Law() const { return law_; }
   const EffectCard& Card() const override { return law_.card; }
   Eigen::VectorXd Parameters() const override { return law_.parameters; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), law_.parameters.size());
     law_.parameters = values;
   }
@@ -82,7 +83,7 @@ class ExpressionForceEffect final : public Effect {
     ForEachNode<double>(at, [&](int node, double measure, const Values<double>& values) {
       const Eigen::Vector3d density = Evaluate(values);
       force->segment<3>(3 * node) += measure * density;
-      if (!density.allFinite()) undefined.Tell(node);
+      if (!density.allFinite()) undefined.Report(node);
     });
     if (!undefined.IsNone()) WarnOnce(at, undefined.node());
   }
@@ -93,7 +94,7 @@ class ExpressionForceEffect final : public Effect {
       AddBlocks(at, weights.position, weights.velocity, 1, Part::kSymmetric, tangent);
       return;
     }
-    // Each by itself: the definite part of a sum is not the sum of the definite parts.
+    // Separately, because the definite part of a sum is not the sum of the definite parts.
     AddBlocks(at, 1, 0, weights.position, Part::kDefinite, tangent);
     AddBlocks(at, 0, 1, weights.velocity, Part::kDefinite, tangent);
   }
@@ -115,10 +116,10 @@ class ExpressionForceEffect final : public Effect {
   }
 
  private:
-  // The first of the nodes that threads tell of.
+  // The lowest of the node numbers that several threads report.
   class FirstNode {
    public:
-    void Tell(int node) {
+    void Report(int node) {
       for (int first = node_; node < first && !node_.compare_exchange_weak(first, node);) {
       }
     }
@@ -158,7 +159,7 @@ class ExpressionForceEffect final : public Effect {
     return NodeBoundaryAreas(body);
   }
 
-  // Empty where no expression asks for them.
+  // Empty if no expression uses them.
   Eigen::Matrix3Xd Normals(const Body& body) const {
     if (!UsesAny(ExpressionLaw::kNormal, 3)) return {};
     Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, body.NodeCount());
@@ -181,7 +182,7 @@ class ExpressionForceEffect final : public Effect {
     if (normals.cols() > 0) set(ExpressionLaw::kNormal, normals.col(node));
   }
 
-  // All that is the same at each node; the rest 0.
+  // The values that are the same at each node; all others are 0.
   template <typename Number>
   Values<Number> CommonValues(double time) const {
     Values<Number> values;
@@ -212,7 +213,7 @@ class ExpressionForceEffect final : public Effect {
             law_.force[2].At(values.data())};
   }
 
-  // Of a derivative; kDefinite: of its symmetric part.
+  // A part of a derivative; kDefinite is the definite part of its symmetric part.
   enum class Part { kSymmetric, kDefinite, kSkew };
 
   // Adds a part of scale · (by_position ∂f/∂x + by_velocity ∂f/∂v). Returns whether it may be
@@ -236,7 +237,7 @@ class ExpressionForceEffect final : public Effect {
       const Eigen::Matrix3d mirror = (part == Part::kSkew ? -1 : 1) * block.transpose();
       block = 0.5 * (block + mirror);
       if (!block.allFinite()) {
-        undefined.Tell(node);
+        undefined.Report(node);
       } else if (part == Part::kDefinite) {
         block = NegativePart(block);
       }
@@ -246,9 +247,9 @@ class ExpressionForceEffect final : public Effect {
     return true;
   }
 
-  // Tells what is not defined at a node.
+  // Warns that an expression is undefined at a node, and with which values.
   void WarnOnce(const Kinematics& at, int node) const {
-    if (warned_.exchange(true)) return;
+    if (warned_->exchange(true)) return;
     Values<double> values = CommonValues<double>(at.time);
     SetPoint(at, Normals(at.body), node, &values);
     const Eigen::Vector3d density = Evaluate(values);
@@ -268,19 +269,12 @@ class ExpressionForceEffect final : public Effect {
   }
 
   ExpressionLaw law_;
-  mutable std::atomic<bool> warned_ = false;
+  // Shared by copies with other parameter values: one warning will do.
+  std::shared_ptr<std::atomic<bool>> warned_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-std::shared_ptr<Effect> MakeExpressionForce(const Config& config) {
+std::shared_ptr<const Effect> MakeExpressionForce(const Config& config) {
   return std::make_shared<ExpressionForceEffect>(ReadExpressionLaw(config, TheCard()));
-}
-
-std::shared_ptr<Effect> WithOtherParameters(const Effect& effect,
-                                            const Eigen::VectorXd& parameters) {
-  const auto copy = std::make_shared<ExpressionForceEffect>(
-      static_cast<const ExpressionForceEffect&>(effect).Law());
-  copy->SetParameters(parameters);
-  return copy;
 }
 
 std::string Format(const Effect& effect) {
@@ -293,7 +287,6 @@ CatalogueEntry ExpressionForce() {
   CatalogueEntry entry;
   entry.card = &TheCard();
   entry.make_from_yaml = &MakeExpressionForce;
-  entry.with_parameters = &WithOtherParameters;
   entry.format = &Format;
   return entry;
 }

@@ -33,7 +33,7 @@ ScannedPoints ReadPoints(const Recording& recording, int number, const ScanSetti
   const Frame frame = LoadFrame(recording, number);
   ScannedPoints scanned;
   scanned.in_files = frame.cloud.Size();
-  if (recording.kind == FrameKind::kMesh && frame.triangles.cols() > 0) {
+  if (frame.triangles.cols() > 0) {
     scanned.cloud = {frame.cloud.points, VertexNormals({frame.cloud.points, frame.triangles})};
   } else {
     const FilterResult filtered =
@@ -53,6 +53,7 @@ ScanFrames::ScanFrames(Recording recording, const ScanSettings& settings)
     : recording_(std::move(recording)), settings_(settings) {}
 
 const ScannedPoints& ScanFrames::At(int frame) const {
+  const std::scoped_lock lock(mutex_);
   const auto known = frames_.find(frame);
   if (known != frames_.end()) return known->second;
   return frames_.emplace(frame, ReadPoints(recording_, frame, settings_)).first->second;

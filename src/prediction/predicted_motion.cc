@@ -32,7 +32,7 @@ std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double
   const bool rests_at_first =
       tells_the_shape && item.recording.reference.source == ReferenceSource::kFirstFrame;
   std::vector<Eigen::Matrix3Xd> moved(item.frames.size(), mesh.nodes);
-  for (const RecordedGrip& grip : item.recording.grips) {
+  for (const RecordedGrip& grip : item.recording.object.grips) {
     if (grip.motion != GripMotion::kFollowsScan) continue;
     const std::vector<int> nodes = NamingWhere(
         item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh.nodes); });
@@ -111,8 +111,8 @@ void RequireMarkersNear(const Recording& recording, const TetMesh& mesh) {
   constexpr double kFar = 0.5;
   const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
   const double size = box.diagonal().norm();
-  for (Eigen::Index m = 0; m < recording.marker_places.cols(); ++m) {
-    const double away = box.exteriorDistance(Eigen::Vector3d(recording.marker_places.col(m)));
+  for (Eigen::Index m = 0; m < recording.markers.places.cols(); ++m) {
+    const double away = box.exteriorDistance(Eigen::Vector3d(recording.markers.places.col(m)));
     if (away > kFar * size)
       throw InputError(fmt::format(
           "{}: marker_places: {} sits {:.3g} mm away from the object, which measures {:.3g} mm",
@@ -258,11 +258,18 @@ Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
   return axis.cross(place - registration * Middle());
 }
 
+RecordingModel RecordingModel::With(const EffectList& effects) const {
+  RecordingModel with = *this;
+  CHECK_EQ(effects.size(), study_.effects.size());
+  std::copy(effects.begin(), effects.end(), with.model_.effects.begin());
+  return with;
+}
+
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
-                               const std::vector<Observed>* observed) const {
+                               const PredictionHints& hints) const {
   PredictionOptions options = Options(nuisance);
-  options.held_guess = held_;
+  if (hints.near_equilibrium != nullptr) options.held_guess = *hints.near_equilibrium;
   const double late = Delay(nuisance);
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
@@ -287,12 +294,12 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
         const int frame = frames[index];
         const Eigen::Index begin = rows_of_frame * index;
-        Observed seen =
-            observed != nullptr ? (*observed)[index] : observer_->Observe(frame, state.position);
+        Observed seen = hints.observed != nullptr ? (*hints.observed)[index]
+                                                  : observer_->Observe(frame, state.position);
         Eigen::VectorXd predicted = *seen.rows * state.position;
         Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
-        if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        if (!perturbations.empty()) by = *seen.rows * state.position_jacobian;
         std::vector<Eigen::Matrix3d> deformation = seen.deformation;
         if (is_registered) {
           Turn(registration.linear(), &predicted);
@@ -329,7 +336,6 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         misfit.frames.push_back(frame);
         misfit.observed.push_back(std::move(seen));
       });
-  if (misfit.summary.held.size() > 0) held_ = misfit.summary.held;
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
   misfit.by.conservativeResize(reached, Eigen::NoChange);

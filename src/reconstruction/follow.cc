@@ -11,6 +11,7 @@
 #include "core/interrupt.h"
 #include "experiment/grip_tracks.h"
 #include "experiment/known_loads.h"
+#include "fit/step_force_fitter.h"
 #include "geometry/surface_tracks.h"
 #include "reconstruction/followed_sensitivity.h"
 #include "reconstruction/force_model_choice.h"
@@ -301,7 +302,7 @@ class Follower {
   Model model_;
   std::unique_ptr<GripTracks> grips_;
   ForceModel forces_;
-  std::vector<std::shared_ptr<Effect>> known_forces_;
+  EffectList known_forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<FollowedSensitivity> sensitivity_;  // where it is asked for

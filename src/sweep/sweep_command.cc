@@ -119,7 +119,7 @@ CaseOutcome OuterSearch(const Config& experiment, const std::filesystem::path& f
   return outcome;
 }
 
-// The files of a table1 case, as that command orders them.
+// The files of a table1 case in the order of that command.
 std::vector<Config> ByRow(std::vector<Config> files) {
   std::vector<std::pair<int, size_t>> order;
   for (size_t k = 0; k < files.size(); ++k) order.emplace_back(files[k].Integer("row", 1, 1000), k);

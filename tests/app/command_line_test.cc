@@ -126,7 +126,7 @@ TEST(CommandLine, ListsTheEffects) {
 void ExpectUnderstood(const std::string& yaml, const CatalogueEntry& entry) {
   const auto material = MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}});
   const Config config = Config::Parse(yaml, "pasted.yaml");
-  std::shared_ptr<Effect> effect;
+  std::shared_ptr<const Effect> effect;
   if (entry.kind == CatalogueEntry::Kind::kMaterial) {
     ASSERT_NO_THROW(effect = MakeMaterial(config.Child("material")));
   } else {

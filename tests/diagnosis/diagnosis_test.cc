@@ -8,12 +8,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "diagnosis/diagnosed_bar.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"
 #include "effects/catalogue.h"
 #include "report/verdict_text.h"
-#include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {

@@ -40,7 +40,7 @@ double LoadAt(double time) {
 }
 
 // Markers of the bar; its material besides what is hidden is neo-Hookean.
-std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<Effect>>& hidden) {
+std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<const Effect>>& hidden) {
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(BarMesh({10, 3, 3}, 2), 1000));
   const TetMesh& mesh = model.body->mesh;
@@ -81,7 +81,7 @@ class LoadedBar : public testing::Test {
     progress_ = std::make_unique<Progress>(silent);
   }
 
-  PredictionStudy Record(const std::vector<std::shared_ptr<Effect>>& hidden,
+  PredictionStudy Record(const std::vector<std::shared_ptr<const Effect>>& hidden,
                          const std::string& more = "") {
     WriteBarRecording(folder_.Path(), Film(hidden));
     std::ofstream load(folder_ / "load.csv");
@@ -168,11 +168,11 @@ TEST_F(LoadedBar, ComesAsTrackedPointsToo) {
   EXPECT_EQ(item.scans, nullptr);
   ASSERT_EQ(item.recording.markers.names.size(), 9u);
   EXPECT_EQ(item.recording.markers.names[8], "p8");
-  EXPECT_TRUE(item.recording.marker_places.leftCols(8).isApprox(BarMarkerPlaces(), 1e-9));
+  EXPECT_TRUE(item.recording.markers.places.leftCols(8).isApprox(BarMarkerPlaces(), 1e-9));
   EXPECT_TRUE(item.recording.markers.positions[5].col(8).array().isNaN().all());
   EXPECT_EQ(item.recording.markers.positions[4](0, 8), 0.04);
-  EXPECT_EQ(item.recording.grips[0].motion, GripMotion::kFollowsMarkers);
-  EXPECT_THAT(item.recording.grips[0].markers, testing::ElementsAre("p0", "p1"));
+  EXPECT_EQ(item.recording.object.grips[0].motion, GripMotion::kFollowsMarkers);
+  EXPECT_THAT(item.recording.object.grips[0].markers, testing::ElementsAre("p0", "p1"));
 }
 
 TEST_F(LoadedBar, TellsThatItCreeps) {

@@ -35,7 +35,7 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
   const auto step = std::find_if(nuisances.begin(), nuisances.end(),
                                  [](const auto& own) { return own.name == "time_step"; });
   if (step == nuisances.end()) return {};
-  PredictionStudy short_steps = problem.AsChosen();
+  PredictionStudy short_steps = problem.WithEstimatedNoise();
   short_steps.time_step /= 16;
   const Eigen::VectorXd change = 256.0 / 255 *
                                  (CalibrationProblem(short_steps, problem.body()->mesh)

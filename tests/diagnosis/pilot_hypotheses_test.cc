@@ -3,12 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "diagnosis/diagnosed_bar.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "report/verdict_text.h"
-#include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {

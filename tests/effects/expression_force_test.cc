@@ -26,7 +26,7 @@ parameters:
   d: {value: 50 mm, plausible: [1 mm, 20 cm], min: 0.1 mm, log_scale: true}
 )yaml";
 
-std::shared_ptr<Effect> FromYaml(const std::string& text) {
+std::shared_ptr<const Effect> FromYaml(const std::string& text) {
   const Config config = Config::Parse(text, "a.yaml");
   auto effect = MakeEffect(config);
   config.RefuseUnknownKeys();
@@ -34,8 +34,8 @@ std::shared_ptr<Effect> FromYaml(const std::string& text) {
 }
 
 // With an amplitude k.
-std::shared_ptr<Effect> MakeLaw(const std::string& per, const std::string& force,
-                                const std::string& k, const std::string& more = "") {
+std::shared_ptr<const Effect> MakeLaw(const std::string& per, const std::string& force,
+                                      const std::string& k, const std::string& more = "") {
   return FromYaml("type: expression\nname: law\nper: " + per + "\nforce: " + force +
                   "\nparameters:\n  k: {value: " + k + ", plausible: [-10 " +
                   k.substr(k.find(' ') + 1) + ", 10 " + k.substr(k.find(' ') + 1) + "]}\n" + more);
@@ -45,7 +45,7 @@ Eigen::Vector3d Total(const Eigen::VectorXd& force) {
   return force.reshaped(3, force.size() / 3).rowwise().sum();
 }
 
-TEST(ExpressionForce, IsAnEffect) {
+TEST(ExpressionForce, PassesTheEffectChecks) {
   CheckEffect(FromYaml(kMagnet).get());
   CheckEffect(MakeLaw("area", "[-k*abs(vx)*vx, -k*vy + k*nx, '-k*vz*c*(1 + nz^2)']", "3 Pa s/m",
                       "  c: {value: 0.4, plausible: [0, 1]}\n")
@@ -160,9 +160,9 @@ TEST(ExpressionForce, VanishesAtItsNullValueButNotItsDerivative) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.02}, {3, 2, 2}), 1000);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   const Eigen::VectorXd velocity = 0 * rest, state;
-  const auto magnet = FromYaml(kMagnet);
-  const Eigen::VectorXd per_unit = ForceAt(*magnet, body, rest, velocity) / 3;
-  magnet->SetParameters(Eigen::Vector3d(0, 0.02, 0.05));
+  const auto full = FromYaml(kMagnet);
+  const Eigen::VectorXd per_unit = ForceAt(*full, body, rest, velocity) / 3;
+  const auto magnet = full->WithParameters(Eigen::Vector3d(0, 0.02, 0.05));
   EXPECT_EQ(ForceAt(*magnet, body, rest, velocity).norm(), 0);
   Eigen::VectorXd derivative = Eigen::VectorXd::Zero(rest.size());
   magnet->AddParameterDerivative({body, rest, velocity, velocity, 0, 0, state}, 0, &derivative);
@@ -311,7 +311,7 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
       {"\"0\", ", "min(x, 1), ", "force: got 4 entries; expected three expressions"},
       {"per: mass", "per: weight",
        "a.yaml:3:6: per: got \"weight\"; expected one of: mass, volume, area"},
-      {"name: magnet", "nam: magnet", "a.yaml:1:1: name: is missing (\"nam\" is no key)"},
+      {"name: magnet", "nam: magnet", "a.yaml:1:1: name: is missing (\"nam\" is not a known key)"},
       {"z0: {value: 20 mm, setting: true}", "z0: 20 mm", "parameters.z0: expected a mapping"},
       {"z0: {value: 20 mm", "z0: {value: 20 mmm",
        "parameters.z0.value: got \"20 mmm\" (unknown unit \"mmm\")"},
@@ -325,10 +325,10 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
        "a.yaml:7:33: parameters.k.plausible: expected the least"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N/kg]", "parameters.k.plausible: expected the least"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N, 10 N]",
-       "parameters.k.plausible[0]: got \"-10 N\" (its unit measures something else); expected an "
+       "parameters.k.plausible[0]: got \"-10 N\" (its unit has another dimension); expected an "
        "acceleration"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N/kg, 10 N/kg], null_value: 1 mm",
-       "parameters.k.null_value: got \"1 mm\" (its unit measures something else)"},
+       "parameters.k.null_value: got \"1 mm\" (its unit has another dimension)"},
       {"[-10 N/kg, 10 N/kg]", "[1 N/kg, 10 N/kg], min: 1 N/kg",
        "parameters.k: the null value 0 of the amplitude is out of its bounds"},
       {"[1 mm, 20 cm]", "[0, 20 cm]", "parameters.d.plausible"},

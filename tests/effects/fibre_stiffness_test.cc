@@ -12,7 +12,7 @@ namespace {
 constexpr double kModulus = 4e4;  // Pa
 constexpr double kAzimuth = 30 * M_PI / 180, kInclination = 20 * M_PI / 180;
 
-std::shared_ptr<Effect> Fibres(double azimuth, double inclination) {
+std::shared_ptr<const Effect> Fibres(double azimuth, double inclination) {
   return MakeEffect("fibre_stiffness",
                     {{"modulus", kModulus}, {"azimuth", azimuth}, {"inclination", inclination}});
 }
@@ -62,7 +62,7 @@ TEST(FibreStiffness, IsTheTransverselyIsotropicSolidOfSmallStrain) {
     }
     const Eigen::Matrix3d stress = element.Stress(*solid, identity + strain) +
                                    element.Stress(*Fibres(azimuth, 0), identity + strain);
-    // The next order in the strain is 1e-7 of it.
+    // The next order in the strain is smaller by 1e-7.
     EXPECT_LT((stress - pull).norm(), 1e-6 * pull.norm()) << degrees;
   }
 }
