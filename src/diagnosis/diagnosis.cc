@@ -9,12 +9,11 @@
 
 #include "calibration/calibration_fits.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"
 
 namespace lacuna {
 namespace {
-
-using Verdict = Diagnosis::Verdict;
 
 // Evidence below which an effect is not worth a refit, and how far behind the best one it may be
 // where first order need not be trusted.
@@ -97,7 +96,7 @@ class Refits {
         refits_(diagnosis->ranking.size()) {
     CHECK(present_.message.empty()) << present_.message;
     diagnosis_.errors.without_nuisances = present_.errors.without_nuisances;
-    diagnosis_.present_in_noise = InNoise(present_.hypothesis);
+    diagnosis_.baseline_rms_over_sigma = InNoise(present_.hypothesis);
   }
 
   // Those that first order finds best.
@@ -166,26 +165,26 @@ class Refits {
 
   // What could do the work of the nuisances that were adopted: what first order gave a good part of
   // their evidence before they were. To be called after Weigh().
-  Diagnosis::Instead RunInstead(int count) const {
-    Diagnosis::Instead instead;
-    if (!ranking_.adopted.HasMore()) return instead;
+  NuisanceAlternatives RunAlternatives(int count) const {
+    NuisanceAlternatives alternatives;
+    if (!ranking_.adopted.HasMore()) return alternatives;
     const AdoptedNuisances always = ranking_.adopted.Always();
     const EffectRefit bare = Refit(model_, nullptr, always, false);
-    if (!bare.message.empty()) return instead;
-    instead.bare = bare.errors;
+    if (!bare.message.empty()) return alternatives;
+    alternatives.bare = bare.errors;
     const RefitEvidence before = EvidenceOf(bare, diagnosis_.noise_level);
-    instead.nuisances_evidence =
+    alternatives.nuisances_evidence =
         EvidenceOf(present_.hypothesis, diagnosis_.noise_level).log_evidence - before.all;
     for (const ScoredEffect& scored : ranking_.instead) {
-      if (static_cast<int>(instead.effects.size()) == count ||
-          scored.score.evidence < kCouldDoAsMuch * instead.nuisances_evidence)
+      if (static_cast<int>(alternatives.effects.size()) == count ||
+          scored.score.evidence < kCouldDoAsMuch * alternatives.nuisances_evidence)
         break;
-      RankedEffect& effect = instead.effects.emplace_back();
+      RankedEffect& effect = alternatives.effects.emplace_back();
       effect.scored = scored;
       const EffectRefit with = Tried(always, bare, &effect);
       if (with.message.empty()) SetEvidence(with, before, &effect);
     }
-    return instead;
+    return alternatives;
   }
 
   // What the best leaves for another effect, by the changes that it makes along the model without,
@@ -199,7 +198,7 @@ class Refits {
       RankedEffect& effect = diagnosis_.ranking[k];
       const double others = effect.further.evidence;
       if (!IsUsable(k) || effect.evidence < least ||
-          others < std::max(kNoEvidence, kLeavesMore * effect.evidence))
+          others < std::max(kNoEvidence, kThresholds.naming.remainder_share * effect.evidence))
         continue;
       ++looked;
       effect.further = FurtherEvidenceAlong(model_, effect.scored, refits_[k], without);
@@ -211,7 +210,7 @@ class Refits {
     const FittedHypothesis& best = Best();
     diagnosis_.noise_level =
         LevelOf(best.left, best.misfit, best.misfit.by.cols(), model_.problem.LeastNoiseVariance());
-    diagnosis_.left_in_noise = InNoise(best);
+    diagnosis_.best_rms_over_sigma = InNoise(best);
     const RefitEvidence before = EvidenceOf(present_, diagnosis_.noise_level);
     for (size_t k = 0; k < refits_.size(); ++k)
       if (IsUsable(k)) SetEvidence(refits_[k], before, &diagnosis_.ranking[k]);
@@ -229,7 +228,7 @@ class Refits {
       return;
     }
     effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
-    effect->left_in_noise = InNoise(with.hypothesis);
+    effect->rms_over_sigma = InNoise(with.hypothesis);
     effect->further = FurtherEvidenceOf(with.hypothesis, ranking_.tried,
                                         effect->scored.candidate.type, diagnosis_.noise_level);
   }
@@ -316,8 +315,10 @@ bool IsStepTooLong(const EffectRanking& ranking) {
   const auto step = std::find_if(
       ranking.nuisances.begin(), ranking.nuisances.end(),
       [](const ScoredNuisance& nuisance) { return nuisance.candidate.name == kTimeStepNuisance; });
-  return step != ranking.nuisances.end() && MayLend(step->doubt) > kNamed &&
-         !ranking.effects.empty() && ranking.effects.front().score.evidence > kNamed;
+  return step != ranking.nuisances.end() &&
+         DiscretisationUncertainty(step->doubt) > kThresholds.naming.least_evidence &&
+         !ranking.effects.empty() &&
+         ranking.effects.front().score.evidence > kThresholds.naming.least_evidence;
 }
 
 Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
@@ -354,7 +355,7 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
   const PresentModel model{problem, fitted, ranking.misfit, progress, kept};
   Refits refits(model, ranking, &diagnosis);
   refits.RunBest(options.refits);
-  if (diagnosis.present_in_noise > kFarOff)
+  if (diagnosis.baseline_rms_over_sigma > kFarOff)
     refits.RunEarly(RankEarly(problem, fitted, options.without, progress), options.refits);
   refits.Weigh();
   refits.RunLookAlikesOfBest();
@@ -364,7 +365,7 @@ Diagnosis DiagnoseAt(const CalibrationProblem& problem, const Eigen::VectorXd& f
   diagnosis.nuisances = std::move(ranking.nuisances);
   Decide(&diagnosis);
   if (diagnosis.verdict == Verdict::kNuisance) {
-    diagnosis.instead = refits.RunInstead(options.refits);
+    diagnosis.alternatives = refits.RunAlternatives(options.refits);
     DecideAgainstNuisances(&diagnosis);
   }
   return diagnosis;

@@ -11,18 +11,13 @@
 
 #include "calibration/calibration_problem.h"
 #include "diagnosis/candidates.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
 
 struct PilotHypothesis {
   CandidateEffect candidate;
   Eigen::VectorXd by;  // rows of the LinearisedMisfit: pilot run − present run, m
-};
-
-// A hypothesis that these recordings give no way to try.
-struct UntriedEffect {
-  std::string type;
-  std::string why;
 };
 
 struct PilotHypotheses {

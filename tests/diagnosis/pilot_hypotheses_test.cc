@@ -3,18 +3,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "diagnosis/diagnosed_bar.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
+#include "report/verdict_text.h"
 #include "support/temporary_folder.h"
-#include "diagnosis/diagnosed_bar.h"
 
 namespace lacuna {
 namespace {
 
 using ::testing::AnyOf;
 using ::testing::Contains;
-using Verdict = Diagnosis::Verdict;
 
 // The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
 constexpr double kModelError = 2;  // σ
@@ -115,18 +116,18 @@ TEST(PilotHypotheses, ALawTakesOverTheFittedModuli) {
 
 TEST(Diagnosis, PrefersAPlaneThatTheBarMeets) {
   const Diagnosis diagnosis = DiagnoseBar(BesideAPlane(), {});
-  EXPECT_GT(diagnosis.errors.in_noise, kModelError);
+  EXPECT_GT(diagnosis.errors.rms_over_sigma, kModelError);
   const RankedEffect* contact = Find(diagnosis, "plane_contact");
   ASSERT_NE(contact, nullptr);
   ASSERT_TRUE(contact->refitted);
-  EXPECT_LT(contact->errors.in_noise, 0.55 * diagnosis.errors.in_noise);
+  EXPECT_LT(contact->errors.rms_over_sigma, 0.55 * diagnosis.errors.rms_over_sigma);
   for (const RankedEffect& other : diagnosis.ranking) {
     if (other.refitted && &other != contact) {
       EXPECT_LT(other.evidence, contact->evidence);
     }
   }
   for (const std::string& named : diagnosis.effects)
-    EXPECT_EQ(named, "plane_contact") << diagnosis.explanation;
+    EXPECT_EQ(named, "plane_contact") << ExplainVerdict(RecordOf(diagnosis));
 }
 
 TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
@@ -154,7 +155,8 @@ TEST(Diagnosis, NamesNoWrongEffectWhereAnotherLawIsMissing) {
               AnyOf("st_venant_kirchhoff", "strain_stiffening"));
   // The bar's coarse mesh leaves enough that it may name nothing at all.
   if (diagnosis.verdict == Verdict::kMissing) {
-    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff") << diagnosis.explanation;
+    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff")
+        << ExplainVerdict(RecordOf(diagnosis));
   }
   if (diagnosis.verdict == Verdict::kAmbiguous) {
     EXPECT_THAT(diagnosis.effects, Contains("st_venant_kirchhoff"));
