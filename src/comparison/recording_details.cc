@@ -19,8 +19,8 @@ namespace {
 // has no grip.
 Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
                               const Eigen::Matrix3Xd& nodes) {
-  std::vector<Region> regions = recording.fixed;
-  for (const RecordedGrip& grip : recording.grips) regions.push_back(grip.region);
+  std::vector<Region> regions = recording.object.fixed;
+  for (const RecordedGrip& grip : recording.object.grips) regions.push_back(grip.region);
   Eigen::VectorXd distances =
       Eigen::VectorXd::Constant(places.cols(), std::numeric_limits<double>::infinity());
   for (const Region& region : regions)
@@ -64,7 +64,8 @@ void AddRecordingDetails(const std::filesystem::path& run, const CalibrationReco
       const Recording& recording = study.recordings[r].recording;
       if (!compared.is_scan) compared.point_names = recording.markers.names;
       compared.grip_distance = GripDistances(
-          recording, compared.is_scan ? record.recordings[r].scan->places : recording.marker_places,
+          recording,
+          compared.is_scan ? record.recordings[r].scan->places : recording.markers.places,
           body.mesh.nodes);
     }
   } catch (const InputError& error) {

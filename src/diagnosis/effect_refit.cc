@@ -89,9 +89,10 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
   hypothesis.left = hypothesis.misfit.residual;
   if (adopted.by.cols() > 0) {
-    const LinearFit fit = LinearModel(WhitenedRows(hypothesis.left, same, 0, false),
-                                      WhitenedRows(adopted.by, same, 0, false), adopted.priors)
-                              .FitAll(1);
+    const LinearFit fit =
+        LinearGaussianModel(WhitenedRows(hypothesis.left, same, 0, false),
+                            WhitenedRows(adopted.by, same, 0, false), adopted.priors)
+            .FitAll(1);
     hypothesis.left += adopted.by * fit.change;
   }
   return hypothesis;
@@ -109,8 +110,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
   // What was adopted is linear, hence at its best; the parameters are where they are.
   const LinearFit adopted =
-      LinearModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
-                  {own, hypothesis.priors.end()})
+      LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
+                          {own, hypothesis.priors.end()})
           .FitAll(noise.variance);
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
@@ -120,9 +121,9 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
       prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
   // The determinant is that of the linear model, whatever its residual.
-  const LinearFit nothing =
-      LinearModel(Eigen::VectorXd::Zero(residual.size()), columns, WithoutMeans(hypothesis.priors))
-          .FitAll(noise.variance);
+  const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
+                                                WithoutMeans(hypothesis.priors))
+                                .FitAll(noise.variance);
   HypothesisEvidence evidence;
   evidence.misfit = adopted.misfit;
   evidence.log_evidence =
@@ -149,8 +150,9 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
     columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.by.cols()) = variant.by;
     priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
   }
-  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-                          WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
+  const LinearGaussianModel model(
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+      WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
   std::vector<int> chosen(hypothesis.priors.size());
   std::iota(chosen.begin(), chosen.end(), 0);
   const double before = model.Fit(chosen, noise.variance).log_evidence;
@@ -196,8 +198,8 @@ namespace {
 // To first order, at the parameters that are best for all frames.
 LinearFit BestNear(const FittedHypothesis& hypothesis) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  return LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                     WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
+  return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
+                             WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
       .FitAll(1);
 }
 

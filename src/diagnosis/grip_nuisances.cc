@@ -58,9 +58,10 @@ MisfitDirection Yielding(const GripShape& grip, const Eigen::Matrix3Xd& rest, bo
 
 // The recorded grip that is this one of the model; null: it is fixed.
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip) {
-  const size_t fixed = recording.fixed.size();  // what is fixed comes first
-  return grip < fixed || grip - fixed >= recording.grips.size() ? nullptr
-                                                                : &recording.grips[grip - fixed];
+  const size_t fixed = recording.object.fixed.size();  // what is fixed comes first
+  return grip < fixed || grip - fixed >= recording.object.grips.size()
+             ? nullptr
+             : &recording.object.grips[grip - fixed];
 }
 
 bool Deforms(const CalibrationProblem& problem, size_t grip) {
@@ -194,7 +195,7 @@ std::optional<NuisanceCandidate> GripNuisances::Jitter(const CalibrationProblem&
           grip->motion != GripMotion::kFollowsMarkers || (kind.of == Of::kStrain && !grip->deforms))
         continue;
       const std::vector<int> markers = MarkersOf(*grip, recording);
-      const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, markers);
+      const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, markers);
       Eigen::MatrixXd shaken =
           by.middleCols(kind.first, kind.count) *
           (kind.of == Of::kStrain ? StrainJitter(places, problem.noise())

@@ -34,8 +34,8 @@ WeighedColumns WeighColumns(const LinearisedMisfit& misfit, const Eigen::MatrixX
   const Eigen::MatrixXd all = WhitenedRows(rows, misfit, correlation_time, false);
   const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, correlation_time, true);
   const Eigen::Index count = columns.cols();
-  return {LinearModel(all.col(0), all.rightCols(count), priors),
-          LinearModel(fitted.col(0), fitted.rightCols(count), priors), all.col(0),
+  return {LinearGaussianModel(all.col(0), all.rightCols(count), priors),
+          LinearGaussianModel(fitted.col(0), fitted.rightCols(count), priors), all.col(0),
           all.rightCols(count)};
 }
 
@@ -87,7 +87,7 @@ double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& mi
               sign * left[part.first_row + (f + shift) % frames * series + s];
       }
     }
-    const LinearModel control = weighed.all.WithResidual(shuffled, weighed.columns);
+    const LinearGaussianModel control = weighed.all.WithResidual(shuffled, weighed.columns);
     const double before = control.Fit(base, variance).log_evidence;
     double most = 0;
     for (const std::vector<int>& effect : effects)

@@ -31,7 +31,7 @@ struct Score {
 // A misfit and the columns of all hypotheses about it, whitened; seen by all frames and by the
 // fitted ones.
 struct WeighedColumns {
-  LinearModel all, fitted;
+  LinearGaussianModel all, fitted;
   Eigen::VectorXd residual;  // of all frames
   Eigen::MatrixXd columns;
 };

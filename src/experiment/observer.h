@@ -13,8 +13,9 @@
 
 namespace lacuna {
 
-// y = W x for stacked node positions x (3n) or their derivatives (3n × k), W held by rows.
-struct LinearRows {
+// The observation matrix W, in compressed rows: y = W x for node positions x (3n) or their Jacobian
+// (3n × k).
+struct ObservationMatrix {
   std::vector<int> begin{0};   // of row i's entries; rows + 1
   std::vector<int> column;     // of 3n
   std::vector<double> weight;  // ∂y/∂x
@@ -26,7 +27,7 @@ struct LinearRows {
 // One frame. Predicted minus measured is W x − target, in m; row components·i + c is component c of
 // point i.
 struct Observed {
-  std::shared_ptr<const LinearRows> rows;
+  std::shared_ptr<const ObservationMatrix> rows;
   Eigen::VectorXd target;
   Eigen::VectorXi count;      // for each point: measurements that it is the mean of; 0: not seen
   Eigen::Matrix3Xd measured;  // 3 × points, m, the measured places; NaN where not seen
@@ -58,13 +59,13 @@ class MarkerObserver : public Observer {
  public:
   // Both must outlive it.
   MarkerObserver(const Recording& recording, const TetMesh& mesh);
-  int PointCount() const override { return static_cast<int>(recording_.marker_places.cols()); }
+  int PointCount() const override { return static_cast<int>(recording_.markers.places.cols()); }
   int Components() const override { return 3; }
-  const Eigen::Matrix3Xd& Places() const override { return recording_.marker_places; }
+  const Eigen::Matrix3Xd& Places() const override { return recording_.markers.places; }
   Observed Observe(int frame, const Eigen::VectorXd& position) const override;
   const Embedding& places_in_mesh() const { return places_; }
   // W: x, y and z of each marker from the nodes.
-  const LinearRows& rows() const { return *rows_; }
+  const ObservationMatrix& rows() const { return *rows_; }
   // F at each marker, with the model's nodes at `position` (3n).
   std::vector<Eigen::Matrix3d> DeformationAt(const Eigen::VectorXd& position) const;
 
@@ -72,7 +73,7 @@ class MarkerObserver : public Observer {
   const Recording& recording_;
   const TetMesh& mesh_;
   Embedding places_;
-  std::shared_ptr<const LinearRows> rows_;
+  std::shared_ptr<const ObservationMatrix> rows_;
 };
 
 }  // namespace lacuna
