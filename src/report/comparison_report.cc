@@ -22,21 +22,24 @@ constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the 
 bool IsWhite(double p_value) { return p_value >= kSignificant; }
 
 std::string SizeText(const ComparedRecording& recording, const ErrorSize& error) {
+  const double noise_rms = recording.RmsOfNoise(recording.noise);
   std::string text = fmt::format(
-      "the rms error is {}, which is {:.1f} times the noise that the fit assumed (σ = {} {})",
-      Millimetres(error.rms), error.rms_over_sigma, Millimetres(recording.noise),
+      "the rms error is {}, {:.1f} times the {} that noise alone would give (σ = {} {}, as assumed "
+      "in the fit)",
+      Millimetres(error.rms), error.rms_over_sigma, Millimetres(noise_rms),
+      Millimetres(recording.noise),
       recording.is_scan ? "for a patch along its normal" : "per coordinate");
   if (!std::isnan(error.rms_over_floor))
-    text += fmt::format(" and {:.1f} times the noise of the recording itself ({})",
-                        error.rms_over_floor, Millimetres(recording.noise_floor.floor));
+    text += fmt::format(" and {:.1f} times the noise that the recording itself shows ({})",
+                        error.rms_over_floor,
+                        Millimetres(recording.RmsOfNoise(recording.noise_floor.floor)));
   text += fmt::format(". The largest error is {} ({} {}, at {:.3f} s).", Millimetres(error.largest),
                       recording.is_scan ? "patch" : "marker",
                       recording.point_names[error.largest_point], error.largest_time);
   if (error.rms_over_sigma >= kBeyondNoise && error.steady > error.changing) {
     text += fmt::format(
-        " Most of the error, {} rms, is the same in all frames, as {}, a rotated measuring frame "
-        "or "
-        "a steady load would cause it; the part that varies is {} rms.",
+        " Most of the error, {} rms, is the same in all frames; {}, a rotated measuring frame or a "
+        "steady load would cause this. The part that varies is {} rms.",
         Millimetres(error.steady),
         recording.is_scan ? "a different rest shape" : "misplaced markers",
         Millimetres(error.changing));

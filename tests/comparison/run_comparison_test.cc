@@ -280,9 +280,8 @@ TEST(Comparison, ComparesRepeatsWithEachOther) {
   ASSERT_EQ(comparison.record.recordings.size(), 2u);
   EXPECT_EQ(comparison.record.recordings[1].parts.size(), 1u);  // not fitted at all
   ASSERT_EQ(comparison.record.pairs.size(), 1u);
-  EXPECT_NEAR(comparison.record.pairs[0].repeatability.delay, 0.05, 0.002);
-  EXPECT_NEAR(comparison.record.pairs[0].repeatability.distance, std::sqrt(6.0) * kNoise,
-              0.7 * kNoise);
+  EXPECT_NEAR(comparison.record.pairs[0].delay, 0.05, 0.002);
+  EXPECT_NEAR(comparison.record.pairs[0].distance, std::sqrt(6.0) * kNoise, 0.7 * kNoise);
 }
 
 TEST(Comparison, WritesItsFilesAndLeavesTheRunUnchanged) {

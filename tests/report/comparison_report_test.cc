@@ -50,7 +50,7 @@ TEST(ComparisonReport, SaysHowLargeTheErrorIsAndThatItIsNotNoise) {
   const std::string text = DescribeComparison(Example()).at(0);
   EXPECT_THAT(text,
               HasSubstr("swing, held-out frames, 0.000 s to 1.000 s: the rms error is 0.870 mm"));
-  EXPECT_THAT(text, HasSubstr("5.0 times the noise that the fit assumed"));
+  EXPECT_THAT(text, HasSubstr("5.0 times the 0.173 mm that noise alone would give"));
   EXPECT_THAT(text, HasSubstr("The largest error is 2.000 mm (marker tip, at 0.500 s)."));
   EXPECT_THAT(text, HasSubstr("The error is not noise"));
   EXPECT_THAT(text, HasSubstr("correlation length 30 mm"));
