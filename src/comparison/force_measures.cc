@@ -112,7 +112,7 @@ void MeasureHistory(const Model& model, const ReplayedMotion& motion,
     variances += weight * history.force_deviation.col(k).cwiseAbs2();
     work += weight * history.power[k];
   }
-  NetForce& net = force->record.net;
+  NetForceSummary& net = force->record.net;
   net.mean = impulse / duration;
   net.mean_deviation = Deviations(impulse_jacobian, covariance) / duration;
   net.rms = (squares / duration).cwiseSqrt();
@@ -183,7 +183,7 @@ bool IsSignificant(const UnexplainedForceRecord& force) {
   constexpr double kClearForce = 2, kClearWork = 3, kClearEvidence = 5;
   if (!(force.fit.log_evidence > kClearEvidence)) return false;
   if (std::abs(force.work.work) > kClearWork * force.work.deviation) return true;
-  const NetForce& net = force.net;
+  const NetForceSummary& net = force.net;
   return (net.rms.array() > kClearForce * net.rms_deviation.array()).any() ||
          (net.mean.array().abs() > kClearForce * net.mean_deviation.array()).any();
 }

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "calibration/calibration_record.h"
 #include "comparison/comparison.h"
+#include "record/calibration_record.h"
 
 namespace lacuna {
 

@@ -7,7 +7,8 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
-#include "record/json_number.h"
+#include "record/json_vector.h"
+#include "record/schema_version.h"
 
 namespace lacuna {
 namespace {
@@ -19,34 +20,34 @@ constexpr const char* kLongerThanData = "longer than the data";
 
 // A correlation time or length; JSON has no infinity.
 json ScaleToJson(double value) {
-  return std::isinf(value) ? json(kLongerThanData) : NumberToJson(value);
+  return std::isinf(value) ? json(kLongerThanData) : NumberOrNull(value);
 }
 double ScaleFromJson(const json& value) {
-  return value == kLongerThanData ? std::numeric_limits<double>::infinity() : NumberFromJson(value);
+  return value == kLongerThanData ? std::numeric_limits<double>::infinity() : NumberOr(value);
 }
 
 void AddMeanDifference(const MeanDifference& difference, json* object) {
-  (*object)["mean_difference_m"] = NumbersToJson(difference.mean);
-  (*object)["agreement"] = NumberToJson(difference.agreement);
+  (*object)["mean_difference_m"] = VectorToJson(difference.mean);
+  (*object)["agreement"] = NumberOrNull(difference.agreement);
 }
 MeanDifference MeanDifferenceFromJson(const json& object) {
-  return {NumbersFromJson(object.at("mean_difference_m")), NumberFromJson(object.at("agreement"))};
+  return {VectorFromJson(object.at("mean_difference_m")), NumberOr(object.at("agreement"))};
 }
 
 void AddErrorSize(const ErrorSize& error, json* object) {
   (*object)["points"] = error.points;
-  (*object)["rms_m"] = NumberToJson(error.rms);
-  (*object)["rms_over_sigma"] = NumberToJson(error.rms_over_sigma);
-  (*object)["rms_over_floor"] = NumberToJson(error.rms_over_floor);
-  (*object)["steady_m"] = NumberToJson(error.steady);
-  (*object)["changing_m"] = NumberToJson(error.changing);
-  (*object)["largest_m"] = NumberToJson(error.largest);
+  (*object)["rms_m"] = NumberOrNull(error.rms);
+  (*object)["rms_over_sigma"] = NumberOrNull(error.rms_over_sigma);
+  (*object)["rms_over_floor"] = NumberOrNull(error.rms_over_floor);
+  (*object)["steady_m"] = NumberOrNull(error.steady);
+  (*object)["changing_m"] = NumberOrNull(error.changing);
+  (*object)["largest_m"] = NumberOrNull(error.largest);
   (*object)["largest_point"] = error.largest_point;
-  (*object)["largest_time_s"] = NumberToJson(error.largest_time);
+  (*object)["largest_time_s"] = NumberOrNull(error.largest_time);
   AddMeanDifference(error.mean_difference, object);
 }
 ErrorSize ErrorSizeFromJson(const json& object) {
-  const auto number = [&](const char* key) { return NumberFromJson(object.at(key)); };
+  const auto number = [&](const char* key) { return NumberOr(object.at(key)); };
   return {object.at("points"),      number("rms_m"),
           number("rms_over_sigma"), number("rms_over_floor"),
           number("steady_m"),       number("changing_m"),
@@ -56,37 +57,36 @@ ErrorSize ErrorSizeFromJson(const json& object) {
 
 json TimeCorrelationToJson(const TimeCorrelation& in_time) {
   return {{"lags", in_time.lags},
-          {"ljung_box_statistic", NumberToJson(in_time.statistic)},
-          {"lag_one_correlation", NumberToJson(in_time.lag_one)},
+          {"ljung_box_statistic", NumberOrNull(in_time.statistic)},
+          {"lag_one_correlation", NumberOrNull(in_time.lag_one)},
           {"correlation_time_s", ScaleToJson(in_time.time)},
-          {"p_value", NumberToJson(in_time.p_value)}};
+          {"p_value", NumberOrNull(in_time.p_value)}};
 }
 TimeCorrelation TimeCorrelationFromJson(const json& object) {
-  return {object.at("lags"), NumberFromJson(object.at("ljung_box_statistic")),
-          NumberFromJson(object.at("lag_one_correlation")),
-          ScaleFromJson(object.at("correlation_time_s")), NumberFromJson(object.at("p_value"))};
+  return {object.at("lags"), NumberOr(object.at("ljung_box_statistic")),
+          NumberOr(object.at("lag_one_correlation")),
+          ScaleFromJson(object.at("correlation_time_s")), NumberOr(object.at("p_value"))};
 }
 
 json SpaceCorrelationToJson(const SpaceCorrelation& in_space) {
   json pairs = json::array();
   for (const PointCorrelation& pair : in_space.pairs)
     pairs.push_back({{"points", {pair.first, pair.second}},
-                     {"distance_m", NumberToJson(pair.distance)},
-                     {"correlation", NumberToJson(pair.correlation)}});
-  return {{"mean_correlation", NumberToJson(in_space.mean)},
+                     {"distance_m", NumberOrNull(pair.distance)},
+                     {"correlation", NumberOrNull(pair.correlation)}});
+  return {{"mean_correlation", NumberOrNull(in_space.mean)},
           {"correlation_length_m", ScaleToJson(in_space.length)},
-          {"p_value", NumberToJson(in_space.p_value)},
+          {"p_value", NumberOrNull(in_space.p_value)},
           {"pairs", pairs}};
 }
 SpaceCorrelation SpaceCorrelationFromJson(const json& object) {
-  SpaceCorrelation in_space{NumberFromJson(object.at("mean_correlation")),
+  SpaceCorrelation in_space{NumberOr(object.at("mean_correlation")),
                             ScaleFromJson(object.at("correlation_length_m")),
-                            NumberFromJson(object.at("p_value")),
+                            NumberOr(object.at("p_value")),
                             {}};
   for (const json& pair : object.at("pairs"))
     in_space.pairs.push_back({pair.at("points").at(0), pair.at("points").at(1),
-                              NumberFromJson(pair.at("distance_m")),
-                              NumberFromJson(pair.at("correlation"))});
+                              NumberOr(pair.at("distance_m")), NumberOr(pair.at("correlation"))});
   return in_space;
 }
 
@@ -96,15 +96,14 @@ json WorstPeriodToJson(const WorstPeriod& period) {
               {"frames", period.frames},
               {"from_s", period.from},
               {"to_s", period.to},
-              {"rms_m", NumberToJson(period.rms)}};
+              {"rms_m", NumberOrNull(period.rms)}};
   AddMeanDifference(period.mean_difference, &object);
   return object;
 }
 WorstPeriod WorstPeriodFromJson(const json& object) {
-  return {
-      object.at("first_frame"),      object.at("last_frame"), object.at("frames"),
-      object.at("from_s"),           object.at("to_s"),       NumberFromJson(object.at("rms_m")),
-      MeanDifferenceFromJson(object)};
+  return {object.at("first_frame"),      object.at("last_frame"), object.at("frames"),
+          object.at("from_s"),           object.at("to_s"),       NumberOr(object.at("rms_m")),
+          MeanDifferenceFromJson(object)};
 }
 
 json TrendToJson(const ErrorTrend& trend) {
@@ -116,11 +115,11 @@ json TrendToJson(const ErrorTrend& trend) {
                     {"count", bin.count},
                     {"rms_m", bin.rms}});
   return {{"quantity", trend.quantity},
-          {"rank_correlation", NumberToJson(trend.rank_correlation)},
+          {"rank_correlation", NumberOrNull(trend.rank_correlation)},
           {"bins", bins}};
 }
 ErrorTrend TrendFromJson(const json& object) {
-  ErrorTrend trend{object.at("quantity"), NumberFromJson(object.at("rank_correlation")), {}};
+  ErrorTrend trend{object.at("quantity"), NumberOr(object.at("rank_correlation")), {}};
   for (const json& bin : object.at("bins"))
     trend.bins.push_back(
         {bin.at("low"), bin.at("high"), bin.at("mean"), bin.at("count"), bin.at("rms_m")});
@@ -132,7 +131,7 @@ json PartToJson(const ComparedPart& part) {
               {"frames", part.frames},
               {"from_s", part.from},
               {"to_s", part.to},
-              {"point_rms_m", NumbersToJson(part.point_rms)},
+              {"point_rms_m", VectorToJson(part.point_rms)},
               {"worst_point", part.worst_point},
               {"time_correlation", TimeCorrelationToJson(part.in_time)},
               {"space_correlation", SpaceCorrelationToJson(part.in_space)},
@@ -150,7 +149,7 @@ ComparedPart PartFromJson(const json& object) {
   part.from = object.at("from_s");
   part.to = object.at("to_s");
   part.error = ErrorSizeFromJson(object);
-  part.point_rms = NumbersFromJson(object.at("point_rms_m"));
+  part.point_rms = VectorFromJson(object.at("point_rms_m"));
   part.worst_point = object.at("worst_point");
   part.in_time = TimeCorrelationFromJson(object.at("time_correlation"));
   part.in_space = SpaceCorrelationFromJson(object.at("space_correlation"));
@@ -165,22 +164,22 @@ json NoiseFloorToJson(const NoiseFloor& noise_floor) {
   for (const RestPeriod& rest : noise_floor.rests)
     rests.push_back({{"from_s", rest.from},
                      {"to_s", rest.to},
-                     {"deviation_m", NumberToJson(rest.deviation)},
-                     {"drift_m_per_s", NumberToJson(rest.drift)}});
-  return {{"floor_m", NumberToJson(noise_floor.floor)},
-          {"white_noise_m", NumberToJson(noise_floor.white)},
-          {"rest_deviation_m", NumberToJson(noise_floor.rest_deviation)},
+                     {"deviation_m", NumberOrNull(rest.deviation)},
+                     {"drift_m_per_s", NumberOrNull(rest.drift)}});
+  return {{"floor_m", NumberOrNull(noise_floor.floor)},
+          {"white_noise_m", NumberOrNull(noise_floor.white)},
+          {"rest_deviation_m", NumberOrNull(noise_floor.rest_deviation)},
           {"rests", rests}};
 }
 NoiseFloor NoiseFloorFromJson(const json& object) {
-  NoiseFloor noise_floor{NumberFromJson(object.at("floor_m")),
-                         NumberFromJson(object.at("white_noise_m")),
-                         NumberFromJson(object.at("rest_deviation_m")),
+  NoiseFloor noise_floor{NumberOr(object.at("floor_m")),
+                         NumberOr(object.at("white_noise_m")),
+                         NumberOr(object.at("rest_deviation_m")),
                          {}};
   for (const json& rest : object.at("rests"))
     noise_floor.rests.push_back({rest.at("from_s"), rest.at("to_s"),
-                                 NumberFromJson(rest.at("deviation_m")),
-                                 NumberFromJson(rest.at("drift_m_per_s"))});
+                                 NumberOr(rest.at("deviation_m")),
+                                 NumberOr(rest.at("drift_m_per_s"))});
   return noise_floor;
 }
 
@@ -193,7 +192,7 @@ json RecordingToJson(const ComparedRecording& recording) {
       {"kind", recording.is_scan ? "scan" : "markers"},
       {"noise_m", recording.noise},
       {"point_names", recording.point_names},
-      {"grip_distance_m", has_distances ? NumbersToJson(recording.grip_distance) : json()},
+      {"grip_distance_m", has_distances ? VectorToJson(recording.grip_distance) : json()},
       {"noise_floor", NoiseFloorToJson(recording.noise_floor)},
       {"parts", parts},
       {"height_along", recording.height_by_gravity ? "against gravity" : "z"},
@@ -207,7 +206,7 @@ ComparedRecording RecordingFromJson(const json& object) {
   recording.noise = object.at("noise_m");
   recording.point_names = object.at("point_names").get<std::vector<std::string>>();
   if (const json& distances = object.at("grip_distance_m"); !distances.is_null())
-    recording.grip_distance = NumbersFromJson(distances);
+    recording.grip_distance = VectorFromJson(distances);
   recording.noise_floor = NoiseFloorFromJson(object.at("noise_floor"));
   for (const json& part : object.at("parts")) recording.parts.push_back(PartFromJson(part));
   recording.height_by_gravity = object.at("height_along") == "against gravity";
@@ -215,6 +214,20 @@ ComparedRecording RecordingFromJson(const json& object) {
   if (const json& force = object.at("unexplained_force"); !force.is_null())
     recording.force = UnexplainedForceFromJson(force);
   return recording;
+}
+
+ComparisonRecord RecordFromJson(const json& document) {
+  RequireSchemaVersion(document, kSchemaVersion, "lacuna compare");
+  ComparisonRecord record;
+  record.noise = document.at("noise_m");
+  for (const json& recording : document.at("recordings"))
+    record.recordings.push_back(RecordingFromJson(recording));
+  for (const json& pair : document.at("pairs"))
+    record.pairs.push_back({pair.at("recordings").at(0), pair.at("recordings").at(1),
+                            pair.at("frames"), NumberOr(pair.at("delay_s")),
+                            NumberOr(pair.at("distance_m"))});
+  record.notes = document.at("notes").get<std::vector<std::string>>();
+  return record;
 }
 
 }  // namespace
@@ -231,8 +244,8 @@ void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::
   for (const ComparedPair& pair : record.pairs)
     pairs.push_back({{"recordings", {pair.first, pair.second}},
                      {"frames", pair.frames},
-                     {"delay_s", NumberToJson(pair.delay)},
-                     {"distance_m", NumberToJson(pair.distance)}});
+                     {"delay_s", NumberOrNull(pair.delay)},
+                     {"distance_m", NumberOrNull(pair.distance)}});
   const json document{{"schema_version", kSchemaVersion},
                       {"noise_m", record.noise},
                       {"recordings", recordings},
@@ -244,24 +257,12 @@ void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::
 
 ComparisonRecord ReadComparisonFile(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "no such file");
+  if (!stream) throw InputError({file.string()}, "no such file; `lacuna compare` writes it");
   try {
     const json document = json::parse(stream);
-    if (document.at("schema_version") != kSchemaVersion)
-      throw InputError({file.string()},
-                       "was written by another version of lacuna; run `lacuna compare` again");
-    ComparisonRecord record;
-    record.noise = document.at("noise_m");
-    for (const json& recording : document.at("recordings"))
-      record.recordings.push_back(RecordingFromJson(recording));
-    for (const json& pair : document.at("pairs"))
-      record.pairs.push_back({pair.at("recordings").at(0), pair.at("recordings").at(1),
-                              pair.at("frames"), NumberFromJson(pair.at("delay_s")),
-                              NumberFromJson(pair.at("distance_m"))});
-    record.notes = document.at("notes").get<std::vector<std::string>>();
-    return record;
+    return NamingWhere(file.string(), [&] { return RecordFromJson(document); });
   } catch (const json::exception& problem) {
-    throw InputError({file.string()}, std::string("is no comparison: ") + problem.what());
+    throw InputError({file.string()}, std::string("is not a comparison: ") + problem.what());
   }
 }
 

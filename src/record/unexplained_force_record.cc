@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "record/json_number.h"
+#include "record/json_vector.h"
 
 namespace lacuna {
 
@@ -13,7 +13,7 @@ json UnexplainedForceToJson(const UnexplainedForceRecord& record) {
   json correlations = json::array();
   for (const ForceCorrelation& entry : record.correlations)
     correlations.push_back(
-        {{"quantity", entry.quantity}, {"correlation", NumberToJson(entry.correlation)}});
+        {{"quantity", entry.quantity}, {"correlation", NumberOrNull(entry.correlation)}});
   return {{"usable", true},
           {"is_significant", record.fit.is_significant},
           {"converged", record.fit.converged},
@@ -21,23 +21,23 @@ json UnexplainedForceToJson(const UnexplainedForceRecord& record) {
           {"knots", record.fit.knots},
           {"knot_spacing_s", record.fit.knot_spacing},
           {"weight_N", record.net.weight},
-          {"rms_N", NumbersToJson(record.net.rms)},
-          {"rms_deviation_N", NumbersToJson(record.net.rms_deviation)},
-          {"mean_N", NumbersToJson(record.net.mean)},
-          {"mean_deviation_N", NumbersToJson(record.net.mean_deviation)},
-          {"constant_share", NumberToJson(record.net.constant_share)},
+          {"rms_N", VectorToJson(record.net.rms)},
+          {"rms_deviation_N", VectorToJson(record.net.rms_deviation)},
+          {"mean_N", VectorToJson(record.net.mean)},
+          {"mean_deviation_N", VectorToJson(record.net.mean_deviation)},
+          {"constant_share", NumberOrNull(record.net.constant_share)},
           {"correlations", correlations},
-          {"duration_s", NumberToJson(record.work.duration)},
-          {"work_J", NumberToJson(record.work.work)},
-          {"work_deviation_J", NumberToJson(record.work.deviation)},
-          {"mean_power_W", NumberToJson(record.work.mean_power)},
-          {"centroid_m", NumbersToJson(record.place.centroid)},
-          {"grip_distance_m", NumberToJson(record.place.grip_distance)},
-          {"largest_grip_distance_m", NumberToJson(record.place.largest_grip_distance)},
-          {"rms_over_sigma_without", NumberToJson(record.fit.rms_over_sigma_without)},
-          {"rms_over_sigma_with", NumberToJson(record.fit.rms_over_sigma_with)},
-          {"noise_scale", NumberToJson(record.fit.noise_scale)},
-          {"log_evidence", NumberToJson(record.fit.log_evidence)}};
+          {"duration_s", NumberOrNull(record.work.duration)},
+          {"work_J", NumberOrNull(record.work.work)},
+          {"work_deviation_J", NumberOrNull(record.work.deviation)},
+          {"mean_power_W", NumberOrNull(record.work.mean_power)},
+          {"centroid_m", VectorToJson(record.place.centroid)},
+          {"grip_distance_m", NumberOrNull(record.place.grip_distance)},
+          {"largest_grip_distance_m", NumberOrNull(record.place.largest_grip_distance)},
+          {"rms_over_sigma_without", NumberOrNull(record.fit.rms_over_sigma_without)},
+          {"rms_over_sigma_with", NumberOrNull(record.fit.rms_over_sigma_with)},
+          {"noise_scale", NumberOrNull(record.fit.noise_scale)},
+          {"log_evidence", NumberOrNull(record.fit.log_evidence)}};
 }
 
 UnexplainedForceRecord UnexplainedForceFromJson(const json& value) {
@@ -47,10 +47,10 @@ UnexplainedForceRecord UnexplainedForceFromJson(const json& value) {
     record.message = value.at("message");
     return record;
   }
-  const auto number = [&](const char* key) { return NumberFromJson(value.at(key)); };
+  const auto number = [&](const char* key) { return NumberOr(value.at(key)); };
   const auto vector = [&](const char* key) -> Eigen::Vector3d {
     const json& list = value.at(key);
-    return {NumberFromJson(list.at(0)), NumberFromJson(list.at(1)), NumberFromJson(list.at(2))};
+    return {NumberOr(list.at(0)), NumberOr(list.at(1)), NumberOr(list.at(2))};
   };
   record.net = {vector("rms_N"),          vector("rms_deviation_N"),
                 vector("mean_N"),         vector("mean_deviation_N"),
@@ -60,7 +60,7 @@ UnexplainedForceRecord UnexplainedForceFromJson(const json& value) {
   record.place = {vector("centroid_m"), number("grip_distance_m"),
                   number("largest_grip_distance_m")};
   for (const json& entry : value.at("correlations"))
-    record.correlations.push_back({entry.at("quantity"), NumberFromJson(entry.at("correlation"))});
+    record.correlations.push_back({entry.at("quantity"), NumberOr(entry.at("correlation"))});
   ForceFitSummary& fit = record.fit;
   fit.rms_over_sigma_without = number("rms_over_sigma_without");
   fit.rms_over_sigma_with = number("rms_over_sigma_with");

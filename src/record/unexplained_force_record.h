@@ -13,7 +13,7 @@
 namespace lacuna {
 
 // The net force, summarised over the time of the motion. N.
-struct NetForce {
+struct NetForceSummary {
   Eigen::Vector3d rms = Eigen::Vector3d::Zero(), rms_deviation = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), mean_deviation = Eigen::Vector3d::Zero();
   double constant_share = 0;  // |mean| / |rms|: 1 for a force that never changes
@@ -59,7 +59,7 @@ struct ForceFitSummary {
 struct UnexplainedForceRecord {
   bool usable = false;
   std::string message;  // why it is not usable
-  NetForce net;
+  NetForceSummary net;
   ForceWork work;
   ForcePlace place;
   std::vector<ForceCorrelation> correlations;

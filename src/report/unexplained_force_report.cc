@@ -18,7 +18,7 @@ constexpr double kClearWork = 2;  // standard deviations
 std::string Newtons(double force) { return fmt::format("{:.2g} N", force); }
 
 std::string SizeText(const UnexplainedForceRecord& force) {
-  const NetForce& net = force.net;
+  const NetForceSummary& net = force.net;
   std::string text = fmt::format(
       "a smooth body force of {} rms ({:.2g} % of the weight of the moving part) would have made "
       "the model follow the markers. Its components are ",
@@ -29,10 +29,11 @@ std::string SizeText(const UnexplainedForceRecord& force) {
                         : axis == 1 ? ", "
                                     : " and ",
                         net.rms[axis], net.rms_deviation[axis], "xyz"[axis]);
-  return text + fmt::format(
-                    " (rms ± standard deviation). It would reduce the error from {:.1f} σ "
-                    "to {:.1f} σ.",
-                    force.fit.rms_over_sigma_without, force.fit.rms_over_sigma_with);
+  return text +
+         fmt::format(
+             " (rms ± standard deviation). It would reduce the error over all frames from {:.1f} σ "
+             "to {:.1f} σ.",
+             force.fit.rms_over_sigma_without, force.fit.rms_over_sigma_with);
 }
 
 std::string PlaceText(const ForcePlace& place) {
@@ -94,8 +95,8 @@ std::string DescribeUnexplainedForce(const UnexplainedForceRecord& force,
     return title +
            fmt::format(
                "the smooth body force that brings the model closest to the markers ({} rms) is not "
-               "significant; its standard deviation is {}. It would change the error from {:.1f} σ "
-               "to {:.1f} σ.",
+               "significant; its standard deviation is {}. It would change the error over all "
+               "frames from {:.1f} σ to {:.1f} σ.",
                Newtons(force.net.rms.norm()), Newtons(force.net.rms_deviation.norm()),
                force.fit.rms_over_sigma_without, force.fit.rms_over_sigma_with);
   }

@@ -321,6 +321,21 @@ TEST(Comparison, AStoredComparisonIsPrintedAsItWasWhenItWasMade) {
   EXPECT_EQ(stored.notes, made.notes);
 }
 
+TEST(Comparison, AStoredComparisonOfAnotherFormatIsRefused) {
+  const TemporaryFolder folder;
+  const auto complaint = [&](const std::string& content) -> std::string {
+    std::ofstream(folder / "comparison.json") << content;
+    try {
+      ReadComparisonFile(folder / "comparison.json");
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(complaint(R"({"schema_version": 1})"), HasSubstr("run `lacuna compare` again"));
+  EXPECT_THAT(complaint("{}"), HasSubstr("is not a comparison"));
+}
+
 TEST(Comparison, ExplainsWhyAFolderCannotBeCompared) {
   const TemporaryFolder folder;
   EXPECT_THAT(Complaint(folder / "nowhere"), HasSubstr("no such file or folder"));
@@ -340,7 +355,7 @@ TEST(Comparison, ExplainsWhyAFolderCannotBeCompared) {
   EXPECT_THAT(store("stopped", {{"recordings", json::array()}}, "mesh", false),
               HasSubstr("was not finished"));
   EXPECT_THAT(store("odd", {{"recordings", json::array()}}, "calibration", true),
-              HasSubstr("is no record of a calibration"));
+              HasSubstr("is not a record of a calibration"));
   WriteRun(folder / "changed", {"a"}, Nothing);
   std::ofstream(folder / "changed/calibration/misfit.csv", std::ios::app) << "0,0,0\n";
   EXPECT_THAT(Complaint(folder / "changed"), HasSubstr("is damaged"));
