@@ -76,7 +76,7 @@ TEST(WithEffect, LetsAnAngleTurnPastTheEndOfItsRange) {
       ++angles;
     }
     if (prior.name.ends_with("modulus")) {
-      EXPECT_LT(prior.max, 2 * card.parameters[parameter.places.front().second].plausible_max);
+      EXPECT_LT(prior.max, 2 * card.parameters[parameter.places.front().index].plausible_max);
     }
   }
   EXPECT_EQ(angles, 1);
