@@ -137,7 +137,7 @@ json EffectJson(const RankedEffect& effect) {
                 {"evidence", effect.scored.score.evidence},
                 {"explained_share", effect.scored.score.explained},
                 {"absorbed_share", effect.scored.score.absorbed},
-                {"expected_held_out_in_noise", effect.scored.score.held_out_in_noise},
+                {"expected_held_out_in_noise", effect.scored.score.held_out_rms_over_sigma},
                 {"sizes", sizes},
                 {"look_alikes", effect.scored.look_alikes},
                 {"refitted", effect.refitted}};
@@ -172,7 +172,7 @@ void SaveDiagnosis(const Diagnosis& diagnosis, const std::filesystem::path& file
   json nuisances = json::array();
   for (const ScoredNuisance& nuisance : diagnosis.nuisances)
     nuisances.push_back(
-        {{"nuisance", nuisance.candidate.name},
+        {{"nuisance", nuisance.candidate.card.name},
          {"what", nuisance.candidate.what},
          {"evidence", nuisance.evidence},
          {"refitted_evidence", nuisance.refitted ? json(*nuisance.refitted) : json(nullptr)},

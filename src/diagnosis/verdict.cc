@@ -64,7 +64,7 @@ std::string Titles(const std::vector<std::string>& types,
     const CatalogueEntry* entry = FindEntry(type);
     const auto nuisance =
         std::find_if(nuisances.begin(), nuisances.end(),
-                     [&](const ScoredNuisance& one) { return one.candidate.name == type; });
+                     [&](const ScoredNuisance& one) { return one.candidate.card.name == type; });
     titles.push_back(entry != nullptr              ? entry->card->title
                      : nuisance != nuisances.end() ? nuisance->candidate.what
                                                    : type);
@@ -121,11 +121,12 @@ double ExcessExplained(double before, double after) {
 bool PredictsHeldOutFrames(const Diagnosis& diagnosis) {
   const ScoredNuisance* best = nullptr;
   for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-    if (!nuisance.candidate.is_always_taken && (nuisance.adopted || nuisance.evidence > kNamed) &&
+    if (!nuisance.candidate.card.is_always_in_model &&
+        (nuisance.adopted || nuisance.evidence > kNamed) &&
         (best == nullptr || nuisance.evidence > best->evidence))
       best = &nuisance;
   return !diagnosis.errors.has_held_out || diagnosis.errors.without_nuisances <= kHeldOutAtNoise ||
-         (best != nullptr && best->candidate.is_of_single_frames);
+         (best != nullptr && best->candidate.card.acts_on_single_frames);
 }
 
 // The evidence that mesh or step may lend an effect, and which of them; null: none is uncertain.
@@ -151,7 +152,7 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
   const bool at_noise = diagnosis->errors.in_noise <= kAtNoise;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
     const bool counts =
-        nuisance.candidate.is_always_taken
+        nuisance.candidate.card.is_always_in_model
             ? nuisance.explained > kMeshMatters && nuisance.evidence > kNamed && !at_noise
             : nuisance.adopted || nuisance.evidence > kNamed;
     if (!counts) continue;
@@ -160,9 +161,9 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
       continue;
     }
     most_explained = std::max(most_explained, nuisance.explained);
-    named.push_back(nuisance.candidate.name);
+    named.push_back(nuisance.candidate.card.name);
     advice.push_back(fmt::format("{:.0f} % of the misfit by {}: {}", 100 * nuisance.explained,
-                                 nuisance.candidate.what, nuisance.candidate.advice));
+                                 nuisance.candidate.what, nuisance.candidate.card.advice));
   }
   if (!named.empty() &&
       (is_noise || (most_explained > kMostByNuisance && PredictsHeldOutFrames(*diagnosis)))) {
@@ -171,7 +172,8 @@ void DecideWithoutEffect(Diagnosis* diagnosis, double best_evidence, bool is_noi
     diagnosis->explanation = fmt::format("{}", fmt::join(advice, "; "));
     return;
   }
-  if (lender != nullptr) diagnosis->experiment = lender->candidate.advice + ", and diagnose again";
+  if (lender != nullptr)
+    diagnosis->experiment = lender->candidate.card.advice + ", and diagnose again";
   if (is_noise) {
     diagnosis->verdict = Verdict::kAdequate;
     diagnosis->explanation = fmt::format(
@@ -267,7 +269,8 @@ void Decide(Diagnosis* diagnosis) {
     if (!nuisance.adopted) continue;
     corrected = true;
     // What mesh, step and dimensions change is simulated and bounded: no free directions.
-    if (!nuisance.candidate.is_always_taken) in_the_model += std::max(0.0, nuisance.evidence);
+    if (!nuisance.candidate.card.is_always_in_model)
+      in_the_model += std::max(0.0, nuisance.evidence);
   }
   // What mesh or step may lend is no evidence where the model is at the noise without.
   const auto [lent, lender] = MostLent(diagnosis->nuisances);
@@ -323,17 +326,17 @@ void Decide(Diagnosis* diagnosis) {
     if (rival != nullptr && !rival->refitted) diagnosis->effects.push_back(other);
   }
   for (const ScoredNuisance& nuisance : diagnosis->nuisances) {
-    const double part = nuisance.candidate.name == "grip_compliance" ? kGripRival : 1;
+    const double part = nuisance.candidate.card.outgrows_first_order ? kGripRival : 1;
     const double its_evidence = nuisance.refitted.value_or(nuisance.evidence);
     if (MayLend(nuisance.doubt) > evidence) {
-      diagnosis->effects.push_back(nuisance.candidate.name);
-      refine.push_back(nuisance.candidate.advice);
+      diagnosis->effects.push_back(nuisance.candidate.card.name);
+      refine.push_back(nuisance.candidate.card.advice);
     } else if (!nuisance.adopted && its_evidence > std::min(evidence - lead, part * evidence)) {
-      diagnosis->effects.push_back(nuisance.candidate.name);
-      advice += "; or " + nuisance.candidate.advice;
+      diagnosis->effects.push_back(nuisance.candidate.card.name);
+      advice += "; or " + nuisance.candidate.card.advice;
       if (its_evidence > evidence)
-        doubts +=
-            fmt::format("; {} has more evidence, e^{:.0f}", nuisance.candidate.name, its_evidence);
+        doubts += fmt::format("; {} has more evidence, e^{:.0f}", nuisance.candidate.card.name,
+                              its_evidence);
     }
   }
   const std::string drop =
@@ -385,8 +388,8 @@ void DecideAgainstNuisances(Diagnosis* diagnosis) {
       instead.bare.without_nuisances, best.errors.without_nuisances);
   diagnosis->experiment = best.scored.candidate.effect->Card().separating_experiment;
   for (const ScoredNuisance& nuisance : diagnosis->nuisances)
-    if (nuisance.adopted && !nuisance.candidate.is_always_taken)
-      diagnosis->experiment += "; or " + nuisance.candidate.advice;
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
+      diagnosis->experiment += "; or " + nuisance.candidate.card.advice;
   effects.insert(effects.end(), diagnosis->effects.begin(), diagnosis->effects.end());
   diagnosis->effects = std::move(effects);
 }

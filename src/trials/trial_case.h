@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/nuisance.h"
 #include "fem/effect.h"
 
 namespace lacuna {
@@ -37,8 +38,7 @@ struct TrialCase {
   uint64_t seed = 0;
   int recordings = 1;
   bool is_scanned = false;  // by depth cameras; else markers are tracked
-  // Of a hard control: "grip" (the clamp ends 1 to 2 mm from where the model has it), "bad_frame",
-  // "coarse_mesh" or "time_jitter"; empty: none.
+  // NuisanceTrial::control of the nuisance that a hard control has; empty: none.
   std::string nuisance;
   std::vector<HiddenEffect> hidden;
 
@@ -53,6 +53,8 @@ struct TrialCase {
   double noise_correlation_time = 0;  // s
 
   bool Hides(const std::string& type) const;
+  // What is wrong with the experiment of a hard control; by default nothing.
+  NuisanceTrial Disturbance() const;
 };
 
 // Without a hidden effect yet.

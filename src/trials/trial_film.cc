@@ -17,10 +17,10 @@
 namespace lacuna {
 namespace {
 
-constexpr double kRelease = 0.1037;                                              // s
-constexpr double kFitUntil = 0.451;                                              // s
-constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7, kCoarseVolume = 4e-6;  // m³, tetrahedra
-constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;                         // s
+constexpr double kRelease = 0.1037;                        // s
+constexpr double kFitUntil = 0.451;                        // s
+constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7;  // m³, tetrahedra
+constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;   // s
 
 Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double high) {
   std::vector<int> chosen;
@@ -72,10 +72,11 @@ FilmedMotion Film(const TrialCase& trial, int recording, bool rough) {
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * trial.hold_forces[recording];
   std::vector<double> times;
+  const double time_deviation = trial.Disturbance().time_deviation;
   for (int f = 0; f < kTrialFrames; ++f) {
     double time = kTrialSpacing * f;
-    if (trial.nuisance == "time_jitter")
-      time += 0.0015 * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
+    if (time_deviation > 0)
+      time += time_deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
     times.push_back(time);
   }
   FilmedMotion motion{model.body, {}};
@@ -100,13 +101,14 @@ void FilmCase(const TrialCase& trial, const std::filesystem::path& folder, bool 
   }
   if (!trial.Hides("gravity"))
     known += "  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n";
+  const double coarse_volume = trial.Disturbance().element_volume;
   std::string yaml = fmt::format(
       "schema_version: 1\nname: {}\nmesh: {{max_volume: {} m^3, order: 2, preserve_surface: "
       "false}}\n"
       "material: {{law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
       "effects:{}\nfit: {{parameters: [{}]}}\n"
       "{}{}recordings:\n",
-      trial.name, trial.nuisance == "coarse_mesh" ? kCoarseVolume : kModelVolume,
+      trial.name, coarse_volume > 0 ? coarse_volume : kModelVolume,
       known.empty() ? " []" : "\n" + known, fitted,
       rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "",
       trial.is_scanned ? fmt::format("scan: {{shape_deviation: {} m}}\n", kTrialShapeError)

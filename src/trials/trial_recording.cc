@@ -44,11 +44,13 @@ void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3X
 
 // One frame shifted and turned.
 void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
+  const NuisanceTrial wrong = trial.Disturbance();
+  if (wrong.frame_shift == 0 && wrong.frame_rotation == 0) return;
   const size_t bad = 20 + RandomBits({trial.seed, 60}) % (frames->size() - 25);
   Eigen::Vector3d shift, turn;
   for (int axis = 0; axis < 3; ++axis) {
-    shift[axis] = 8e-4 * Gauss(trial, 61, axis, recording);
-    turn[axis] = 0.01 * Gauss(trial, 62, axis, recording);
+    shift[axis] = wrong.frame_shift * Gauss(trial, 61, axis, recording);
+    turn[axis] = wrong.frame_rotation * Gauss(trial, 62, axis, recording);
   }
   for (auto place : (*frames)[bad].colwise()) place += shift + turn.cross(Eigen::Vector3d(place));
 }
@@ -97,7 +99,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& mot
   for (const Eigen::Matrix3Xd& position : motion.positions)
     frames.push_back(PointsAt(at, mesh, position));
   AddNoise(trial, recording, &frames);
-  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  SpoilFrame(trial, recording, &frames);
   std::string csv = "t";
   for (int m = 0; m < kMarkers; ++m) csv += fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
   for (size_t f = 0; f < frames.size(); ++f) {
@@ -123,7 +125,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& mot
 void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motion,
                 const std::filesystem::path& folder) {
   std::vector<Eigen::Matrix3Xd> frames = motion.positions;
-  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  SpoilFrame(trial, recording, &frames);
   std::vector<TriMesh> surfaces;
   std::vector<double> times;
   for (size_t f = 0; f < frames.size(); ++f) {

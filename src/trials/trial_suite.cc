@@ -15,8 +15,10 @@
 #include "core/workers.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/effect_ranking.h"
-#include "diagnosis/grip_nuisances.h"
+#include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
@@ -29,12 +31,6 @@ namespace {
 
 // Draws of a case until its effect is plausible in the size that it must have to be seen.
 constexpr int kMostAttempts = 8;
-
-const std::vector<std::string>& Nuisances() {
-  static const std::vector<std::string> nuisances = {"grip", "bad_frame", "coarse_mesh",
-                                                     "time_jitter"};
-  return nuisances;
-}
 
 TrialCase DrawEffectCase(const std::string& name, const std::string& group,
                          const std::vector<std::string>& types, double factor, int recordings,
@@ -114,21 +110,21 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const std::shared_ptr<Effect> effect = MakeHidden(none);
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     directions.push_back({.perturbation = {.effect = effect, .parameter = static_cast<int>(k)}});
-  const GripNuisances grips(problem);
-  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  const GripMotions grips = MakeGripMotions(problem);
+  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
   LinearisedMisfit misfit = problem.Linearise(values, true, directions);
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
   // A depth camera's is that along its rays.
   if (!trial.is_scanned)
     for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   const Eigen::Index known = values.size();
-  std::vector<NuisanceCandidate> nuisances =
-      grips.Candidates(misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
-  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
+  const Eigen::MatrixXd grip_columns =
+      misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+  std::vector<NuisanceCandidate> nuisances = GripNuisances(grips, grip_columns);
+  for (NuisanceCandidate& nuisance : ModelNuisances({problem, values, misfit, grips, grip_columns}))
     nuisances.push_back(std::move(nuisance));
-  for (NuisanceCandidate& nuisance : MeasurementNuisances(problem, misfit, misfit.residual))
-    if (nuisance.name == "clock" || nuisance.name == "registration_drift")
-      nuisances.push_back(std::move(nuisance));
+  for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual))
+    nuisances.push_back(std::move(nuisance));
   Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
   const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
@@ -136,7 +132,8 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     columns.rightCols(more.cols()) = more;
     priors.insert(priors.end(), its_priors.begin(), its_priors.end());
   };
-  for (const NuisanceCandidate& nuisance : nuisances) add(nuisance.by, nuisance.priors);
+  for (const NuisanceCandidate& nuisance : nuisances)
+    if (nuisance.card.trial.limits_detection) add(nuisance.columns, nuisance.priors);
   const int own = static_cast<int>(columns.cols());
   if (hidden.amplitude.empty())
     add(ChangeBy(hidden, problem, values, misfit), {{}});
@@ -148,7 +145,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   std::vector<int> taken(own);
   std::iota(taken.begin(), taken.end(), 0);
   const double remaining = model.Remaining(taken, {own}, {own}, 1)(0, 0);
-  return remaining > 0 ? kStandsOut / std::sqrt(remaining)
+  return remaining > 0 ? kThresholds.ranking.detectable_deviations / std::sqrt(remaining)
                        : std::numeric_limits<double>::infinity();
 }
 
@@ -229,8 +226,10 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
                              nuisance));
   };
   for (int k = 0; k < suite.controls; ++k) control("control", "", k);
+  const std::vector<NuisanceTrial> disturbances = NuisanceControls();
   for (int k = 0; k < suite.hard_controls; ++k)
-    control("hard_control", Nuisances()[(k / suite.recordings.size()) % Nuisances().size()], k);
+    control("hard_control",
+            disturbances[(k / suite.recordings.size()) % disturbances.size()].control, k);
   const int largest = *std::max_element(suite.factors.begin(), suite.factors.end());
   for (const std::string& type : suite.removed)
     for (const int recordings : suite.recordings)

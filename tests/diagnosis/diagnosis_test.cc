@@ -66,7 +66,7 @@ TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
   EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
   const auto doubt = [](const Diagnosis& diagnosis) {
     for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-      if (nuisance.candidate.name == kTimeStepNuisance) return nuisance.doubt;
+      if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.doubt;
     return std::nan("");
   };
   EXPECT_GT(MayLend(doubt(as_given)), kNamed);

@@ -41,7 +41,7 @@ FittedHypothesis MakeHypothesis(double amount) {
   hypothesis.misfit = misfit;
   hypothesis.parameters = 1;
   hypothesis.priors = {{0, 1, false}, {0.1, 0.2, false}};
-  hypothesis.left = misfit.residual;
+  hypothesis.residual = misfit.residual;
   return hypothesis;
 }
 
@@ -241,7 +241,7 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
   ScoredEffect bed;
   bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
-  bed.fitted = fit.parameters;
+  bed.expected_values = fit.parameters;
   const EffectRefit refit = Refit({*problem_, fit.parameters, misfit, &progress_}, &bed,
                                   {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;

@@ -74,10 +74,10 @@ TEST(PilotHypotheses, TryThePlaneThatTheModelCrosses) {
   EXPECT_GT(bar.planes.front().crossing, 1e-3);
   EXPECT_FALSE(IsUntried(bar.pilots.untried, "plane_contact"));
   for (const PilotHypothesis& pilot : bar.pilots.tried) {
-    ASSERT_EQ(pilot.by.size(), bar.misfit.residual.size());
+    ASSERT_EQ(pilot.change.size(), bar.misfit.residual.size());
     if (pilot.candidate.type != "plane_contact") continue;
     // At the true parameters the deepest plane explains most of what is left by itself.
-    EXPECT_LT((bar.misfit.residual + pilot.by).norm(), 0.5 * bar.misfit.residual.norm());
+    EXPECT_LT((bar.misfit.residual + pilot.change).norm(), 0.5 * bar.misfit.residual.norm());
     break;
   }
 }
@@ -91,7 +91,7 @@ TEST(PilotHypotheses, TryNoPlaneWhereTheModelCrossesNone) {
     tried.push_back(pilot.candidate.type);
     EXPECT_TRUE(pilot.candidate.replaces_material);
     // The same moduli at small strain, another law: another motion, though not by much.
-    EXPECT_GT(pilot.by.norm(), 0);
+    EXPECT_GT(pilot.change.norm(), 0);
     EXPECT_EQ(pilot.candidate.effect->Parameters(), bar.study.effects.front()->Parameters());
   }
   EXPECT_THAT(tried, testing::ElementsAre("linear", "st_venant_kirchhoff"));

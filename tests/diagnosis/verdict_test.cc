@@ -26,8 +26,8 @@ Diagnosis DelayedFrames(double evidence, double error) {
   diagnosis.effects = {"time_jitter"};
   diagnosis.errors.has_held_out = true;
   ScoredNuisance& jitter = diagnosis.nuisances.emplace_back();
-  jitter.candidate.name = "time_jitter";
-  jitter.candidate.advice = "check the camera's clock";
+  jitter.candidate.card.name = "time_jitter";
+  jitter.candidate.card.advice = "check the camera's clock";
   jitter.evidence = kEvidence;
   jitter.adopted = true;
   diagnosis.instead.nuisances_evidence = kEvidence;
@@ -203,9 +203,9 @@ TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
 // What a finer mesh might change could be what the effect explains.
 TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
-  diagnosis.nuisances.emplace_back().candidate.name = "mesh";
-  diagnosis.nuisances.back().candidate.is_always_taken = true;
-  diagnosis.nuisances.back().candidate.advice = "choose a smaller mesh.max_volume";
+  diagnosis.nuisances.emplace_back().candidate.card.name = "mesh";
+  diagnosis.nuisances.back().candidate.card.is_always_in_model = true;
+  diagnosis.nuisances.back().candidate.card.advice = "choose a smaller mesh.max_volume";
   diagnosis.nuisances.back().doubt = 200;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ are no noise";
@@ -223,7 +223,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
   for (RankedEffect& effect : diagnosis.ranking) effect.evidence = 1;
   ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
-  drift.candidate.name = "registration_drift";
+  drift.candidate.card.name = "registration_drift";
   drift.evidence = 20;
   drift.explained = 0.1;
   diagnosis.errors.in_noise = 2.4;
@@ -244,7 +244,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   EXPECT_TRUE(diagnosis.effects.empty());
   // What is wrong with single frames cannot be predicted.
   diagnosis.effects.clear();
-  diagnosis.nuisances.back().candidate.is_of_single_frames = true;
+  diagnosis.nuisances.back().candidate.card.acts_on_single_frames = true;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
 }
@@ -257,7 +257,7 @@ TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
     force.evidence = 1900;
     force.scored.score.evidence = 2000;
     ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
-    drift.candidate.name = "registration_drift";
+    drift.candidate.card.name = "registration_drift";
     drift.evidence = 1980;
     drift.refitted = refitted;
     Decide(&diagnosis);
@@ -279,7 +279,7 @@ TEST(Verdict, TellsASmallNuisanceAtTheNoiseWithoutNamingIt) {
   diagnosis.present_in_noise = 0.9;
   diagnosis.errors.in_noise = diagnosis.errors.without_nuisances = 1.1;
   ScoredNuisance& placement = diagnosis.nuisances.emplace_back();
-  placement.candidate.name = "grip_placement";
+  placement.candidate.card.name = "grip_placement";
   placement.candidate.what = "the placement";
   placement.evidence = 40;
   placement.explained = 0.03;
