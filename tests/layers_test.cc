@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <regex>
 #include <set>
@@ -20,15 +22,17 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+// docs and README draw the same order. "record" holds the plain data of a run, "report" the text
+// that is made from it.
 const std::map<std::string, int> kLayers = {
     {"core", 1},       {"geometry", 2},     {"search", 2}, {"scan", 3},       {"surface", 3},
     {"meshing", 3},    {"registration", 3}, {"record", 3}, {"fem", 4},        {"analysis", 4},
     {"effects", 5},    {"fit", 5},          {"report", 5}, {"experiment", 6}, {"reconstruction", 7},
-    {"prediction", 7}, {"calibration", 8},  {"paper", 8},  {"diagnosis", 9},  {"comparison", 9},
+    {"prediction", 7}, {"calibration", 8},  {"paper", 8},  {"comparison", 9}, {"diagnosis", 9},
     {"sweep", 10},     {"trials", 10},      {"app", 11},
 };
 
-// Yesterday's run can be explained without running it again.
+// A run of yesterday can be explained without running it again.
 const std::map<std::string, std::set<std::string>> kForbidden = {
     {"analysis", {"fem"}},
     {"report", {"fem"}},
@@ -108,6 +112,104 @@ TEST(LayersTest, EachKindOfViolationIsSeen) {
                 ElementsAre(HasSubstr("foreign")))
         << foreign;
   }
+}
+
+// The files of src/<module>, by module, then by name without the ending: a header and its source
+// are one unit.
+using Units = std::map<std::string, std::map<std::string, std::string>>;
+
+Units ReadUnits() {
+  Units units;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(LACUNA_SOURCE_DIR) / "src")) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cc") continue;
+    std::ifstream file(entry.path());
+    std::stringstream text;
+    text << file.rdbuf();
+    units[entry.path().parent_path().filename()][entry.path().stem()] += text.str();
+  }
+  return units;
+}
+
+// A circle of includes between the units of one module, as "a -> b -> a"; empty: there is none.
+std::string FindCircle(const std::string& module, const std::map<std::string, std::string>& units) {
+  static const std::regex include(R"re(#\s*include\s*"(\w+)/(\w+)\.h")re");
+  std::map<std::string, std::set<std::string>> includes;
+  for (const auto& [unit, text] : units)
+    for (std::sregex_iterator match(text.begin(), text.end(), include), end; match != end; ++match)
+      if ((*match)[1] == module && (*match)[2] != unit && units.contains((*match)[2]))
+        includes[unit].insert((*match)[2]);
+  std::set<std::string> done;
+  std::vector<std::string> way;
+  std::string circle;
+  const std::function<bool(const std::string&)> visit = [&](const std::string& unit) {
+    const auto begin = std::find(way.begin(), way.end(), unit);
+    if (begin != way.end()) {
+      for (auto at = begin; at != way.end(); ++at) circle += *at + " -> ";
+      circle += unit;
+      return true;
+    }
+    if (done.contains(unit)) return false;
+    way.push_back(unit);
+    for (const std::string& other : includes[unit])
+      if (visit(other)) return true;
+    way.pop_back();
+    done.insert(unit);
+    return false;
+  };
+  for (const auto& [unit, text] : units)
+    if (visit(unit)) return circle;
+  return "";
+}
+
+// Classes and structs that headers define at the level of the namespace, with the units that do.
+std::map<std::string, std::vector<std::string>> DefinedNames(const Units& units) {
+  static const std::regex definition(
+      R"re((?:^|\n)(?:class|struct|enum class|enum) (\w+)(?: final)?(?: :[^;{]*)? \{)re");
+  std::map<std::string, std::vector<std::string>> names;
+  for (const auto& [module, of_module] : units)
+    for (const auto& [unit, text] : of_module) {
+      // What stands in an anonymous namespace belongs to its file alone.
+      const std::regex anonymous(R"re(\nnamespace \{\n[^]*?\n\}  // namespace\n)re");
+      const std::string open = std::regex_replace(text, anonymous, "\n");
+      for (std::sregex_iterator match(open.begin(), open.end(), definition), end; match != end;
+           ++match)
+        names[(*match)[1]].push_back(module + "/" + unit);
+    }
+  return names;
+}
+
+std::vector<std::string> FindRepeatedNames(const Units& units) {
+  std::vector<std::string> repeated;
+  for (const auto& [name, places] : DefinedNames(units))
+    if (places.size() > 1) repeated.push_back(name + ": " + places[0] + ", " + places[1]);
+  return repeated;
+}
+
+TEST(LayersTest, NoModuleIncludesItsFilesInACircle) {
+  const Units units = ReadUnits();
+  EXPECT_GT(units.size(), 10u) << "the sources have not been found";
+  for (const auto& [module, of_module] : units)
+    EXPECT_EQ(FindCircle(module, of_module), "") << "in src/" << module;
+}
+
+TEST(LayersTest, ACircleIsSeen) {
+  const std::string to_b = "#include \"fem/b.h\"\n", to_c = "#include \"fem/c.h\"\n";
+  EXPECT_EQ(FindCircle("fem", {{"a", to_b}, {"b", to_c}, {"c", "#include \"fem/a.h\"\n"}}),
+            "a -> b -> c -> a");
+  EXPECT_EQ(FindCircle("fem", {{"a", to_b + to_c}, {"b", to_c}, {"c", "#include \"fit/a.h\"\n"}}),
+            "");
+}
+
+// Two definitions of one name are undefined behaviour that the linker does not report.
+TEST(LayersTest, NoTypeIsDefinedTwice) { EXPECT_THAT(FindRepeatedNames(ReadUnits()), IsEmpty()); }
+
+TEST(LayersTest, ATypeThatIsDefinedTwiceIsSeen) {
+  const std::string open = "namespace lacuna {\n\nclass Model {\n};\n}\n";
+  const std::string hidden =
+      "namespace lacuna {\nnamespace {\nstruct Model {\n};\n\n}  // namespace\n";
+  EXPECT_THAT(FindRepeatedNames({{"fem", {{"a", open}}}, {"fit", {{"b", open}}}}),
+              ElementsAre("Model: fem/a, fit/b"));
+  EXPECT_THAT(FindRepeatedNames({{"fem", {{"a", open}}}, {"fit", {{"b", hidden}}}}), IsEmpty());
 }
 
 }  // namespace

@@ -84,7 +84,6 @@ class Fitter {
     Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kMayBeAstray});
     // "Before" is where the caller started, not where the first part ended.
     calibration.start_rms = Left(problem_, start);
-    problem_.SetModel(calibration.parameters.size() > 0 ? calibration.parameters : near);
     return calibration;
   }
 
@@ -98,12 +97,11 @@ class Fitter {
     for (size_t k = 0; k < parameters.size(); ++k)
       parameters[k].start =
           std::clamp(start[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
-    CalibrationProblem::Correspondences correspondences;
+    memory_.correspondences.clear();
     return Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction =
-              problem_.Predict(at, with_jacobian, horizon, &correspondences);
+          const Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
           progress_.Report(++evaluations_,
                            prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
           return prediction;
@@ -140,6 +138,7 @@ class Fitter {
 
   const CalibrationProblem& problem_;
   Progress& progress_;
+  CalibrationProblem::FitMemory memory_;
   int evaluations_ = 0;
 };
 
@@ -159,9 +158,7 @@ double ShortHorizon(const CalibrationProblem& problem) {
 
 Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                          Progress* progress) {
-  const Calibration calibration = Fitter(problem, progress).Beginning("fit, first part", start);
-  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
-  return calibration;
+  return Fitter(problem, progress).Beginning("fit, first part", start);
 }
 
 Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
@@ -172,10 +169,7 @@ Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& st
 
 Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
                   Progress* progress) {
-  const Calibration calibration =
-      Fitter(problem, progress).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
-  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
-  return calibration;
+  return Fitter(problem, progress).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
 }
 
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
@@ -211,7 +205,6 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     }
   }
   calibration.predictions = fitter.evaluations();
-  if (calibration.parameters.size() > 0) problem.SetModel(calibration.parameters);
   return calibration;
 }
 

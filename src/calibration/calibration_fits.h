@@ -1,8 +1,8 @@
-// How a prediction study's parameters are found: from far away, or on from near the solution.
+// Fits of a calibration problem, from a distant start or from near the solution.
 //
-// All fits are over the fitted frames of the fitted recordings, and leave the problem's model at
-// what they found. Of scans, the points' places on the surface are kept during a fit and sought
-// again after it, until the parameters settle; where they do not, the result is not usable.
+// All fits use the fitted frames of the fitted recordings. The correspondences of scanned points
+// are kept during a fit and found anew after it, until the parameters settle; where they do not
+// settle, the result is not usable. Throw Interrupted.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 #define LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 
@@ -13,25 +13,26 @@
 
 namespace lacuna {
 
-// s after a recording's start: a quarter of the fitted time in which the object moves, of the
-// recording where that ends last.
+// The end of the short horizon, in seconds after a recording's start: a quarter of the fitted time
+// in which the object moves, taken from the recording in which that ends last.
 double ShortHorizon(const CalibrationProblem& problem);
 
-// Over the short horizon, where a wrong model is least wrong.
+// Fits over the short horizon, where a wrong model has the least time to diverge.
 Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                          Progress* progress);
 
-// The beginning first, then all of the fitted frames.
+// Fits over the short horizon first, then over all fitted frames.
 Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                     Progress* progress);
 
-// All of the fitted frames at once, from near the solution.
+// Fits all fitted frames at once, from near the solution.
 Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
                   Progress* progress);
 
-// From the problem's start. A fit from far away may end where it is off by a period of a vibration:
-// where it leaves far more than noise, the moduli are started from elsewhere too, and the best is
-// kept. `beginning`: its first part, where that has been fitted before.
+// Fits from the problem's start. A distant start may lead to a local minimum that is off by a
+// period of a vibration: where the residual is far above the noise, the moduli are started from
+// other values too and the best fit is kept. `beginning`: the fit over the short horizon, where it
+// was made before.
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
                          const Calibration* beginning = nullptr);
 

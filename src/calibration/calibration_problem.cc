@@ -18,11 +18,12 @@ namespace {
 // Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
 constexpr double kFewestMatched = 0.5;
 
-std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters) {
+std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters,
+                                          const EffectList& effects) {
   std::vector<MisfitDirection> directions;
   for (const ModelParameter& parameter : parameters)
     for (const auto& [effect, index] : parameter.places)
-      directions.push_back({.perturbation = {.effect = effect, .parameter = index}});
+      directions.push_back({.perturbation = {.effect = effects[effect], .parameter = index}});
   return directions;
 }
 
@@ -106,7 +107,7 @@ MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) cons
                                        : MeasurementErrors{noise_, study_.place_deviation};
 }
 
-PredictionStudy CalibrationProblem::AsChosen() const {
+PredictionStudy CalibrationProblem::WithEstimatedNoise() const {
   PredictionStudy given = study_;
   given.noise = noise_;
   given.noise_is_estimated = estimates_noise_;
@@ -122,9 +123,14 @@ Eigen::VectorXd CalibrationProblem::Start() const {
   return start;
 }
 
-void CalibrationProblem::SetModel(const Eigen::VectorXd& values) const {
-  for (size_t k = 0; k < study_.fitted.size(); ++k)
-    SetParameter(study_.fitted[k], values[static_cast<Eigen::Index>(k)]);
+PredictionStudy CalibrationProblem::StudyAt(const Eigen::VectorXd& values) const {
+  PredictionStudy study = WithEstimatedNoise();
+  study.effects = WithValues(study_.effects, study_.fitted, values);
+  return study;
+}
+
+RecordingModel CalibrationProblem::ModelAt(size_t recording, const Eigen::VectorXd& values) const {
+  return models_[recording].With(WithValues(study_.effects, study_.fitted, values));
 }
 
 Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
@@ -133,7 +139,8 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
   if (first_nuisance_[recording] >= 0)
     return values.segment(first_nuisance_[recording],
                           static_cast<Eigen::Index>(model.nuisances().size()));
-  return OwnNuisance(model, ErrorsOf(model), PlacesFromFitted(recording, values));
+  return OwnNuisance(ModelAt(recording, values), ErrorsOf(model),
+                     PlacesFromFitted(recording, values));
 }
 
 std::optional<size_t> CalibrationProblem::PlacesToldBy(size_t recording) const {
@@ -150,25 +157,18 @@ std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
     size_t recording, const Eigen::VectorXd& values) const {
   const std::optional<size_t> teller = PlacesToldBy(recording);
   if (!teller) return std::nullopt;
-  const RecordingModel& fitted = models_[*teller];
-  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values), {});
+  const RecordingModel fitted = ModelAt(*teller, values);
+  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values));
   if (!misfit.summary.IsUsable()) return std::nullopt;
   return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
                      std::vector<char>(misfit.frames.size(), 1), misfit.deformation);
 }
 
-Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                                       double horizon) const {
-  Correspondences found;
-  return Predict(values, with_jacobian, horizon, &found);
-}
-
 std::vector<MisfitDirection> CalibrationProblem::DirectionsFor(
-    size_t recording, const std::vector<MisfitDirection>& further) const {
-  std::vector<MisfitDirection> directions = DirectionsOf(study_.fitted);
+    const RecordingModel& model, const std::vector<MisfitDirection>& further) const {
+  std::vector<MisfitDirection> directions = DirectionsOf(study_.fitted, model.model().effects);
   directions.insert(directions.end(), further.begin(), further.end());
-  for (const auto& nuisance : models_[recording].nuisances())
-    directions.push_back(nuisance.direction);
+  for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
   return directions;
 }
 
@@ -195,16 +195,16 @@ std::vector<size_t> CalibrationProblem::FittedRecordings() const {
 
 Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd& values,
                                                 bool with_jacobian, double horizon,
-                                                const std::vector<Observed>* compared_with,
-                                                std::vector<Observed>* observed) const {
-  const RecordingModel& model = models_[r];
+                                                const PredictionHints& hints, Misfit* found) const {
+  const RecordingModel model = ModelAt(r, values);
   std::vector<int> frames = model.FittedFrames();
   const std::vector<double>& times = model.item().recording.times;
   const double start = model.item().StartTime();
   std::erase_if(frames, [&](int frame) { return times[frame] > start + horizon; });
   std::vector<MisfitDirection> directions;
-  if (with_jacobian) directions = DirectionsFor(r, {});
-  Misfit misfit = model.Predict(frames, NuisanceOf(r, values), directions, compared_with);
+  if (with_jacobian) directions = DirectionsFor(model, {});
+  Misfit& misfit = *found;
+  misfit = model.Predict(frames, NuisanceOf(r, values), directions, hints);
   Prediction part;
   part.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
   part.usable = part.message.empty();
@@ -221,30 +221,33 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
   for (Eigen::Index row = 0; row < rows; ++row)
     part.before.push_back(row < series ? -1 : row - series);
   if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.by, 0));
-  *observed = std::move(misfit.observed);
   return part;
 }
 
 Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                                       double horizon, Correspondences* correspondences) const {
+                                       double horizon, FitMemory* memory) const {
   ThrowIfInterrupted();
-  SetModel(values);
-  const bool seek = correspondences->empty();
-  if (seek) correspondences->resize(models_.size());
+  FitMemory nothing;
+  FitMemory& known = memory != nullptr ? *memory : nothing;
+  const bool seek = known.correspondences.empty();
+  if (seek) known.correspondences.resize(models_.size());
+  known.equilibria.resize(models_.size());
   const std::vector<size_t> fitted = FittedRecordings();
   std::vector<Prediction> parts(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
     const size_t r = fitted[static_cast<size_t>(k)];
-    std::vector<Observed> observed;
+    Misfit misfit;
     parts[static_cast<size_t>(k)] = PredictRecording(
-        r, values, with_jacobian, horizon, seek ? nullptr : &(*correspondences)[r], &observed);
-    if (seek) (*correspondences)[r] = std::move(observed);
+        r, values, with_jacobian, horizon,
+        {seek ? nullptr : &known.correspondences[r], &known.equilibria[r]}, &misfit);
+    if (misfit.summary.held.size() > 0) known.equilibria[r] = misfit.summary.held;
+    if (seek) known.correspondences[r] = std::move(misfit.observed);
   });
   Prediction all;
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) {
     if (!part.usable) {
-      if (seek) correspondences->clear();  // to be found by a prediction that gets to the end
+      if (seek) known.correspondences.clear();  // to be found by a prediction that gets to the end
       return part;
     }
     rows += part.residual.size();
@@ -267,13 +270,14 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     size_t r, const Eigen::VectorXd& values, bool with_jacobian,
     const std::vector<MisfitDirection>& directions,
     const std::vector<Observed>* compared_with) const {
-  const RecordingModel& model = models_[r];
+  const RecordingModel model = ModelAt(r, values);
   const PredictedRecording& item = model.item();
   // The clock comes last: its derivative is the speed, with the sign turned.
   std::vector<MisfitDirection> wanted;
-  if (with_jacobian) wanted = DirectionsFor(r, directions);
+  if (with_jacobian) wanted = DirectionsFor(model, directions);
   wanted.push_back({MisfitDirection::Of::kClock});
-  Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted, compared_with);
+  Misfit misfit =
+      model.Predict(item.frames, NuisanceOf(r, values), wanted, {.observed = compared_with});
   LinearisedRecording linearised;
   if (!misfit.summary.IsUsable()) {
     linearised.message = item.name + ": " + misfit.summary.message;
@@ -304,7 +308,6 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
                                                const std::vector<MisfitDirection>& directions,
                                                const LinearisedMisfit* same) const {
   ThrowIfInterrupted();
-  SetModel(values);
   const std::vector<size_t> fitted = FittedRecordings();
   std::vector<LinearisedRecording> recordings(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {

@@ -1,5 +1,9 @@
-// What is fitted of a prediction study, its model's parameters and what each recording leaves open,
-// and what they leave of the frames that are fitted (calibration_fits.h: how they are found).
+// The least-squares problem of a prediction study: its unknowns, and the residual that they leave.
+//
+// The unknowns are the fitted parameters of the model and the nuisance parameters of each fitted
+// recording (its holding force, its clock, its registration). The residual is predicted minus
+// measured over the fitted frames, whitened by the measurement errors. calibration_fits.h minimises
+// it.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 #define LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 
@@ -17,29 +21,31 @@
 
 namespace lacuna {
 
-// The misfit of the fitted recordings over all of their frames, held-out ones too, to first order
-// about some values: rows of one recording after another, in m and not whitened.
+// The misfit of the fitted recordings over all of their frames, held-out frames included, and its
+// derivatives at some parameter values. The rows of the recordings follow one another; they are in
+// metres and not whitened.
 struct LinearisedMisfit {
   struct Part {
-    size_t recording = 0;  // of the study
+    size_t recording = 0;  // its index in the study
     Eigen::Index first_row = 0;
     SeriesLayout layout;
     MeasurementErrors errors;
-    std::vector<char> fitted;        // per frame
-    Eigen::VectorXd speed;           // rows of d(predicted)/dt, m/s
-    std::vector<Observed> observed;  // per frame: what it was compared with
+    std::vector<char> fitted;        // for each frame: 1 where it was fitted, 0 where held out
+    Eigen::VectorXd speed;           // d(predicted)/dt, one entry per row, m/s
+    std::vector<Observed> observed;  // for each frame: what the prediction was compared with
   };
   bool usable = false;
   std::string message;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd by;  // columns: the problem's parameters, then the directions asked for
+  Eigen::MatrixXd by;  // Jacobian: the problem's parameters, then the directions asked for
   std::vector<Part> parts;
 };
 
-// σ: a fit that leaves more may have ended at the wrong place.
+// A fit whose rms residual exceeds this many σ may have ended in a local minimum; other starts are
+// tried. Lower: more fits are repeated; higher: more local minima are kept.
 inline constexpr double kMayBeAstray = 2;
-// σ: a model that leaves more is far from the truth, and has other troubles than its elements'
-// size.
+// A model whose rms residual exceeds this many σ is far from the truth; the error of its mesh does
+// not matter then.
 inline constexpr double kFarOff = 3;
 
 class CalibrationProblem {
@@ -52,70 +58,78 @@ class CalibrationProblem {
   const std::vector<CalibratedParameter>& parameters() const { return parameters_; }
   const std::string& UnitOf(size_t parameter) const { return units_[parameter]; }  // SI
   Eigen::VectorXd Start() const;
-  // σ of a marker's coordinate, and of a scanned point along the normal, m, that residuals are
-  // weighed with; 0 where no recording has such.
+  // The standard deviations that whiten the residuals, m: of a marker's coordinate, and of a
+  // scanned point along the surface normal. 0 where no recording has markers, or scans.
   double noise() const { return noise_; }
   double scan_noise() const { return scan_noise_; }
-  // As a part of that, the least variance that what models leave may tell of. An estimate from
-  // eight frames at rest, and the larger one of two recordings, is up to 1.4 times too large, and a
-  // model that leaves less has not found it by chance: its hundreds of rows fix σ to some per cent.
+  // The smallest variance of the noise that residuals of models may imply, relative to noise()².
+  // An estimate from eight frames at rest, or the larger one of two recordings, may be up to 1.4
+  // times too large, while the hundreds of rows of a residual determine σ within a few per cent.
   double LeastNoiseVariance() const { return estimates_noise_ ? 0.25 : 1; }
   MeasurementErrors ErrorsOf(const RecordingModel& model) const;
   const PredictionStudy& study() const { return study_; }
   const std::vector<RecordingModel>& models() const { return models_; }
   const std::shared_ptr<const Body>& body() const { return body_; }
   bool HasScans() const { return scan_noise_ > 0; }
-  // The study, with what this problem has estimated or chosen given (noise, patches): for another
-  // problem whose misfit is to be compared with this one's.
-  PredictionStudy AsChosen() const;
-  // Recording r's nuisances: among the parameters where it is fitted; else found from its first
-  // tenth, the model staying as `values` have set it (SetModel).
+  // The study with the noise and the patches that this problem has estimated or chosen, for another
+  // problem whose residual is to be compared with this one's.
+  PredictionStudy WithEstimatedNoise() const;
+  // The same with its effects at these values of the problem's parameters.
+  PredictionStudy StudyAt(const Eigen::VectorXd& values) const;
+  // The model of a recording at these values of the problem's parameters.
+  RecordingModel ModelAt(size_t recording, const Eigen::VectorXd& values) const;
+  // The nuisance parameters of a recording. Those of a fitted recording are among `values`; those
+  // of another one are fitted to its first tenth, with the model at `values`.
   Eigen::VectorXd NuisanceOf(size_t recording, const Eigen::VectorXd& values) const;
-  // Which recording tells the errors of the marker places of one that is not fitted: the first
-  // fitted one that has markers of the same names at the same places. They are on the object, and
-  // so the same in both. None where no recording has, and of scans.
+  // The fitted recording from which the errors of the marker places of a recording that is not
+  // fitted are taken: the first one with markers of the same names at the same places. The markers
+  // sit on the object, so that their place errors are the same in both. Empty where there is none,
+  // and for scans.
   std::optional<size_t> PlacesToldBy(size_t recording) const;
 
-  // Gives the study's effects, which other problems may share and have changed, these values.
-  void SetModel(const Eigen::VectorXd& values) const;
+  // What one prediction of a fit hands on to the next.
+  struct FitMemory {
+    // For each recording, what its frames are compared with. Empty: the next prediction that
+    // reaches the end fills it in.
+    std::vector<std::vector<Observed>> correspondences;
+    // For each recording, the equilibrium before the motion (3n, m), from which the search for the
+    // next one starts.
+    std::vector<Eigen::VectorXd> equilibria;
+  };
 
-  // The whitened misfit over the fitted frames not later than `horizon` seconds after the start of
-  // each recording, with derivatives by the parameters. Scanned points go with the places of the
-  // surface nearest to them in this prediction. Not usable where most points of a scan have none.
+  // The whitened residual over the fitted frames up to `horizon` seconds after the start of each
+  // recording, and its Jacobian. Scanned points correspond to the nearest places of the surface in
+  // this prediction or, where `memory` has correspondences, to those. Not usable, with a message,
+  // where the simulation stops early or most points of a scan have no correspondence. The result
+  // depends on the arguments alone, so that several threads may predict at once. Throws
+  // Interrupted.
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
-                     double horizon = std::numeric_limits<double>::infinity()) const;
+                     double horizon = std::numeric_limits<double>::infinity(),
+                     FitMemory* memory = nullptr) const;
 
-  // Of each fitted recording, what its frames are compared with; empty: found while predicting, and
-  // left empty by a prediction that is not usable.
-  using Correspondences = std::vector<std::vector<Observed>>;
-  Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian, double horizon,
-                     Correspondences* correspondences) const;
-
-  // `directions` are those of each recording alike; without a Jacobian only the residual is there.
-  // Compared with what `same`, where given, was compared with.
+  // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
+  // the same for each recording. `same`: take the correspondences from there. Throws Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                              const std::vector<MisfitDirection>& directions = {},
                              const LinearisedMisfit* same = nullptr) const;
 
  private:
-  // Those errors, 3 × markers, m.
+  // The errors of the marker places as PlacesToldBy() has them, 3 × markers, m.
   std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
                                                   const Eigen::VectorXd& values) const;
-  // What a recording's Misfit is differentiated by: the places of the study's parameters,
-  // `further`, the recording's own nuisances; and those columns as ∂/∂(parameters), then by
-  // `further` of them.
-  std::vector<MisfitDirection> DirectionsFor(size_t recording,
+  // The directions in which a recording's Misfit is differentiated: each place of the study's
+  // parameters, then `further`, then the recording's own nuisances. ColumnsOf() gathers these
+  // columns into ∂/∂(parameters), followed by the `further` ones.
+  std::vector<MisfitDirection> DirectionsFor(const RecordingModel& model,
                                              const std::vector<MisfitDirection>& further) const;
   Eigen::MatrixXd ColumnsOf(size_t recording, const Eigen::Ref<const Eigen::MatrixXd>& by,
                             Eigen::Index further) const;
 
   std::vector<size_t> FittedRecordings() const;
-  // One recording's part of Predict() and of Linearise(), the model as it is set: recordings are
-  // predicted side by side. `compared_with`, where given: what its frames are; `observed` is what
-  // they were.
+  // The parts of Predict() and Linearise() for one recording; recordings are predicted side by
+  // side. `misfit` receives the misfit that the prediction was made from.
   Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
-                              double horizon, const std::vector<Observed>* compared_with,
-                              std::vector<Observed>* observed) const;
+                              double horizon, const PredictionHints& hints, Misfit* misfit) const;
   struct LinearisedRecording {
     std::string message;  // why it is not usable; empty: it is
     LinearisedMisfit::Part part;
@@ -135,7 +149,7 @@ class CalibrationProblem {
   std::vector<std::string> units_;            // of the parameters
   std::vector<Eigen::Index> first_nuisance_;  // −1 for a recording that is not fitted
   double noise_ = 0, scan_noise_ = 0;
-  bool estimates_noise_ = false;  // of markers, and there is nothing else
+  bool estimates_noise_ = false;  // of markers, where there are no scans
 };
 
 }  // namespace lacuna

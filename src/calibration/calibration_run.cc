@@ -183,8 +183,7 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   opened.values.resize(static_cast<Eigen::Index>(opened.record.parameters.size()));
   for (size_t k = 0; k < opened.record.parameters.size(); ++k)
     opened.values[static_cast<Eigen::Index>(k)] = opened.record.parameters[k].estimate.value;
-  for (size_t k = 0; k < opened.study.fitted.size(); ++k)
-    SetParameter(opened.study.fitted[k], opened.values[static_cast<Eigen::Index>(k)]);
+  opened.study.effects = WithValues(opened.study.effects, opened.study.fitted, opened.values);
   return opened;
 }
 

@@ -1,4 +1,4 @@
-// Runs the fit of a prediction study and keeps what it found in a run directory.
+// Runs the fit of a prediction study and keeps its result in a run directory.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_RUN_H_
 #define LACUNA_CALIBRATION_CALIBRATION_RUN_H_
 
@@ -12,25 +12,26 @@
 
 namespace lacuna {
 
-// The mesh stage and the calibration stage: calibration.json and misfit.csv (each marker or
-// patch of each frame: measured, difference). Throws InputError and Interrupted.
+// Runs the stages mesh and calibration, or reads back those that are up to date. They write
+// calibration.json and misfit.csv (the measured place and the difference of each marker or patch in
+// each frame). Throws InputError and Interrupted.
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress);
 
-// Of a finished run. Throws InputError.
+// The record of a finished run. Throws InputError where there is none.
 CalibrationRecord LoadCalibration(const std::filesystem::path& run);
 
-// A finished run, opened again: its experiment and recordings are read anew and must be what was
-// fitted.
+// A finished run that was opened again. Its experiment and recordings are read anew and must be
+// those that were fitted.
 struct FittedRun {
-  PredictionStudy study;  // its effects as they were fitted
+  PredictionStudy study;  // with its effects at the fitted values
   CalibrationRecord record;
   TetMesh mesh;
-  Eigen::VectorXd values;  // of all parameters
+  Eigen::VectorXd values;  // of all parameters of the problem
 };
 // Throws InputError when the folder is not that of a `lacuna fit`, the run is not finished or its
 // fit not usable, or when the experiment or a recording has changed since.
 FittedRun OpenRun(const std::filesystem::path& run);
-// Throws InputError when the folder is not there, no run, or one of another command.
+// Throws InputError when the folder does not exist, is not a run, or is a run of another command.
 void RefuseOtherRuns(const std::filesystem::path& run);
 
 }  // namespace lacuna

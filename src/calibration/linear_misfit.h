@@ -1,5 +1,5 @@
-// A linearised misfit as linear evidence takes it: rows whitened with their noise, parameters with
-// their priors.
+// A linearised misfit in the form that linear evidence takes (analysis/linear_evidence.h): rows
+// whitened by their noise, parameters with their priors.
 #ifndef LACUNA_CALIBRATION_LINEAR_MISFIT_H_
 #define LACUNA_CALIBRATION_LINEAR_MISFIT_H_
 
@@ -12,36 +12,37 @@
 
 namespace lacuna {
 
-// Priors of the problem's parameters as changes from `values`, per unit of the parameter (also
-// where they are searched on a logarithmic scale).
+// The priors of the problem's parameters, expressed as changes from `values` in units of the
+// parameter, also where a parameter is fitted on a logarithmic scale.
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values);
 
-// `values` after such changes, within the parameters' bounds; a parameter on a logarithmic scale by
-// their exponential.
+// `values` after such changes, kept within the parameters' bounds. A parameter on a logarithmic
+// scale is multiplied by the exponential of its relative change.
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
-// Rows of a linearised misfit, whitened recording by recording with its errors; of the frames that
-// were fitted, or of all.
+// Rows of a linearised misfit, whitened with the measurement errors of their recording.
+// `fitted_only`: rows of frames that were not fitted become 0.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
                              double correlation_time, bool fitted_only);
 
-// The noise that hypotheses are weighed with.
+// The noise level with which hypotheses are compared.
 struct NoiseLevel {
   double correlation_time = 0;  // s
   double variance = 1;          // of the whitened rows
 };
 
-// The noise of a study, as what `left` (rows, m) is if it is noise: correlated as it is, and as
-// large, but of no smaller variance than `least` times the study's.
+// The noise level that a residual `left` (rows, m) implies if all of it is noise: its correlation
+// time and its variance, which is at least `least` times that of the study.
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
                    Eigen::Index parameters, double least);
 
-// Rows that were observed.
+// The number of rows that were observed.
 Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
 
-// √ of the mean square of the observed rows that were held out (all where none were), in σ.
+// The rms of the whitened rows that were observed and held out (of all rows where none were held
+// out).
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);
 
 }  // namespace lacuna

@@ -103,7 +103,7 @@ std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStud
 std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only) {
-  PredictionStudy study = problem.AsChosen();
+  PredictionStudy study = problem.WithEstimatedNoise();
   study.time_step *= kLongSteps;
   const double ratio = RatioFor(problem);
   const auto fine_problem = WithFinerElements(study, ratio);
@@ -139,7 +139,6 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
       length /= 2;
     }
   }
-  problem.SetModel(values);  // other models share its effects
   if (!is_finer) return std::nullopt;
   return finer;
 }

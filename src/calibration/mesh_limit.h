@@ -1,4 +1,4 @@
-// What a study's mesh changes, against finer ones.
+// The discretisation error of a study's mesh, estimated with a finer mesh.
 #ifndef LACUNA_CALIBRATION_MESH_LIMIT_H_
 #define LACUNA_CALIBRATION_MESH_LIMIT_H_
 
@@ -10,37 +10,38 @@
 
 namespace lacuna {
 
-// Elements with a part of the volume, and the parameters with which they move as the study's do.
+// A finer mesh, and the parameters with which it moves like the study's own mesh.
 //
-// Coarse elements are stiff, and what swings is then fitted with a lower modulus. With the same
-// parameters on both meshes the two motions part in phase, by more the longer they last: no
-// difference of two such motions can be scaled, or added to a third. With other parameters, sought
-// by Gauss–Newton steps with the study's own derivatives, they stay together, and what no parameter
-// can do is small.
+// Coarse elements are too stiff, so that a vibration is fitted with a modulus that is too low. With
+// the same parameters on both meshes the two motions drift apart in phase, and their difference
+// cannot be scaled or added to a third motion. With parameters of its own, found by Gauss–Newton
+// steps with the derivatives of the study's mesh, the finer mesh stays in phase, and the difference
+// that remains is small.
 struct FinerMesh {
-  double ratio = 0;  // how many times smaller the volume is
+  double ratio = 0;  // by which the volume of the elements is smaller
   TetMesh mesh;
-  Eigen::VectorXd change;  // of the parameters there (MovedBy)
+  Eigen::VectorXd change;  // of the parameters, against the study's (MovedBy)
 
-  // Parts of what this mesh changes: to elements as fine as can be, and to others between.
+  // Factors by which the change is to be multiplied for the limit of infinitely fine elements, and
+  // for elements of another ratio.
   double ToLimit() const;
   double ToRatio(double other) const;
 };
 
-// `misfit`: at `values`, with the parameters' derivatives. `fitted_only`: the motion in the frames
-// that were fitted. Nothing where there are no finer elements, as of a mesh that was given, or
-// where they cannot be simulated. Throws Interrupted.
+// `misfit`: at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted frames
+// alone. Returns nothing where there is no finer mesh, as for a mesh that was given, or where it
+// cannot be simulated. Throws Interrupted.
 std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);
 
-// The study with elements of so many times less volume; null where its shape cannot be meshed so.
-// The study must outlive it.
+// The problem with elements whose volume is smaller by this ratio; null where the shape cannot be
+// meshed so finely. The study must outlive it.
 std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
                                                             double ratio);
 
-// What the study, fitted to `values`, would be fitted to with elements as fine as can be; nothing
-// as above.
+// The values to which the study, fitted to `values`, would be fitted with infinitely fine elements.
+// Returns nothing where MakeFinerMesh does.
 std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
                                            const Eigen::VectorXd& values);
 

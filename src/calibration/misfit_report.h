@@ -1,4 +1,4 @@
-// What is kept of a fit's misfits beside their sizes.
+// What a fit keeps of its misfits: a table of all points, and the conflicts with priors.
 #ifndef LACUNA_CALIBRATION_MISFIT_REPORT_H_
 #define LACUNA_CALIBRATION_MISFIT_REPORT_H_
 
@@ -11,18 +11,18 @@
 
 namespace lacuna {
 
-// misfit.csv: every point of every frame, measured place and predicted − measured, m. The
-// difference of a patch is its error times the surface's normal, its place the mean of its scanned
-// points.
+// misfit.csv: for every point in every frame, the measured place and predicted − measured, m. The
+// place of a patch is the mean of its scanned points, and its difference is along the surface
+// normal.
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits);
 
-// What the fit took for granted against its prior, in sentences: points far from where the
-// recording has them, a clock or a hold far from what was allowed, scans that lose the model.
+// Conflicts of the fit with its priors, as sentences: points far from their given places, a clock
+// or a holding force far outside its prior, scans that lose the model.
 std::vector<std::string> Strains(const CalibrationProblem& problem,
                                  const std::vector<RecordingMisfit>& misfits);
 
-// Of a recording of scans, σ being the noise of one scanned point.
+// A summary of how a recording of scans was used. `noise`: σ of one scanned point, m.
 FittedScan DescribeScan(const RecordingMisfit& misfit, const Eigen::Matrix3Xd& places,
                         double noise);
 

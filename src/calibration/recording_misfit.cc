@@ -36,17 +36,17 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   return measure;
 }
 
-// The model as it is set. `places`: the markers' offsets, where another recording tells them.
+// `places`: the markers' offsets, where another recording has determined them.
 RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
                          const std::optional<Eigen::MatrixXd>& places) {
-  const RecordingModel& model = problem.models()[r];
+  const RecordingModel model = problem.ModelAt(r, values);
   const PredictedRecording& item = model.item();
   const MeasurementErrors errors = problem.ErrorsOf(model);
   RecordingMisfit recording;
   recording.name = item.name;
   recording.nuisance =
       item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, places);
-  recording.misfit = model.Predict(item.frames, recording.nuisance, {});
+  recording.misfit = model.Predict(item.frames, recording.nuisance);
   // Of a recording that is not fitted, only what it shows before it moves tells the places, where
   // no fitted one does.
   std::vector<char> tells_places;
@@ -69,7 +69,6 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
 
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values) {
-  problem.SetModel(values);
   std::vector<RecordingMisfit> all(problem.models().size());
   // Those first that tell the others where their markers are.
   for (const bool is_told : {false, true}) {

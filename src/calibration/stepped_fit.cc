@@ -36,12 +36,12 @@ struct StepCheck {
 StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                     Progress* progress) {
   progress->Begin("time step", 0);
-  PredictionStudy half = problem.AsChosen();
+  PredictionStudy half = problem.WithEstimatedNoise();
   half.time_step /= 2;
   const CalibrationProblem refined(half, problem.body()->mesh);
   // Compared with the same points of scans: the difference is that of the predictions.
   constexpr double kWhole = std::numeric_limits<double>::infinity();
-  CalibrationProblem::Correspondences same;
+  CalibrationProblem::FitMemory same;
   const Prediction now = problem.Predict(values, false, kWhole, &same);
   const Prediction then = now.usable ? refined.Predict(values, false, kWhole, &same) : now;
   StepCheck check;
@@ -65,7 +65,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
     {
       const CalibrationProblem problem(*study, mesh);
       beginning = FitBeginning(problem, problem.Start(), progress);
-      further = problem.AsChosen();
+      further = problem.WithEstimatedNoise();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
     }
@@ -93,7 +93,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
         if (check.Share() == 1) return fit;
       }
       if (tried == kMostSteps) return fit;
-      further = problem.AsChosen();
+      further = problem.WithEstimatedNoise();
     }
     further.time_step *= check.Share();
     *study = std::move(further);

@@ -1,4 +1,4 @@
-// The fit of a study with a time step as short as its recordings ask for.
+// The fit of a study whose time step is adapted to its recordings.
 #ifndef LACUNA_CALIBRATION_STEPPED_FIT_H_
 #define LACUNA_CALIBRATION_STEPPED_FIT_H_
 
@@ -11,15 +11,14 @@ namespace lacuna {
 
 struct SteppedFit {
   Calibration calibration;
-  // By how much half the step would change the predicted frames that are fitted, rms of their
-  // components, in σ. Three quarters of the step's error where that goes with its square, half of
-  // it in schemes of first order.
+  // The change of the fitted frames when the step is halved: rms of their components, in σ. It is
+  // three quarters of the step's error for a scheme of second order, half of it for one of first.
   double step_error = 0;
 };
 
-// CalibrationProblem::FitFromStart. Where the study leaves its step open, it is shortened until
-// step_error is below a part of the noise or of what the model leaves, and the fit goes on from
-// where it was. `study`: gets the step that was chosen.
+// FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
+// step_error is small against the noise or the model's residual, and the fit continues from where
+// it was. `study` receives the step that was chosen. Throws Interrupted.
 SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
 
 }  // namespace lacuna

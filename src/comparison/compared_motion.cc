@@ -73,12 +73,11 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     return without(error.what());
   }
   const CalibrationProblem problem(fitted.study, fitted.mesh);
-  problem.SetModel(fitted.values);
   progress->Begin("replay", static_cast<int64_t>(comparison->recordings.size()));
   for (size_t r = 0; r < comparison->recordings.size(); ++r) {
     ThrowIfInterrupted();
     ComparedRecording& recording = comparison->recordings[r];
-    const RecordingModel& model = problem.models()[r];
+    const RecordingModel model = problem.ModelAt(r, fitted.values);
     if (model.Markers() == nullptr) {
       without(recording.name + " is a recording of scans");
       continue;

@@ -34,8 +34,8 @@ Eigen::MatrixXd SmoothForce::Shapes() const {
   return shapes;
 }
 
-std::vector<std::shared_ptr<Effect>> SmoothForce::Effects() const {
-  std::vector<std::shared_ptr<Effect>> effects;
+EffectList SmoothForce::Effects() const {
+  EffectList effects;
   for (int c = 0; c < kModes; ++c)
     effects.push_back(std::make_shared<PrescribedForce>(
         node_mass.cwiseProduct(modes.col(c)), [force = *this, c](double time) -> Eigen::Vector3d {

@@ -38,7 +38,7 @@ struct SmoothForce {
   // Nodal forces of unit amplitudes, 3n × 6, N per m/s².
   Eigen::MatrixXd Shapes() const;
   // The force as effects of a model; refers to nothing of this.
-  std::vector<std::shared_ptr<Effect>> Effects() const;
+  EffectList Effects() const;
 };
 
 // Without force, with `knots` knots from `start` to `end`.

@@ -255,7 +255,7 @@ std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
   return {{"", {}}};
 }
 
-Eigen::Vector3d GravityOf(const std::vector<std::shared_ptr<Effect>>& effects) {
+Eigen::Vector3d GravityOf(const EffectList& effects) {
   for (const auto& effect : effects)
     if (effect->Card().type == "gravity") return effect->Parameters();
   return Eigen::Vector3d::Zero();
@@ -348,7 +348,7 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
     if (std::count(setting.without.begin(), setting.without.end(), law.name) > 0) continue;
     Eigen::VectorXd values = law.effect->Parameters();
     values[0] = law.effect->Card().parameters[0].null_value;
-    candidates.push_back({law.name, "", WithParameters(*law.effect, values), {0}});
+    candidates.push_back({law.name, "", law.effect->WithParameters(values), {0}});
   }
   return candidates;
 }

@@ -28,9 +28,9 @@ struct VariantPosition {
 bool AreNeighbours(const VariantPosition& a, const VariantPosition& b);
 
 struct CandidateEffect {
-  std::string type;                // of the effect
-  std::string variant;             // "τ = 0.3 s", "at the tip"; empty where there is one only
-  std::shared_ptr<Effect> effect;  // at its null value; a pilot's at its pilot setting
+  std::string type;     // of the effect
+  std::string variant;  // "τ = 0.3 s", "at the tip"; empty where there is one only
+  std::shared_ptr<const Effect> effect;  // at its null value; a pilot's at its pilot setting
   // The parameters that make its size: one, or the three components of a vector. Empty: a pilot,
   // which has no derivative at its null value (pilot_hypotheses.h); its one amount is the share of
   // what the pilot setting changes, 1 there.
@@ -66,7 +66,7 @@ struct CandidateSetting {
   const Body& body;
   // The model's effects, the material first: what effects take from the material, gravity, and
   // which effects it has already.
-  const std::vector<std::shared_ptr<Effect>>& effects;
+  const EffectList& effects;
   double time_step = 0;  // s: of the simulation,
   double duration = 0;   // s: and of the recording; relaxation times lie between them
   std::vector<std::string> without = {};  // types that are not wanted

@@ -15,8 +15,8 @@
 namespace lacuna {
 namespace {
 
-// What a diagnosis needs everywhere.
-struct Setting {
+// What all steps of a diagnosis share.
+struct DiagnosisSetting {
   const DiagnosisOptions& options;
   Progress* progress;
   RefitStore* kept;
@@ -24,7 +24,7 @@ struct Setting {
 
 // The study, restricted to the first part of each fitted recording.
 PredictionStudy EarlyPart(const CalibrationProblem& problem) {
-  PredictionStudy early = problem.AsChosen();
+  PredictionStudy early = problem.WithEstimatedNoise();
   for (PredictedRecording& item : early.recordings) {
     const std::vector<double>& times = item.recording.times;
     const double start = item.StartTime();
@@ -36,10 +36,9 @@ PredictionStudy EarlyPart(const CalibrationProblem& problem) {
   return early;
 }
 
-// The effects ranked along a fit of the early part; none if that cannot be fitted. Leaves the
-// effects of the study at `values`.
+// The effects ranked along a fit of the early part; none if that cannot be fitted.
 std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
-                                    const Eigen::VectorXd& values, const Setting& setting) {
+                                    const Eigen::VectorXd& values, const DiagnosisSetting& setting) {
   const PredictionStudy early = EarlyPart(problem);
   const CalibrationProblem of_early(early, problem.body()->mesh);
   const Calibration first = FitFromStart(of_early, setting.progress);
@@ -47,7 +46,6 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   if (first.parameters.size() == values.size())
     found =
         RankEffects(of_early, first.parameters, setting.progress, setting.options.without).effects;
-  problem.SetModel(values);
   return found;
 }
 
@@ -62,7 +60,7 @@ bool IsStepTooLong(const EffectRanking& ranking) {
 }
 
 Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                         EffectRanking ranking, const Setting& setting) {
+                         EffectRanking ranking, const DiagnosisSetting& setting) {
   const DiagnosisOptions& options = setting.options;
   Diagnosis diagnosis;
   diagnosis.noise = problem.noise();
@@ -96,18 +94,17 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
     diagnosis.instead = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
     DecideAgainstNuisances(&diagnosis);
   }
-  problem.SetModel(fitted);
   return diagnosis;
 }
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const Setting& setting);
+                               int halvings, const DiagnosisSetting& setting);
 
 // Fits and diagnoses the study with half the time step; nothing if that cannot be fitted.
 std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& fitted, int halvings,
-                                              const Setting& setting) {
-  PredictionStudy study = problem.AsChosen();
+                                              const DiagnosisSetting& setting) {
+  PredictionStudy study = problem.WithEstimatedNoise();
   study.time_step /= 2;
   setting.progress->Begin("time step", 0);
   setting.progress->End(
@@ -116,13 +113,11 @@ std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
   const CalibrationProblem shorter(study, problem.body()->mesh);
   const Calibration fit = FitOn(shorter, fitted, setting.progress);
   if (fit.parameters.size() != fitted.size()) return std::nullopt;
-  Diagnosis diagnosis = DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting);
-  problem.SetModel(fitted);
-  return diagnosis;
+  return DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting);
 }
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const Setting& setting) {
+                               int halvings, const DiagnosisSetting& setting) {
   EffectRanking ranking = RankEffects(problem, fitted, setting.progress, setting.options.without);
   if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking))
     if (auto diagnosis = DiagnoseWithHalfStep(problem, fitted, halvings, setting))

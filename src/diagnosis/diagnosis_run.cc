@@ -57,13 +57,13 @@ json SettingsOf(const Diagnosis& diagnosis) {
 }
 
 // An effect of the catalogue, or one of the user's laws; null: there is none with such values.
-std::shared_ptr<Effect> MadeFrom(const PredictionStudy& study, const std::string& type,
-                                 const Eigen::VectorXd& values) {
+std::shared_ptr<const Effect> MadeFrom(const PredictionStudy& study, const std::string& type,
+                                       const Eigen::VectorXd& values) {
   const auto fits = [&](const EffectCard& card) {
     return static_cast<Eigen::Index>(card.parameters.size()) == values.size();
   };
   for (const OwnLaw& law : study.candidates)
-    if (law.name == type && fits(law.effect->Card())) return WithParameters(*law.effect, values);
+    if (law.name == type && fits(law.effect->Card())) return law.effect->WithParameters(values);
   const CatalogueEntry* entry = FindEntry(type);
   return entry != nullptr && entry->make != nullptr && fits(*entry->card) ? entry->make(values)
                                                                           : nullptr;
@@ -109,7 +109,6 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
                        {"settings", SettingsOf(diagnosis)}};
   WriteFileAtomically(OriginFile(run), origin.dump(2) + "\n");
   kept.Drop();
-  problem.SetModel(fitted.values);
   return ReadDiagnosisFile(ResultFile(run));
 }
 

@@ -106,8 +106,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
                                      const Eigen::VectorXd& values,
                                      const std::vector<std::string>& without)
     : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
-  const PredictionStudy& study = problem.study();
-  problem.SetModel(values);  // the effects as fitted: candidates take moduli from them
+  const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
   candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
                                 without, study.candidates});
   const GripMotions grips = MakeGripMotions(problem);

@@ -173,11 +173,10 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
 FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without) {
-  const PredictionStudy study = WithEffect(baseline.problem.AsChosen(), effect);
+  const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
   const EffectRanking ranking =
       RankEffects(with, refit.calibration.parameters, baseline.progress, without);
-  baseline.problem.SetModel(baseline.values);
   FurtherEvidence best;
   const auto other = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),
@@ -272,7 +271,7 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
   const LinearisedMisfit& misfit = baseline.misfit;
   const ExtendedProblem extended(baseline, effect, adopted);
-  const CalibrationProblem with = extended.Fresh();
+  const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
   EffectRefit refit;
   refit.calibration =
@@ -288,7 +287,7 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
     refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
     refit.errors = ErrorsOf(with, refit.calibration.parameters);
     if (effect != nullptr) {
-      refit.effect = extended.OwnEffect().Parameters();
+      refit.effect = extended.OwnParameters(refit.calibration.parameters);
       refit.sizes = extended.SizesIn(refit.calibration);
       refit.others = extended.OthersIn(refit.calibration);
     }
@@ -302,8 +301,6 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                                            std::move(refit.hypothesis));
     }
   }
-  // The refit has changed effects that both models share.
-  baseline.problem.SetModel(baseline.values);
   return refit;
 }
 

@@ -78,8 +78,7 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const std::vector<TriedVariant>& tried, const std::string& type,
                                   const NoiseLevel& noise);
 
-// With a new ranking along the motion of the refitted model. Leaves the effects of the study at the
-// values of the baseline. Throws Interrupted.
+// With a new ranking along the motion of the refitted model. Throws Interrupted.
 FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without);
@@ -102,8 +101,8 @@ enum class RefitFrom { kFirstOrder, kFixedSize };
 // Fits the baseline with the effect and the adopted nuisances. Null `effect`: with the nuisances
 // alone, so that the baseline is compared at its best too. `is_far_off` says that the baseline is
 // far from the measurements: a refit that has not converged is then repeated from the result of an
-// independent fit of the model with the effect. A failed fit gives a message. Leaves the effects of
-// the study at the values of the baseline. Throws Interrupted.
+// independent fit of the model with the effect. A failed fit gives a message. Refits of one
+// baseline may run in several threads. Throws Interrupted.
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off,
                   RefitFrom from = RefitFrom::kFirstOrder);

@@ -45,14 +45,14 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
 
 // The null value of a parameter that makes the effect's size; nothing for another parameter.
 std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& parameter) {
-  const auto [effect, index] = parameter.places.front();
+  const int index = parameter.places.front().index;
   const std::vector<int>& amplitude = scored.candidate.amplitude;
   if (std::count(amplitude.begin(), amplitude.end(), index) == 0) return std::nullopt;
-  return effect->Card().parameters[index].null_value;
+  return scored.candidate.effect->Card().parameters[index].null_value;
 }
 
 PredictionStudy Extended(const BaselineModel& baseline, const ScoredVariant* effect) {
-  const PredictionStudy study = baseline.problem.AsChosen();
+  const PredictionStudy study = baseline.problem.StudyAt(baseline.values);
   return effect != nullptr ? WithEffect(study, *effect) : study;
 }
 
@@ -87,8 +87,9 @@ ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVari
   }
 }
 
-const Effect& ExtendedProblem::OwnEffect() const {
-  return effect_->candidate.replaces_material ? *study_.effects.front() : *study_.effects.back();
+Eigen::VectorXd ExtendedProblem::OwnParameters(const Eigen::VectorXd& values) const {
+  const EffectList effects = WithValues(study_.effects, study_.fitted, values);
+  return (effect_->candidate.replaces_material ? effects.front() : effects.back())->Parameters();
 }
 
 std::vector<ParameterEstimate> ExtendedProblem::SizesIn(const Calibration& calibration) const {
@@ -185,10 +186,10 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
 Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                                            bool holds_effect) const {
   const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
-  const CalibrationProblem with = Fresh();
+  CalibrationProblem::FitMemory memory;
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
-    const Prediction prediction = Predict(with, at, with_jacobian);
+    const Prediction prediction = Predict(at, with_jacobian, &memory);
     baseline_.progress->Report(
         ++evaluations, prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
     return prediction;
@@ -204,15 +205,16 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
-  return Kept("afresh", with_.parameters(), [&] {
-    const CalibrationProblem with = Fresh();
-    return FitFrom(with, with.Start(), baseline_.progress);
-  });
+  return Kept("afresh", with_.parameters(),
+              [&] { return FitFrom(with_, with_.Start(), baseline_.progress); });
 }
 
-Prediction ExtendedProblem::Predict(const CalibrationProblem& with, const Eigen::VectorXd& at,
-                                    bool with_jacobian) const {
-  Prediction prediction = with.Predict(at.head(own_), with_jacobian);
+Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
+                                    CalibrationProblem::FitMemory* memory) const {
+  CalibrationProblem::FitMemory of_one;
+  CalibrationProblem::FitMemory& known = memory != nullptr ? *memory : of_one;
+  known.correspondences.clear();  // each prediction finds its own
+  Prediction prediction = with_.Predict(at.head(own_), with_jacobian, kInfinity, &known);
   if (!prediction.usable) return prediction;
   prediction.residual += nuisance_columns_ * at.tail(at.size() - own_);
   if (with_jacobian) {
@@ -223,7 +225,7 @@ Prediction ExtendedProblem::Predict(const CalibrationProblem& with, const Eigen:
 }
 
 double ExtendedProblem::ResidualNorm(const Eigen::VectorXd& at) const {
-  const Prediction prediction = Predict(with_, at, /*with_jacobian=*/false);
+  const Prediction prediction = Predict(at, /*with_jacobian=*/false);
   return prediction.usable ? prediction.residual.norm() : kInfinity;
 }
 

@@ -39,12 +39,11 @@ class ExtendedProblem {
   ExtendedProblem(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted);
 
-  // A problem without past predictions. A prediction starts its solver from the previous one, on
-  // which its last digits therefore depend; so each fit has a problem of its own, and gives the
-  // same bits whether earlier fits were made or read back.
-  CalibrationProblem Fresh() const { return {study_, baseline_.problem.body()->mesh}; }
-  // The added effect, with the values of the last prediction.
-  const Effect& OwnEffect() const;
+  // The model with the effect, without the amounts of the adopted nuisances.
+  const CalibrationProblem& problem() const { return with_; }
+  // The parameters of the effect, in the order of its card, at these values of the problem's
+  // parameters.
+  Eigen::VectorXd OwnParameters(const Eigen::VectorXd& values) const;
   // Number of parameters without the amounts of the adopted nuisances.
   Eigen::Index OwnCount() const { return own_; }
   // The estimates of the parameters that make the effect's size, and of its other fitted
@@ -76,8 +75,8 @@ class ExtendedProblem {
                    const std::function<Calibration()>& fit) const;
   std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
                     const std::string& purpose) const;
-  Prediction Predict(const CalibrationProblem& with, const Eigen::VectorXd& at,
-                     bool with_jacobian) const;
+  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian,
+                     CalibrationProblem::FitMemory* memory = nullptr) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
   // The baseline's values moved by a share of the way to `target`, and the effect by the same share
   // of the way from its null value to its start.

@@ -11,16 +11,15 @@
 namespace lacuna {
 namespace {
 
-void ReplaceMaterial(const std::shared_ptr<Effect>& law, PredictionStudy* study) {
-  const std::shared_ptr<Effect> before = study->effects.front();
+void ReplaceMaterial(const std::shared_ptr<const Effect>& law, PredictionStudy* study) {
+  const std::shared_ptr<const Effect> before = study->effects.front();
   study->effects.front() = law;
   for (ModelParameter& parameter : study->fitted) {
     for (auto& [effect, index] : parameter.places) {
-      if (effect != before) continue;
+      if (effect != 0) continue;
       const std::string& name = before->Card().parameters[index].name;
       index = ParameterIndex(law->Card(), name);
       CHECK_GE(index, 0) << law->Card().type << " has no " << name;
-      effect = law;
     }
   }
 }
@@ -82,12 +81,12 @@ PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffec
 
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored) {
   CandidateEffect own = scored.candidate;
-  own.effect = WithParameters(*own.effect, StartOf(scored));
+  own.effect = own.effect->WithParameters(StartOf(scored));
   PredictionStudy with = WithCandidate(study, own);
   if (own.replaces_material) return with;
   for (ModelParameter& parameter : ModelParameters(with.effects)) {
-    if (parameter.places.front().first == own.effect) {
-      const int index = parameter.places.front().second;
+    if (parameter.places.front().effect + 1 == with.effects.size()) {
+      const int index = parameter.places.front().index;
       const ParameterCard& card = own.effect->Card().parameters[index];
       CalibratedParameter& prior = parameter.prior;
       if (own.IsPilot()) {

@@ -77,7 +77,6 @@ std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context) {
   ForEach<ModelNuisance>([&](const NuisanceCard& card, ModelNuisance make) {
     if (auto candidate = make(context)) Add(card, *std::move(candidate), &candidates);
   });
-  context.problem.SetModel(context.values);  // the changed models share its effects
   return candidates;
 }
 

@@ -41,9 +41,8 @@ struct RecordingContext {
   Eigen::Index Frames() const { return static_cast<Eigen::Index>(part.layout.times.size()); }
   // A column with value(frame, series) in the rows of this recording and 0 elsewhere.
   Eigen::VectorXd Column(const std::function<double(Eigen::Index frame, int series)>& value) const;
-  // How a row changes if the frame moves rigidly about the object's centre: by a shift along
-  // axis 0, 1, 2 (per m) or a rotation about axis 3, 4, 5 (per rad). 0: not
-  // observed.
+  // The change of a row if the frame moves rigidly: by a shift along axis 0, 1 or 2 (per m), or a
+  // rotation about axis 3, 4 or 5 through the centre (per rad). 0 if the row was not observed.
   double RigidChange(Eigen::Index frame, int series, int axis) const;
 };
 

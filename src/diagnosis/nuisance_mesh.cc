@@ -39,7 +39,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const std::optional<FinerMesh> finer =
       MakeFinerMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false);
   if (!finer) return std::nullopt;
-  const PredictionStudy study = at.problem.AsChosen();
+  const PredictionStudy study = at.problem.WithEstimatedNoise();
   const auto residual = [&](const CalibrationProblem& finer_problem, double ratio) {
     const Eigen::VectorXd change = finer->ToRatio(ratio) * finer->change;
     return finer_problem.Linearise(MovedBy(at.problem.parameters(), at.values, change), false)

@@ -32,7 +32,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   Eigen::Vector3d centre = mesh.nodes.rowwise().mean();
   if (!model.grips.empty() && model.grips.front().nodes.size() > 0)
     centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
-  const PredictionStudy study = at.problem.AsChosen();
+  const PredictionStudy study = at.problem.WithEstimatedNoise();
   const Eigen::VectorXd& residual = at.misfit.residual;
   NuisanceCandidate candidate;
   candidate.columns = Eigen::MatrixXd::Zero(residual.size(), 3);

@@ -46,7 +46,7 @@ double ChangePerHalving(TimeScheme scheme, const Eigen::VectorXd& whole,
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const auto with_steps = [&](double ratio) {
-    PredictionStudy study = at.problem.AsChosen();
+    PredictionStudy study = at.problem.WithEstimatedNoise();
     study.time_step /= ratio;
     return CalibrationProblem(study, at.problem.body()->mesh).Linearise(at.values, false).residual;
   };

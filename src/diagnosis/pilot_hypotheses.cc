@@ -73,8 +73,7 @@ std::vector<CandidateEffect> OtherLaws(const Effect& material) {
 
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           const LinearisedMisfit& misfit, const std::vector<std::string>& without) {
-  problem.SetModel(values);
-  const PredictionStudy study = problem.AsChosen();
+  const PredictionStudy study = problem.StudyAt(values);
   const Effect& material = *study.effects.front();
   const auto is_wanted = [&](const std::string& type) {
     return std::count(without.begin(), without.end(), type) == 0;
@@ -112,7 +111,6 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
         [&, type = type](const PilotHypothesis& pilot) { return pilot.candidate.type == type; });
     if (!tried) pilots.untried.push_back({type, why});
   }
-  problem.SetModel(values);  // the pilots share its effects
   return pilots;
 }
 

@@ -36,8 +36,8 @@ struct PilotHypotheses {
 // Tries contact with the planes that the predicted body crosses and the measured one does not
 // (plane_proposals.h), also with friction on the most deeply crossed one, and each other elasticity
 // law of the catalogue that can take over the moduli of the model. Types in `without` are left out.
-// `misfit` belongs to the model at `values`; the effects of the study are left at these values. A
-// pilot that cannot be simulated is reported in `untried`. Throws Interrupted.
+// `misfit` belongs to the model at `values`. A pilot that cannot be simulated is reported in
+// `untried`. Throws Interrupted.
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           const LinearisedMisfit& misfit, const std::vector<std::string>& without);
 

@@ -138,7 +138,6 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
 std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
                                          const LinearisedMisfit& misfit) {
-  problem.SetModel(values);
   std::vector<Eigen::Matrix3Xd> displacements;
   Eigen::Vector3d largest = Eigen::Vector3d::Zero();
   double noise = 0;
@@ -173,8 +172,8 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
   Reach of_body(of_points.directions(Eigen::all, crossed));
   for (size_t p = 0; p < misfit.parts.size(); ++p) {
     const size_t recording = misfit.parts[p].recording;
-    AddBody(problem.models()[recording], problem.NuisanceOf(recording, values), displacements[p],
-            &of_body);
+    AddBody(problem.ModelAt(recording, values), problem.NuisanceOf(recording, values),
+            displacements[p], &of_body);
   }
   for (Eigen::Index k = 0; k < of_body.directions.cols(); ++k) {
     const double crossing = of_body.model[k] - of_body.object[k];

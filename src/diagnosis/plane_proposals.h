@@ -23,8 +23,7 @@ struct ProposedPlane {
 
 // Looks along both directions of the coordinate axes and of gravity, and along the largest
 // residual, in the fitted recordings; nodes held by a grip do not count. The most deeply crossed
-// plane comes first; none if none is crossed. `misfit` belongs to the model at `values`, at which
-// the effects of the study are left.
+// plane comes first; none if none is crossed. `misfit` belongs to the model at `values`.
 std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
                                          const LinearisedMisfit& misfit);

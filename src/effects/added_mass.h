@@ -28,7 +28,7 @@ class AddedMass : public Effect {
   std::optional<double> Energy(const Kinematics& at) const override;
 
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override;
+  void SetParameters(const Eigen::VectorXd& values);
 
  protected:
   // μ: kg per unit of θ at each node (n), from the other parameters and the body at rest.

@@ -11,13 +11,14 @@
 #include "effects/added_mass.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
-class AttachedMassEffect final : public AddedMass {
+class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, AddedMass> {
  public:
   enum Parameter { kAddedMass, kCentre, kRadius = kCentre + 3 };
 
@@ -80,7 +81,7 @@ class AttachedMassEffect final : public AddedMass {
 
 CatalogueEntry AttachedMass() {
   return {&AttachedMassEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<AttachedMassEffect>(parameters);
           },
           &ReadParameters};

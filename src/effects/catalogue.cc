@@ -74,8 +74,8 @@ const std::vector<CatalogueEntry>& Catalogue() {
 
 namespace {
 
-std::shared_ptr<Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string& key,
-                                   const Config& config, const Effect* material) {
+std::shared_ptr<const Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::string& key,
+                                         const Config& config, const Effect* material) {
   std::vector<std::pair<std::string, const CatalogueEntry*>> choices;
   for (const CatalogueEntry& entry : Catalogue()) {
     if (entry.kind == kind) choices.emplace_back(entry.card->type, &entry);
@@ -127,23 +127,16 @@ int ParameterIndex(const EffectCard& card, const std::string& name) {
   return -1;
 }
 
-std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material) {
+std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material) {
   return MakeOfKind(CatalogueEntry::Kind::kEffect, "type", config, material);
 }
 
-std::shared_ptr<Effect> WithParameters(const Effect& effect, const Eigen::VectorXd& parameters) {
-  const CatalogueEntry* entry = FindEntry(effect.Card().type);
-  CHECK(entry != nullptr) << effect.Card().type;
-  return entry->make != nullptr ? entry->make(parameters)
-                                : entry->with_parameters(effect, parameters);
-}
-
-std::shared_ptr<Effect> MakeMaterial(const Config& config) {
+std::shared_ptr<const Effect> MakeMaterial(const Config& config) {
   return MakeOfKind(CatalogueEntry::Kind::kMaterial, "law", config, nullptr);
 }
 
-std::shared_ptr<Effect> MakeEffect(const std::string& type,
-                                   const std::map<std::string, double>& parameters) {
+std::shared_ptr<const Effect> MakeEffect(const std::string& type,
+                                         const std::map<std::string, double>& parameters) {
   const CatalogueEntry* entry = FindEntry(type);
   CHECK(entry != nullptr) << "no effect is called " << type;
   CHECK(entry->make != nullptr) << type << " is made from YAML alone";

@@ -24,18 +24,15 @@ struct CatalogueEntry {
   const EffectCard* card = nullptr;
   Kind kind = Kind::kEffect;
   // From parameter values in the order of the card, SI.
-  std::shared_ptr<Effect> (*make)(const Eigen::VectorXd& parameters) = nullptr;
+  std::shared_ptr<const Effect> (*make)(const Eigen::VectorXd& parameters) = nullptr;
   // The parameter values of a YAML mapping. `material`: the body's elasticity law, from which an
   // effect may take what its own mapping leaves out; may be null.
   Eigen::VectorXd (*read)(const EffectCard& card, const Config& config,
                           const Effect* material) = nullptr;
   // In place of `make` and `read`, which are then null: an effect that is more than its numbers and
   // whose card is its own, of the same type as `card`.
-  std::shared_ptr<Effect> (*make_from_yaml)(const Config& config) = nullptr;
-  // Of such an effect: the same with other parameter values, and the mapping that is read back to
-  // it.
-  std::shared_ptr<Effect> (*with_parameters)(const Effect& effect,
-                                             const Eigen::VectorXd& parameters) = nullptr;
+  std::shared_ptr<const Effect> (*make_from_yaml)(const Config& config) = nullptr;
+  // The mapping that is read back to such an effect.
   std::string (*format)(const Effect& effect) = nullptr;
 };
 
@@ -50,25 +47,21 @@ int ParameterIndex(const EffectCard& card, const std::string& name);
 
 // The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes. Throws InputError at the key
 // when the type is unknown or a parameter is missing, has the wrong unit or is out of bounds.
-std::shared_ptr<Effect> MakeEffect(const Config& config, const Effect* material = nullptr);
+std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material = nullptr);
 
 // The elasticity law that `{law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}`
 // describes. Throws like MakeEffect.
-std::shared_ptr<Effect> MakeMaterial(const Config& config);
+std::shared_ptr<const Effect> MakeMaterial(const Config& config);
 
 // An effect from parameters by name, SI; a parameter left out takes the card's default. A name that
 // the catalogue or the card does not have, an effect that YAML alone describes, or a parameter
 // without value, is our own mistake (CHECK).
-std::shared_ptr<Effect> MakeEffect(const std::string& type,
-                                   const std::map<std::string, double>& parameters);
-
-// The same effect with other parameter values, in the order of its card; of an effect that the
-// catalogue makes.
-std::shared_ptr<Effect> WithParameters(const Effect& effect, const Eigen::VectorXd& parameters);
+std::shared_ptr<const Effect> MakeEffect(const std::string& type,
+                                         const std::map<std::string, double>& parameters);
 
 // The usual `make`, for a class that is made from its parameters.
 template <typename Type>
-std::shared_ptr<Effect> MakeAs(const Eigen::VectorXd& parameters) {
+std::shared_ptr<const Effect> MakeAs(const Eigen::VectorXd& parameters) {
   return std::make_shared<Type>(parameters);
 }
 

@@ -9,6 +9,7 @@
 #include "effects/added_mass.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -18,7 +19,7 @@ constexpr Dimension kDensityPerLength{-4,           1,       0, 0, 0, "a density
 constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
-class DensityGradientEffect final : public AddedMass {
+class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect, AddedMass> {
  public:
   enum Parameter { kGradient, kAxis, kOrigin = kAxis + 3 };
 
@@ -30,7 +31,7 @@ class DensityGradientEffect final : public AddedMass {
   explicit DensityGradientEffect(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
 
   const EffectCard& Card() const override { return TheCard(); }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     AddedMass::SetParameters(values);
     CHECK_GT(values.segment<3>(kAxis).norm(), 0) << "a gradient needs an axis";
   }
@@ -96,7 +97,7 @@ class DensityGradientEffect final : public AddedMass {
 
 CatalogueEntry DensityGradient() {
   return {&DensityGradientEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<DensityGradientEffect>(parameters);
           },
           &ReadParameters};

@@ -9,6 +9,7 @@
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 constexpr Dimension kLinearResistance{-2,          1,       -1, 0, 0, "a pressure per velocity",
                                       "10 Pa s/m", "Pa s/m"};
 
-class DragEffect final : public Effect {
+class DragEffect final : public CloneableEffect<DragEffect> {
  public:
   enum Parameter { kCoefficient, kLinear };
   static constexpr int kParameters = kLinear + 1;
@@ -69,7 +70,7 @@ class DragEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     parameters_ = values;
   }
@@ -117,7 +118,7 @@ class DragEffect final : public Effect {
 
 CatalogueEntry Drag() {
   return {&DragEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<DragEffect>(parameters);
           },
           &ReadParameters};

@@ -8,11 +8,12 @@
 
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
-class ElasticSupportEffect final : public Effect {
+class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> {
  public:
   enum Parameter { kModulus };
 
@@ -25,7 +26,7 @@ class ElasticSupportEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), static_cast<Eigen::Index>(TheCard().parameters.size()));
     parameters_ = values;
     part_.SetParameters(values);

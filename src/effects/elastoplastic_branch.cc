@@ -141,7 +141,7 @@ class ElastoplasticLaw {
 
 CatalogueEntry ElastoplasticBranch() {
   return {&ElastoplasticLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<MemoryBranch<ElastoplasticLaw>>(parameters);
           },
           &ReadParameters};

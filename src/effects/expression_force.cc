@@ -24,6 +24,7 @@
 #include "core/parallel.h"
 #include "effects/catalogue.h"
 #include "effects/expression_law.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -65,14 +66,14 @@ Eigen::Matrix3d NegativePart(const Eigen::Matrix3d& matrix) {
          eigen.eigenvectors().transpose();
 }
 
-class ExpressionForceEffect final : public Effect {
+class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect> {
  public:
   explicit ExpressionForceEffect(ExpressionLaw law) : law_(std::move(law)) {}
 
   const ExpressionLaw& Law() const { return law_; }
   const EffectCard& Card() const override { return law_.card; }
   Eigen::VectorXd Parameters() const override { return law_.parameters; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), law_.parameters.size());
     law_.parameters = values;
   }
@@ -248,7 +249,7 @@ class ExpressionForceEffect final : public Effect {
 
   // Tells what is not defined at a node.
   void WarnOnce(const Kinematics& at, int node) const {
-    if (warned_.exchange(true)) return;
+    if (warned_->exchange(true)) return;
     Values<double> values = CommonValues<double>(at.time);
     SetPoint(at, Normals(at.body), node, &values);
     const Eigen::Vector3d density = Evaluate(values);
@@ -268,19 +269,12 @@ class ExpressionForceEffect final : public Effect {
   }
 
   ExpressionLaw law_;
-  mutable std::atomic<bool> warned_ = false;
+  // Shared by copies with other parameter values: one warning will do.
+  std::shared_ptr<std::atomic<bool>> warned_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-std::shared_ptr<Effect> MakeExpressionForce(const Config& config) {
+std::shared_ptr<const Effect> MakeExpressionForce(const Config& config) {
   return std::make_shared<ExpressionForceEffect>(ReadExpressionLaw(config, TheCard()));
-}
-
-std::shared_ptr<Effect> WithOtherParameters(const Effect& effect,
-                                            const Eigen::VectorXd& parameters) {
-  const auto copy = std::make_shared<ExpressionForceEffect>(
-      static_cast<const ExpressionForceEffect&>(effect).Law());
-  copy->SetParameters(parameters);
-  return copy;
 }
 
 std::string Format(const Effect& effect) {
@@ -293,7 +287,6 @@ CatalogueEntry ExpressionForce() {
   CatalogueEntry entry;
   entry.card = &TheCard();
   entry.make_from_yaml = &MakeExpressionForce;
-  entry.with_parameters = &WithOtherParameters;
   entry.format = &Format;
   return entry;
 }

@@ -23,6 +23,7 @@
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
+#include "fem/cloneable_effect.h"
 #include "fem/element_kinematics.h"
 #include "fem/polar_decomposition.h"
 #include "geometry/shape_functions.h"
@@ -59,7 +60,7 @@ Eigen::Matrix3d InverseSpinStiffness(const Eigen::Matrix3d& gradient,
   return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-class FollowerForceEffect final : public Effect {
+class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
  public:
   enum Parameter { kForceValue, kCentre = kForceValue + 3, kRadius = kCentre + 3 };
   static constexpr int kParameters = kRadius + 1;
@@ -73,7 +74,7 @@ class FollowerForceEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     if (parameters_.size() == 0 || parameters_.tail<4>() != values.tail<4>()) spread_.Forget();
     parameters_ = values;
@@ -251,7 +252,7 @@ class FollowerForceEffect final : public Effect {
 
 CatalogueEntry FollowerForce() {
   return {&FollowerForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<FollowerForceEffect>(parameters);
           },
           &ReadParameters};

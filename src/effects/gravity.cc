@@ -2,13 +2,14 @@
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;  // m/s²
 
-class GravityEffect final : public Effect {
+class GravityEffect final : public CloneableEffect<GravityEffect> {
  public:
   static const EffectCard& TheCard() {
     static const EffectCard card = MakeCard();
@@ -19,7 +20,7 @@ class GravityEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return acceleration_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), 3);
     acceleration_ = values;
   }

@@ -2,11 +2,12 @@
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
-class MassDampingEffect final : public Effect {
+class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
  public:
   static const EffectCard& TheCard() {
     static const EffectCard card{
@@ -41,7 +42,7 @@ class MassDampingEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, alpha_); }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), 1);
     alpha_ = values[0];
   }

@@ -32,6 +32,7 @@
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -53,7 +54,7 @@ Penalty PenaltyAt(double depth, double smoothing) {
   return {linear * linear / 2 + s * s / 24, linear, 1};
 }
 
-class PlaneContactEffect final : public Effect {
+class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
  public:
   enum Parameter { kStiffness, kNormal, kOffset = kNormal + 3, kFriction, kSlip, kSmoothing };
   static constexpr int kParameters = kSmoothing + 1;
@@ -67,7 +68,7 @@ class PlaneContactEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     CHECK_GT(values.segment<3>(kNormal).norm(), 0) << "a plane needs a normal";
     CHECK_GT(values[kSlip], 0);

@@ -12,6 +12,7 @@
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
-class PointForceEffect final : public Effect {
+class PointForceEffect final : public CloneableEffect<PointForceEffect> {
  public:
   enum Parameter { kForceValue, kCentre = kForceValue + 3, kRadius = kCentre + 3, kStart, kStop };
   static constexpr int kParameters = kStop + 1;
@@ -33,7 +34,7 @@ class PointForceEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     if (parameters_.size() == 0 || parameters_.segment<4>(kCentre) != values.segment<4>(kCentre)) {
       shares_.Forget();
@@ -153,7 +154,7 @@ Eigen::VectorXd ReadPointForce(const EffectCard& card, const Config& config,
 
 CatalogueEntry PointForce() {
   return {&PointForceEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<PointForceEffect>(parameters);
           },
           &ReadPointForce};

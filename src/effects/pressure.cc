@@ -24,6 +24,7 @@
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
@@ -89,7 +90,7 @@ auto WithNodesPerFace(const Body& body, const Visit& visit) {
   return visit(std::integral_constant<int, 6>());
 }
 
-class PressureEffect final : public Effect {
+class PressureEffect final : public CloneableEffect<PressureEffect> {
  public:
   enum Parameter { kPressureValue, kPoint, kNormal = kPoint + 3 };
   static constexpr int kParameters = kNormal + 3;
@@ -103,7 +104,7 @@ class PressureEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), kParameters);
     if (parameters_.size() == 0 ||
         parameters_.tail(kParameters - 1) != values.tail(kParameters - 1)) {
@@ -313,7 +314,7 @@ class PressureEffect final : public Effect {
 
 CatalogueEntry Pressure() {
   return {&PressureEffect::TheCard(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<PressureEffect>(parameters);
           },
           &ReadParameters};

@@ -4,39 +4,40 @@
 
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "fem/body.h"
 
 namespace lacuna {
 
-// The value for the body that was asked about last; safe to ask from several threads. `T` may
-// depend on the mesh at rest and on the effect's settings (call Forget when they change), not on
-// the density, which another copy of the body may have different.
+// One value for each body that lives; safe to ask from several threads. Copies share the values, so
+// that an effect with other parameter values need not derive them again. `T` may depend on the mesh
+// at rest and on the effect's settings (call Forget when they change), but not on the density,
+// which another body of the same mesh may have different.
 template <typename T>
 class RestQuantity {
  public:
   // make(body), at the first call for this body.
   template <typename Make>
   std::shared_ptr<const T> Of(const Body& body, const Make& make) const {
-    const std::scoped_lock lock(mutex_);
-    // Bodies of one mesh share its schedule. To hold it keeps its address from being used again.
-    if (mesh_ != body.schedule) {
-      value_ = std::make_shared<const T>(make(body));
-      mesh_ = body.schedule;
-    }
-    return value_;
+    const std::scoped_lock lock(kept_->mutex);
+    // Bodies of one mesh share its schedule, which stands for the mesh.
+    for (const auto& [mesh, value] : kept_->values)
+      if (mesh.lock() == body.schedule) return value;
+    std::erase_if(kept_->values, [](const auto& entry) { return entry.first.expired(); });
+    return kept_->values.emplace_back(body.schedule, std::make_shared<const T>(make(body))).second;
   }
 
-  void Forget() {
-    const std::scoped_lock lock(mutex_);
-    mesh_ = nullptr;
-    value_ = nullptr;
-  }
+  // The next call derives the value anew; copies made before keep theirs.
+  void Forget() { kept_ = std::make_shared<Kept>(); }
 
  private:
-  mutable std::mutex mutex_;
-  mutable std::shared_ptr<const ElementSchedule> mesh_;
-  mutable std::shared_ptr<const T> value_;
+  struct Kept {
+    std::mutex mutex;
+    std::vector<std::pair<std::weak_ptr<const ElementSchedule>, std::shared_ptr<const T>>> values;
+  };
+  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>();
 };
 
 }  // namespace lacuna

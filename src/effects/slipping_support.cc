@@ -16,11 +16,12 @@
 
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
 
-class SlippingSupportEffect final : public Effect {
+class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect> {
  public:
   enum Parameter { kModulus, kSlipDistance };
 
@@ -33,7 +34,7 @@ class SlippingSupportEffect final : public Effect {
 
   const EffectCard& Card() const override { return TheCard(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), static_cast<Eigen::Index>(TheCard().parameters.size()));
     parameters_ = values;
     part_.SetParameters(values);

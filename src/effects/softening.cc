@@ -136,7 +136,7 @@ class SofteningLaw {
 
 CatalogueEntry Softening() {
   return {&SofteningLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<MemoryBranch<SofteningLaw>>(parameters);
           },
           &ReadParameters};

@@ -15,6 +15,7 @@
 
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "fem/cloneable_effect.h"
 #include "fem/element_kinematics.h"
 #include "fem/lame_constants.h"
 
@@ -30,7 +31,7 @@ Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matri
   return stress;
 }
 
-class StiffnessDampingEffect final : public Effect {
+class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffect> {
  public:
   static const EffectCard& TheCard() {
     static const EffectCard card = MakeCard();
@@ -43,7 +44,7 @@ class StiffnessDampingEffect final : public Effect {
   Eigen::VectorXd Parameters() const override {
     return Eigen::Vector3d(beta_, young_modulus_, poisson_ratio_);
   }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), 3);
     beta_ = values[0];
     young_modulus_ = values[1];

@@ -145,7 +145,7 @@ class ViscoelasticLaw {
 
 CatalogueEntry ViscoelasticBranch() {
   return {&ViscoelasticLaw::Card(), CatalogueEntry::Kind::kEffect,
-          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<Effect> {
+          [](const Eigen::VectorXd& parameters) -> std::shared_ptr<const Effect> {
             return std::make_shared<MemoryBranch<ViscoelasticLaw>>(parameters);
           },
           &ReadParameters};

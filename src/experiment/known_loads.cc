@@ -9,9 +9,8 @@
 
 namespace lacuna {
 
-std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
-                                                     const Model& grips_and_body) {
-  std::vector<std::shared_ptr<Effect>> loads;
+EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_body) {
+  EffectList loads;
   const Body& body = *grips_and_body.body;
   const Eigen::VectorXd areas = NodeBoundaryAreas(body);
   const std::vector<char> gripped = GrippedNodes(grips_and_body);

@@ -13,8 +13,7 @@ namespace lacuna {
 // The recording's measured forces as loads on the boundary nodes of their regions. Throws
 // InputError when a region holds no boundary node, or only nodes that a grip holds, where the force
 // would move nothing.
-std::vector<std::shared_ptr<Effect>> MakeKnownForces(const Recording& recording,
-                                                     const Model& grips_and_body);
+EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_body);
 
 }  // namespace lacuna
 

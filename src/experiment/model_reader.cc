@@ -22,8 +22,8 @@ MeshSettings ReadMeshSettings(const Config& config) {
   return settings;
 }
 
-std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config) {
-  std::vector<std::shared_ptr<Effect>> effects;
+EffectList ReadEffects(const Config& config) {
+  EffectList effects;
   effects.push_back(MakeMaterial(config.Child("material")));
   std::set<std::string> listed;
   for (const Config& item : config.Items("effects")) {
@@ -54,8 +54,7 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
   return laws;
 }
 
-std::vector<std::string> ImplausibleParameters(
-    const std::vector<std::shared_ptr<Effect>>& effects) {
+std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
   constexpr double kFar = 10;  // times beyond the plausible range
   std::vector<std::string> warnings;
   for (const auto& effect : effects) {

@@ -22,19 +22,19 @@ struct MeshSettings {
 MeshSettings ReadMeshSettings(const Config& config);
 
 // `material: {law: …}` and `effects: [{type: …}]`, the material first.
-std::vector<std::shared_ptr<Effect>> ReadEffects(const Config& config);
+EffectList ReadEffects(const Config& config);
 
 // A force law of the user's own (docs/expression.md) that the model may lack.
 struct OwnLaw {
   std::string name;  // by which it is ranked and added; letters, digits and underscores
-  std::shared_ptr<Effect> effect;
+  std::shared_ptr<const Effect> effect;
 };
 // `candidates: [{type: expression, name: magnet, …}]`, what a diagnosis tries besides the
 // catalogue.
 std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material);
 
 // Warnings about values far outside the range that the effect's card calls plausible.
-std::vector<std::string> ImplausibleParameters(const std::vector<std::shared_ptr<Effect>>& effects);
+std::vector<std::string> ImplausibleParameters(const EffectList& effects);
 
 // `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);

@@ -53,6 +53,7 @@ ScanFrames::ScanFrames(Recording recording, const ScanSettings& settings)
     : recording_(std::move(recording)), settings_(settings) {}
 
 const ScannedPoints& ScanFrames::At(int frame) const {
+  const std::scoped_lock lock(mutex_);
   const auto known = frames_.find(frame);
   if (known != frames_.end()) return known->second;
   return frames_.emplace(frame, ReadPoints(recording_, frame, settings_)).first->second;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <mutex>
 #include <vector>
 
 #include "experiment/scan_settings.h"
@@ -20,8 +21,8 @@ struct ScannedPoints {
   Eigen::Index in_files = 0;  // finite points before the filter and the thinning
 };
 
-// Reads a frame when it is first asked for and keeps it; copies of a study share it. Not to be used
-// from two threads at once.
+// Reads a frame when it is first asked for and keeps it. Copies of a study share it; several
+// threads may ask at once.
 class ScanFrames {
  public:
   ScanFrames(Recording recording, const ScanSettings& settings);
@@ -33,6 +34,7 @@ class ScanFrames {
  private:
   Recording recording_;
   ScanSettings settings_;
+  mutable std::mutex mutex_;
   mutable std::map<int, ScannedPoints> frames_;
 };
 

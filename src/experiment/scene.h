@@ -53,7 +53,7 @@ struct Scene {
   BarShape bar;
   MeshSettings mesh;
   double density = 1000;  // kg/m³
-  std::vector<std::shared_ptr<Effect>> effects;
+  EffectList effects;
   std::vector<SceneGrip> grips;
   std::vector<SceneLoad> loads;
   StepOptions step;

@@ -6,6 +6,7 @@
 #define LACUNA_FEM_EFFECT_H_
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 #include "fem/block_matrix.h"
@@ -42,7 +43,11 @@ class Effect {
 
   // Values in the order of the card's parameters, SI.
   virtual Eigen::VectorXd Parameters() const = 0;
-  virtual void SetParameters(const Eigen::VectorXd& values) = 0;
+  // A copy of the effect with other values. Effects do not change: models that are fitted, refitted
+  // and predicted side by side share them. What an effect has derived from the rest shape of its
+  // body is shared by its copies as long as it does not depend on what changes
+  // (cloneable_effect.h).
+  virtual std::shared_ptr<const Effect> WithParameters(const Eigen::VectorXd& values) const = 0;
 
   // Adds the effect's nodal forces, N.
   virtual void AddForce(const Kinematics& at, Eigen::VectorXd* force) const = 0;
@@ -67,8 +72,7 @@ class Effect {
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
 
   // Memory: its length for a body, its value at rest, and its value at the end of a step, with
-  // `parameters` in place of the effect's own: its derivatives by them are differences, and effects
-  // are shared by recordings that are predicted side by side.
+  // `parameters` in place of the effect's own, as its derivatives by them are differences.
   virtual Eigen::Index StateSize(const Body&) const { return 0; }
   virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
   virtual void AdvanceState(const Kinematics&, const Eigen::VectorXd& /*parameters*/,

@@ -21,7 +21,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "fem/effect.h"
+#include "fem/cloneable_effect.h"
 #include "fem/lame_constants.h"
 #include "fem/point_integrals.h"
 #include "fem/polar_decomposition.h"
@@ -74,7 +74,7 @@ class BatchOfPoints {
 };
 
 template <typename Law>
-class ElasticSolid final : public Effect {
+class ElasticSolid final : public CloneableEffect<ElasticSolid<Law>> {
  public:
   // `parameters`: Young's modulus in Pa, Poisson's ratio.
   explicit ElasticSolid(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
@@ -85,7 +85,7 @@ class ElasticSolid final : public Effect {
     return Eigen::Vector2d(young_modulus_, poisson_ratio_);
   }
 
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), 2);
     young_modulus_ = values[0];
     poisson_ratio_ = values[1];

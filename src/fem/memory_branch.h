@@ -40,7 +40,7 @@
 #include <Eigen/Eigenvalues>
 #include <optional>
 
-#include "fem/effect.h"
+#include "fem/cloneable_effect.h"
 #include "fem/element_kinematics.h"
 #include "fem/green_lagrange_strain.h"
 #include "fem/stress_tangent.h"
@@ -48,13 +48,13 @@
 namespace lacuna {
 
 template <typename Law>
-class MemoryBranch final : public Effect {
+class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
  public:
   explicit MemoryBranch(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
 
   const EffectCard& Card() const override { return Law::Card(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), static_cast<Eigen::Index>(Card().parameters.size()));
     parameters_ = values;
   }

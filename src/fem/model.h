@@ -19,9 +19,12 @@ struct Grip {
   std::function<Eigen::Matrix3Xd(double time)> motion;
 };
 
+// Effects do not change, so that models share them.
+using EffectList = std::vector<std::shared_ptr<const Effect>>;
+
 struct Model {
   std::shared_ptr<const Body> body;
-  std::vector<std::shared_ptr<Effect>> effects;
+  EffectList effects;
   std::vector<Grip> grips;
 };
 

@@ -20,7 +20,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "fem/effect.h"
+#include "fem/cloneable_effect.h"
 #include "fem/point_integrals.h"
 
 namespace lacuna {
@@ -47,14 +47,14 @@ class MaterialPoints {
 };
 
 template <typename Law>
-class PointEnergyEffect final : public Effect {
+class PointEnergyEffect final : public CloneableEffect<PointEnergyEffect<Law>> {
  public:
   explicit PointEnergyEffect(const Eigen::VectorXd& parameters)
       : parameters_(parameters), law_(parameters) {}
 
   const EffectCard& Card() const override { return Law::Card(); }
   Eigen::VectorXd Parameters() const override { return parameters_; }
-  void SetParameters(const Eigen::VectorXd& values) override {
+  void SetParameters(const Eigen::VectorXd& values) {
     CHECK_EQ(values.size(), parameters_.size());
     parameters_ = values;
     law_ = Law(values);

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "fem/effect.h"
+#include "fem/cloneable_effect.h"
 
 namespace lacuna {
 
@@ -16,14 +16,14 @@ namespace lacuna {
 Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes);
 
 // f_i = gain · share_i · F(t), in fixed directions. The gain is 1 for a gauge that tells the truth.
-class PrescribedForce final : public Effect {
+class PrescribedForce final : public CloneableEffect<PrescribedForce> {
  public:
   // `share`: n; `force`: F(t), N.
   PrescribedForce(Eigen::VectorXd share, std::function<Eigen::Vector3d(double time)> force);
 
   const EffectCard& Card() const override;
   Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, gain_); }
-  void SetParameters(const Eigen::VectorXd& values) override { gain_ = values[0]; }
+  void SetParameters(const Eigen::VectorXd& values) { gain_ = values[0]; }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override;
   void AddTangents(const Kinematics&, const TangentWeights&, bool, BlockMatrix*) const override {}

@@ -52,8 +52,7 @@ struct TangentLinearSummary {
 
 class TangentLinear {
  public:
-  // All sensitivities are 0 at first. Effects of perturbations may be changed (SetParameters) only
-  // between trajectories.
+  // All sensitivities are 0 at first.
   TangentLinear(const Model& model, std::vector<Perturbation> perturbations);
   ~TangentLinear();
   TangentLinear(TangentLinear&&) noexcept;

@@ -28,13 +28,13 @@ std::vector<int> ModuliOf(const EffectCard& card) {
 }
 
 // The study's elasticity law with other moduli.
-std::shared_ptr<Effect> WithModuli(const Effect& material, double young_modulus,
-                                   double poisson_ratio) {
+std::shared_ptr<const Effect> WithModuli(const Effect& material, double young_modulus,
+                                         double poisson_ratio) {
   Eigen::VectorXd values = material.Parameters();
   const std::vector<int> moduli = ModuliOf(material.Card());
   values[moduli[0]] = young_modulus;
   values[moduli[1]] = poisson_ratio;
-  return WithParameters(material, values);
+  return material.WithParameters(values);
 }
 
 ReferenceBody MakeTurnedBody(const OuterProblem& problem, const ReconstructionStudy& study) {

@@ -34,10 +34,12 @@ Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors error
   Eigen::VectorXd values;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Observed> kept;
+    Eigen::VectorXd equilibrium;  // of the last prediction
     const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
       Misfit misfit =
           model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{},
-                        kept.empty() ? nullptr : &kept);
+                        {kept.empty() ? nullptr : &kept, &equilibrium});
+      if (misfit.summary.held.size() > 0) equilibrium = misfit.summary.held;
       Prediction prediction{misfit.summary.IsUsable(), misfit.summary.message, {}, {}};
       if (!prediction.usable) return prediction;
       const auto whitened = [&](const Eigen::MatrixXd& rows) {

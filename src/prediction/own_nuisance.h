@@ -1,4 +1,4 @@
-// The nuisances of a recording that is only predicted.
+// The nuisance parameters of a recording that is predicted but not fitted.
 #ifndef LACUNA_PREDICTION_OWN_NUISANCE_H_
 #define LACUNA_PREDICTION_OWN_NUISANCE_H_
 
@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-// Fitted to the first tenth of the recording, the model staying as it is; with the errors of its
-// markers' places (3 × markers, m) where other recordings tell them. Empty where that cannot be
-// predicted.
+// Fits them to the first tenth of the recording, with the model as it is. `place_offset`: the
+// errors of its markers' places (3 × markers, m) where another recording has determined them.
+// Returns an empty vector where the model cannot be simulated.
 Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
                             const std::optional<Eigen::MatrixXd>& place_offset);
 

@@ -258,11 +258,18 @@ Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
   return axis.cross(place - registration * Middle());
 }
 
+RecordingModel RecordingModel::With(const EffectList& effects) const {
+  RecordingModel with = *this;
+  CHECK_EQ(effects.size(), study_.effects.size());
+  std::copy(effects.begin(), effects.end(), with.model_.effects.begin());
+  return with;
+}
+
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
-                               const std::vector<Observed>* observed) const {
+                               const PredictionHints& hints) const {
   PredictionOptions options = Options(nuisance);
-  options.held_guess = held_;
+  if (hints.near_equilibrium != nullptr) options.held_guess = *hints.near_equilibrium;
   const double late = Delay(nuisance);
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
@@ -287,8 +294,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
         const int frame = frames[index];
         const Eigen::Index begin = rows_of_frame * index;
-        Observed seen =
-            observed != nullptr ? (*observed)[index] : observer_->Observe(frame, state.position);
+        Observed seen = hints.observed != nullptr ? (*hints.observed)[index]
+                                                  : observer_->Observe(frame, state.position);
         Eigen::VectorXd predicted = *seen.rows * state.position;
         Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
@@ -329,7 +336,6 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         misfit.frames.push_back(frame);
         misfit.observed.push_back(std::move(seen));
       });
-  if (misfit.summary.held.size() > 0) held_ = misfit.summary.held;
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
   misfit.by.conservativeResize(reached, Eigen::NoChange);

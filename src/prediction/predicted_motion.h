@@ -1,4 +1,4 @@
-// What the model of a prediction study predicts of its recordings, and how far off that is.
+// The motion that a model predicts for a recording, and its distance from the measurements.
 #ifndef LACUNA_PREDICTION_PREDICTED_MOTION_H_
 #define LACUNA_PREDICTION_PREDICTED_MOTION_H_
 
@@ -15,42 +15,58 @@
 
 namespace lacuna {
 
-// Predicted minus measured, m, of one recording: the components (Observer) of each point, marker or
-// patch, of each frame, frames outermost. Rows of a point that was not seen are 0.
+// Predicted minus measured position in one recording, m. A point is a marker or a patch of the
+// surface; it has three components, or one along the surface normal (Observer). Rows are ordered
+// component within point within frame. Rows of a point that was not seen are 0.
 struct Misfit {
   std::vector<int> frames;   // of the recording, as far as the prediction came
-  int points = 0;            // of each frame
+  int points = 0;            // in each frame
   Eigen::VectorXd residual;  // components·points·frames
-  Eigen::MatrixXd by;      // ∂residual/∂(parameter), rows × columns; 0 columns: not asked for
-  std::vector<int> count;  // points × frames: measurements that each is the mean of; 0: not seen
-  // points × frames: F (Observed), turned into the measuring frame; empty of scans.
+  Eigen::MatrixXd by;  // Jacobian, ∂residual/∂(direction); no columns where none was asked for
+  std::vector<int>
+      count;  // points × frames: how many measurements each is the mean of; 0: not seen
+  // points × frames: the deformation gradient F (Observed), rotated into the measuring frame; empty
+  // for scans.
   std::vector<Eigen::Matrix3d> deformation;
-  std::vector<Observed> observed;  // of each frame: what the prediction was compared with
+  std::vector<Observed> observed;  // for each frame: what the prediction was compared with
   PredictionSummary summary;
 
   Eigen::Index Components() const {
     return count.empty() ? 0 : residual.size() / static_cast<Eigen::Index>(count.size());
   }
-  // The residual less what errors of the points' places (components × points, m) show as.
+  // The residual without the contribution of errors in the points' places on the object
+  // (components × points, m).
   Eigen::VectorXd ResidualWithout(const Eigen::MatrixXd& place_offset) const;
 };
 
-// Of one column of a Misfit's derivative.
+// What one column of a Misfit's Jacobian is the derivative by.
 struct MisfitDirection {
-  // Of the model; or of the recording: its clock runs late by the parameter, s; or its measuring
-  // frame is shifted, m, or turned, rad, along an axis.
+  // A parameter of the model, or one of the recording: the time, s, by which its clock is late; the
+  // translation, m, or rotation, rad, of its measuring frame along an axis.
   enum class Of { kModel, kClock, kShift, kTurn };
   Of of = Of::kModel;
   int axis = 0;
-  Perturbation perturbation = {};  // of the model
+  Perturbation perturbation = {};  // for kModel
 };
 
-// The model in the place of one recording.
+// What similar predictions have found already.
+struct PredictionHints {
+  // What each of the frames is compared with; null: what the observer makes of a frame at the
+  // predicted positions.
+  const std::vector<Observed>* observed = nullptr;
+  // 3n, m: from where the search for the equilibrium before the motion starts, which costs a tenth
+  // of a search from the rest shape (null). The result is the same within the tolerance of that
+  // equilibrium.
+  const Eigen::VectorXd* near_equilibrium = nullptr;
+};
+
+// The model as one recording sees it: with the recording's grips, loads and own effects, and an
+// observer that compares it with the measurements.
 class RecordingModel {
  public:
-  // `effects`: the study's, shared between its recordings; `patches`: of scans. Throws InputError
-  // when a region holds no node, a scan misses the object or is one of an object that moves
-  // already.
+  // `patches` divide the surface where the recording has scans. The study and the recording must
+  // outlive the model. Throws InputError where a region holds no node, a scan does not show the
+  // object, or the object moves already in the first frame.
   RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
                  const TetMesh& mesh, std::shared_ptr<const Body> body,
                  const SurfacePatches& patches);
@@ -59,12 +75,12 @@ class RecordingModel {
   const Model& model() const { return model_; }
   const Observer& observer() const { return *observer_; }
   int PointCount() const { return observer_->PointCount(); }
-  // Null of a recording of scans.
+  // Null for a recording of scans.
   const MarkerObserver* Markers() const {
     return dynamic_cast<const MarkerObserver*>(observer_.get());
   }
-  // What the recording itself leaves open: three components of the force that holds the body, the
-  // clock, the registration. `prior` is by name and deviation; start 0.
+  // A nuisance parameter of the recording: a component of the force that holds the body, the clock,
+  // or a component of the registration. It starts at 0.
   struct Nuisance {
     CalibratedParameter prior;
     MisfitDirection direction;
@@ -72,27 +88,33 @@ class RecordingModel {
   };
   const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
-  // With the effects as they are, `nuisance` in the order of nuisances(), for the chosen `frames`
-  // (ascending). Compared with `observed`, one for each frame, or, null, with what the observer
-  // makes of the frames at the predicted positions.
+  // The same with other values of the study's effects, which come first in model().effects;
+  // `effects` has the same types in the same order.
+  RecordingModel With(const EffectList& effects) const;
+
+  // The misfit in the chosen `frames` (ascending) with `nuisance` in the order of nuisances(), and
+  // its Jacobian in these directions. The result depends on the arguments and this model alone, so
+  // that several threads may predict at once. A simulation that stops early is told by
+  // Misfit::summary. Throws Interrupted.
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
-                 const std::vector<MisfitDirection>& directions,
-                 const std::vector<Observed>* observed = nullptr) const;
+                 const std::vector<MisfitDirection>& directions = {},
+                 const PredictionHints& hints = {}) const;
 
   std::vector<int> FittedFrames() const;
 
-  // How the model is run with these nuisances, and by how much, s, the recording's clock is late.
+  // The options of a prediction with these nuisances, and the time, s, by which the recording's
+  // clock is late.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
-  // From the fixture, in which the model is, to the recording's measuring frame: turned about the
-  // middle of the markers' places, then shifted.
+  // From the fixture's frame, in which the model is, to the recording's measuring frame: a rotation
+  // about the mean of the markers' places, then a translation.
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
-  // ∂(a place in the measuring frame)/∂(a shift or turn), the turn small.
+  // ∂(a place in the measuring frame)/∂(a translation or a small rotation).
   Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
                                  const Eigen::Isometry3d& registration,
                                  const Eigen::Vector3d& place) const;
-  // In which frames of a scan points found no place on the predicted surface: fewer than `least`
-  // times the share that did in the best frame, or in the first with the undeformed surface.
+  // The frames of a scan in which too few points have a correspondence: fewer than `least` times
+  // the share in the best frame, or in the first frame with the undeformed surface.
   std::vector<int> LostFrames(const Misfit& misfit, double least) const;
 
  private:
@@ -105,10 +127,10 @@ class RecordingModel {
   void RequireThatScansShowTheObject();
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
-  std::unique_ptr<const Observer> observer_;
-  double shown_ = 0;  // share of the first scan's points that the undeformed surface has
+  std::shared_ptr<const Observer> observer_;
+  // The share of the first scan's points that correspond to the undeformed surface.
+  double shown_ = 0;
   std::vector<Nuisance> nuisances_;
-  mutable Eigen::VectorXd held_;  // 3n, m: the last equilibrium; the next one is sought from there
 };
 
 }  // namespace lacuna

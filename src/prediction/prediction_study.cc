@@ -1,6 +1,7 @@
 #include "prediction/prediction_study.h"
 
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +9,15 @@
 
 namespace lacuna {
 
-std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Effect>>& effects) {
+std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
   std::vector<ModelParameter> parameters;
   std::map<std::string, int> seen;
   size_t of_material = 0;
-  for (const auto& effect : effects) {
-    const EffectCard& card = effect->Card();
-    const bool is_material = effect == effects.front();
+  for (size_t at = 0; at < effects.size(); ++at) {
+    const EffectCard& card = effects[at]->Card();
+    const bool is_material = at == 0;
     const int repeat = ++seen[card.type];
-    const Eigen::VectorXd values = effect->Parameters();
+    const Eigen::VectorXd values = effects[at]->Parameters();
     for (size_t k = 0; k < card.parameters.size(); ++k) {
       const ParameterCard& entry = card.parameters[k];
       const double value = values[static_cast<Eigen::Index>(k)];
@@ -27,11 +28,11 @@ std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Ef
             return other.prior.name == entry.name && other.prior.start == value;
           });
       if (!is_material && shared != parameters.begin() + static_cast<std::ptrdiff_t>(of_material)) {
-        shared->places.emplace_back(effect, static_cast<int>(k));
+        shared->places.push_back({at, static_cast<int>(k)});
         continue;
       }
       ModelParameter parameter;
-      parameter.places.emplace_back(effect, static_cast<int>(k));
+      parameter.places.push_back({at, static_cast<int>(k)});
       parameter.unit = entry.dimension.unit;
       CalibratedParameter& prior = parameter.prior;
       prior.name = is_material  ? entry.name
@@ -53,12 +54,21 @@ std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Ef
   return parameters;
 }
 
-void SetParameter(const ModelParameter& parameter, double value) {
-  for (const auto& [effect, index] : parameter.places) {
-    Eigen::VectorXd values = effect->Parameters();
-    values[index] = value;
-    effect->SetParameters(values);
+EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,
+                      const Eigen::VectorXd& values) {
+  CHECK_GE(values.size(), static_cast<Eigen::Index>(parameters.size()));
+  std::vector<Eigen::VectorXd> of_effect(effects.size());
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    for (const ModelParameter::Place& place : parameters[k].places) {
+      Eigen::VectorXd& changed = of_effect[place.effect];
+      if (changed.size() == 0) changed = effects[place.effect]->Parameters();
+      changed[place.index] = values[static_cast<Eigen::Index>(k)];
+    }
   }
+  EffectList with = effects;
+  for (size_t j = 0; j < with.size(); ++j)
+    if (of_effect[j].size() > 0) with[j] = with[j]->WithParameters(of_effect[j]);
+  return with;
 }
 
 double Duration(const PredictionStudy& study) {

@@ -1,6 +1,6 @@
-// An experiment that predicts: a model with known loads, measured grips and everything else
-// simulated, against one or several recordings of the same object. docs/prediction.md lists the
-// keys.
+// An experiment that predicts. The loads are known, the motion of the grips is measured, everything
+// else is simulated and compared with one or several recordings of the same object.
+// docs/prediction.md lists the keys.
 #ifndef LACUNA_PREDICTION_PREDICTION_STUDY_H_
 #define LACUNA_PREDICTION_PREDICTION_STUDY_H_
 
@@ -17,6 +17,7 @@
 #include "experiment/model_reader.h"
 #include "experiment/scan_frames.h"
 #include "experiment/scan_settings.h"
+#include "fem/model.h"
 #include "fem/step_equation.h"
 #include "fit/calibration.h"
 #include "geometry/surface_patches.h"
@@ -24,42 +25,55 @@
 
 namespace lacuna {
 
-// The object is held at rest until then, by a force of unknown size and direction on this region.
+// Until its release the object is held at rest by a force of unknown size and direction on a
+// region.
 struct Hold {
   Region region;
   double release = 0;  // s, in the recording's time
 };
 
+// One recording of the study, and how the prediction is compared with it.
+
 struct PredictedRecording {
   std::string name;
   Recording recording;
-  std::shared_ptr<const ScanFrames> scans;  // its points; null: markers, or points that are tracked
+  std::shared_ptr<const ScanFrames> scans;  // its scans; null: it has markers or tracked points
   std::vector<int> frames;                  // ascending
   bool fitted = true;                       // false: only predicted
-  // Frames after this time are held out: predicted, not fitted. s
+  // Frames after this time, s, are held out: they are predicted but not fitted.
   double fit_until = std::numeric_limits<double>::infinity();
   std::optional<Hold> hold;
-  // By how much the recording's clock may differ from the model's, s (prior); 0: not at all.
+  // Standard deviation (prior) of the difference between the recording's clock and the model's, s;
+  // 0: they agree.
   double clock_deviation = 0;
-  // By how much its measuring frame may be shifted, m, and turned, rad, against the fixture
-  // (priors, of each axis); 0: not at all.
+  // Standard deviations (priors, for each axis) of the translation, m, and the rotation, rad,
+  // between the measuring frame and the fixture; 0: they agree.
   double shift_deviation = 0, turn_deviation = 0;
-  std::vector<std::shared_ptr<Effect>> effects;  // of this recording only, e.g. a hung mass
+  EffectList effects;  // that act in this recording only, such as a mass that was hung on
 
-  // Until then the object is at rest, s.
+  // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
 };
 
-// A number of the model that may be fitted, and what is known of it before.
+// A parameter of the model that may be fitted, with its prior.
 struct ModelParameter {
-  // Of the effects that have it: a damping whose modulus is the material's shares it.
-  std::vector<std::pair<std::shared_ptr<Effect>, int>> places;
+  // The effects that have it, by their place in PredictionStudy::effects, and its index on their
+  // cards. There are several where an effect shares a modulus with the material.
+  struct Place {
+    size_t effect = 0;
+    int index = 0;
+    bool operator==(const Place&) const = default;
+  };
+  std::vector<Place> places;
   CalibratedParameter prior;  // name "young_modulus" of the material, "gravity.acceleration_z"
   std::string unit;           // SI
 };
-// All of them, settings excepted; bounds and priors as their cards say.
-std::vector<ModelParameter> ModelParameters(const std::vector<std::shared_ptr<Effect>>& effects);
-void SetParameter(const ModelParameter& parameter, double value);
+// All parameters of these effects except settings, with the bounds and priors of their cards.
+std::vector<ModelParameter> ModelParameters(const EffectList& effects);
+// The same effects with these values of the parameters (SI, in the order of `parameters`; further
+// entries are not read).
+EffectList WithValues(const EffectList& effects, const std::vector<ModelParameter>& parameters,
+                      const Eigen::VectorXd& values);
 
 struct PredictionStudy {
   std::filesystem::path file;  // the experiment
@@ -67,26 +81,26 @@ struct PredictionStudy {
   std::filesystem::path output;
   MeshSettings mesh;
   int sheet_layers = 1;
-  double density = 0;                            // kg/m³
-  std::vector<std::shared_ptr<Effect>> effects;  // the material first
+  double density = 0;  // kg/m³
+  EffectList effects;  // the material first
   TimeScheme scheme = TimeScheme::kTwoStep;
-  double time_step = 0.005;         // s; of a quasi-static one at most
-  bool chooses_time_step = false;   // the fit shortens it as far as the recordings ask for
-  double noise = 0;                 // m, of a marker's coordinate; 0: estimated from the recordings
-  bool noise_is_estimated = false;  // it has been
-  // m, of a marker's place on the object: it adds to all frames alike.
+  double time_step = 0.005;         // s; quasi-static steps may be shorter
+  bool chooses_time_step = false;   // the fit shortens the step as far as the recordings require
+  double noise = 0;                 // m, σ of a marker's coordinate; 0: to be estimated
+  bool noise_is_estimated = false;  // whether `noise` is an estimate
+  // m, σ of a marker's place on the object, an error that is the same in all frames.
   double place_deviation = 0.001;
   ScanSettings scan;
-  // Into which scans divide the surface; empty: chosen on the mesh. Given where predictions with
-  // different meshes are compared.
+  // The patches of the surface in which scans are averaged; empty: chosen on the mesh. They are
+  // given where predictions with different meshes are compared.
   SurfacePatches patches;
   std::vector<ModelParameter> fitted;
-  std::vector<OwnLaw> candidates;  // that a diagnosis tries besides the catalogue
+  std::vector<OwnLaw> candidates;  // the user's laws, which a diagnosis tries beside the catalogue
   std::vector<PredictedRecording> recordings;
   nlohmann::json configuration;  // resolved, SI
 };
 
-// Of the frames that are used, s, of the recording where it is longest.
+// The time that the used frames span, s, in the longest recording.
 double Duration(const PredictionStudy& study);
 
 }  // namespace lacuna

@@ -29,11 +29,6 @@ void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
                           1e3 * deformation, 1e3 * study.place_deviation));
 }
 
-const ParameterCard& CardOf(const ModelParameter& parameter) {
-  const auto& [effect, index] = parameter.places.front();
-  return effect->Card().parameters[index];
-}
-
 // What is known of a parameter before: `mean`, the start unless it is given, and `deviation`; of
 // one on a logarithmic scale a small one, or the scale's part of it.
 void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
@@ -49,14 +44,13 @@ void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParamete
 }
 
 // `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`; absent: the material's.
-std::vector<ModelParameter> ReadFitted(const Config& config,
-                                       const std::vector<std::shared_ptr<Effect>>& effects) {
+std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& effects) {
   const std::vector<ModelParameter> known = ModelParameters(effects);
   const auto fit = config.OptionalChild("fit");
   if (!fit) {
     std::vector<ModelParameter> of_material;
     for (const ModelParameter& parameter : known)
-      if (parameter.places.front().first == effects.front()) of_material.push_back(parameter);
+      if (parameter.places.front().effect == 0) of_material.push_back(parameter);
     return of_material;
   }
   std::vector<std::pair<std::string, const ModelParameter*>> choices;
@@ -68,7 +62,8 @@ std::vector<ModelParameter> ReadFitted(const Config& config,
     for (const ModelParameter& earlier : fitted)
       if (earlier.prior.name == parameter.prior.name) item.Fail("name", "is listed twice");
     CalibratedParameter& prior = parameter.prior;
-    const ParameterCard& card = CardOf(parameter);
+    const auto [effect, index] = parameter.places.front();
+    const ParameterCard& card = effects[effect]->Card().parameters[index];
     prior.min = item.Quantity("min", card.dimension, card.bounds, prior.min);
     prior.max = item.Quantity("max", card.dimension, card.bounds, prior.max);
     if (prior.min > prior.max) item.Fail("min", "is above max");

@@ -1,4 +1,5 @@
-// Whether recordings show anything at all: what is to be said of them before a long computation.
+// Checks of what recordings show, before a long computation starts: whether anything moves, and how
+// large the noise is.
 #ifndef LACUNA_PREDICTION_RECORDED_MOTION_H_
 #define LACUNA_PREDICTION_RECORDED_MOTION_H_
 
@@ -9,19 +10,20 @@
 
 namespace lacuna {
 
-// Whether the markers stay in place, over the frames that are fitted, as far as their noise lets
-// one see. Never of scans, whose points are not the same from frame to frame.
+// Whether the markers stay in place within their noise over the fitted frames. False for scans,
+// whose points differ from frame to frame.
 bool IsAtRest(const PredictedRecording& item);
-// Of all recordings that are fitted.
+// Whether this holds for all recordings that are fitted.
 bool IsAtRest(const PredictionStudy& study);
-// What a user should know of a study at rest; empty where something moves.
+// A warning where nothing moves; empty otherwise.
 std::string RestWarning(const PredictionStudy& study);
-// All that a user should know of a study before the computation: that, what its recordings warn of,
-// frames that show no marker, and frames between which a motion with inertia takes very many steps.
+// All warnings that a user should see before the computation: RestWarning, the warnings of the
+// recordings, frames that show no marker, and frames so far apart that a motion with inertia takes
+// very many steps between them.
 std::vector<std::string> StudyWarnings(const PredictionStudy& study);
 
-// Of markers at rest: how far the farthest is on average from its place on the undeformed object,
-// m.
+// For markers at rest, the largest mean distance of a marker from its place on the undeformed
+// object, m.
 double RestDeformation(const PredictedRecording& item);
 
 // The standard deviation of a recording's noise, m, estimated from `frames` (ascending). For

@@ -52,7 +52,7 @@ class MemoryAlong {
 }  // namespace
 
 ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
-                      const std::vector<std::shared_ptr<Effect>>& further) {
+                      const EffectList& further) {
   ReplayedMotion motion;
   const Model& model = recording.model();
   Model loaded = model;

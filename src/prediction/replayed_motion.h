@@ -42,7 +42,7 @@ struct ReplayedMotion {
 // With the model's effects as they are, further forces that have no memory, and the recording's
 // nuisances (RecordingModel::nuisances). A prediction that stops leaves the summary alone.
 ReplayedMotion Replay(const RecordingModel& model, const Eigen::VectorXd& nuisance,
-                      const std::vector<std::shared_ptr<Effect>>& further = {});
+                      const EffectList& further = {});
 
 }  // namespace lacuna
 

@@ -301,7 +301,7 @@ class Follower {
   Model model_;
   std::unique_ptr<GripTracks> grips_;
   ForceModel forces_;
-  std::vector<std::shared_ptr<Effect>> known_forces_;
+  EffectList known_forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
   std::unique_ptr<FollowedSensitivity> sensitivity_;  // where it is asked for

@@ -79,7 +79,7 @@ struct ReconstructionStudy {
   MeshSettings mesh;
   int sheet_layers = 1;
   double density = 1000;  // kg/m³
-  std::vector<std::shared_ptr<Effect>> effects;
+  EffectList effects;
   FollowSettings follow;
   ValidationSettings validation;
   nlohmann::json configuration;  // resolved, SI

@@ -47,7 +47,7 @@ Eigen::Vector3d VectorOf(const nlohmann::json& json) {
 
 }  // namespace
 
-std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden) {
+std::shared_ptr<const Effect> MakeHidden(const HiddenEffect& hidden) {
   return MakeEffect(hidden.type, hidden.parameters);
 }
 

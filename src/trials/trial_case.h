@@ -25,7 +25,7 @@ struct HiddenEffect {
   double factor = 0;  // of its detectable size; without a size: what it changes is that many times
                       // what can be detected, or more
 };
-std::shared_ptr<Effect> MakeHidden(const HiddenEffect& hidden);
+std::shared_ptr<const Effect> MakeHidden(const HiddenEffect& hidden);
 bool IsLaw(const HiddenEffect& hidden);
 // What the model has of itself, unless it is what is hidden.
 bool IsKnown(const std::string& type);

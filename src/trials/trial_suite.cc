@@ -67,7 +67,7 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   candidate.type = hidden.type;
   candidate.effect = MakeHidden(hidden);
   candidate.replaces_material = IsLaw(hidden);
-  const PredictionStudy study = WithCandidate(problem.AsChosen(), candidate);
+  const PredictionStudy study = WithCandidate(problem.WithEstimatedNoise(), candidate);
   const LinearisedMisfit with =
       CalibrationProblem(study, problem.body()->mesh).Linearise(values, false, {}, &misfit);
   if (!with.usable) throw InputError(hidden.type + ": " + with.message);
@@ -107,7 +107,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
     none.parameters[hidden.amplitude[k]] = card.parameters[k].null_value;
   }
-  const std::shared_ptr<Effect> effect = MakeHidden(none);
+  const std::shared_ptr<const Effect> effect = MakeHidden(none);
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     directions.push_back({.perturbation = {.effect = effect, .parameter = static_cast<int>(k)}});
   const GripMotions grips = MakeGripMotions(problem);

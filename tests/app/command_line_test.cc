@@ -119,6 +119,7 @@ TEST(CommandLine, ListsTheEffects) {
     EXPECT_THAT(list.said, HasSubstr(entry.card->type));
   EXPECT_EQ(Lacuna("effects gravity").said, Lacuna("explain gravity").said);
   EXPECT_THAT(Lacuna("explain gravty").said, HasSubstr("did you mean \"gravity\"?"));
+  EXPECT_THAT(Lacuna("explain time_jitter").said, HasSubstr("check the camera's clock"));
   EXPECT_EQ(Lacuna("explain").status, 2);
 }
 
@@ -126,7 +127,7 @@ TEST(CommandLine, ListsTheEffects) {
 void ExpectUnderstood(const std::string& yaml, const CatalogueEntry& entry) {
   const auto material = MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}});
   const Config config = Config::Parse(yaml, "pasted.yaml");
-  std::shared_ptr<Effect> effect;
+  std::shared_ptr<const Effect> effect;
   if (entry.kind == CatalogueEntry::Kind::kMaterial) {
     ASSERT_NO_THROW(effect = MakeMaterial(config.Child("material")));
   } else {

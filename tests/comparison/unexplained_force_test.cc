@@ -29,8 +29,7 @@ UnexplainedForce ForceOn(const HeldBarTruth& truth) {
   Progress progress(silent);
   const Calibration calibration = FitFromStart(problem, &progress);
   EXPECT_TRUE(calibration.usable) << calibration.message;
-  problem.SetModel(calibration.parameters);
-  const RecordingModel& model = problem.models()[0];
+  const RecordingModel model = problem.ModelAt(0, calibration.parameters);
   const ReplayedMotion motion = Replay(model, problem.NuisanceOf(0, calibration.parameters));
   EXPECT_TRUE(motion.summary.IsUsable()) << motion.summary.message;
   return EstimateUnexplainedForce(model, motion, problem.noise(), study.place_deviation);

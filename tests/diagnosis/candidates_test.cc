@@ -12,7 +12,7 @@ namespace {
 
 std::vector<CandidateEffect> CandidatesOf(const TetMesh& mesh, const std::string& type) {
   const Body body = MakeBody(mesh, 1000);
-  const std::vector<std::shared_ptr<Effect>> effects{
+  const std::vector<std::shared_ptr<const Effect>> effects{
       MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
   std::vector<CandidateEffect> chosen;
   for (const CandidateEffect& candidate : MakeCandidates({body, effects, 0.001, 1}))

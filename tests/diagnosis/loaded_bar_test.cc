@@ -39,7 +39,7 @@ double LoadAt(double time) {
 }
 
 // Markers of the bar; its material besides what is hidden is neo-Hookean.
-std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<Effect>>& hidden) {
+std::vector<Eigen::Matrix3Xd> Film(const std::vector<std::shared_ptr<const Effect>>& hidden) {
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(BarMesh({10, 3, 3}, 2), 1000));
   const TetMesh& mesh = model.body->mesh;
@@ -80,7 +80,7 @@ class LoadedBar : public testing::Test {
     progress_ = std::make_unique<Progress>(silent);
   }
 
-  PredictionStudy Record(const std::vector<std::shared_ptr<Effect>>& hidden,
+  PredictionStudy Record(const std::vector<std::shared_ptr<const Effect>>& hidden,
                          const std::string& more = "") {
     WriteBarRecording(folder_.Path(), Film(hidden));
     std::ofstream load(folder_ / "load.csv");

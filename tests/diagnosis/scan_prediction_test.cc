@@ -109,29 +109,29 @@ TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
   WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape);
   const PredictionStudy study = ReadBarStudy(folder.Path(), kUntil);
   const CalibrationProblem problem(study, BarMesh({4, 1, 1}, 2));
-  const RecordingModel& model = problem.models()[0];
   const std::vector<int> frames{0, 3, 4, 5, 6};
-  std::vector<MisfitDirection> directions;
-  for (const ModelParameter& parameter : study.fitted)
-    directions.push_back({.perturbation = {.effect = parameter.places[0].first,
-                                           .parameter = parameter.places[0].second}});
-  for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
   Eigen::VectorXd at(6);
   at << 1e5, 2, 0.01, 0.04, 0.02, 0.001;
-  const auto predict = [&](const Eigen::VectorXd& values, const std::vector<MisfitDirection>& by,
-                           const std::vector<Observed>* observed) {
-    problem.SetModel(values);
-    return model.Predict(frames, values.tail(4), by, observed);
+  const RecordingModel model = problem.ModelAt(0, at);
+  std::vector<MisfitDirection> directions;
+  for (const ModelParameter& parameter : study.fitted) {
+    const auto [effect, index] = parameter.places[0];
+    directions.push_back(
+        {.perturbation = {.effect = model.model().effects[effect], .parameter = index}});
+  }
+  for (const auto& nuisance : model.nuisances()) directions.push_back(nuisance.direction);
+  const Misfit here = model.Predict(frames, at.tail(4), directions);
+  const auto predict = [&](const Eigen::VectorXd& values) {
+    return problem.ModelAt(0, values)
+        .Predict(frames, values.tail(4), {}, {.observed = &here.observed})
+        .residual;
   };
-  const Misfit here = predict(at, directions, nullptr);
   ASSERT_TRUE(here.summary.IsUsable()) << here.summary.message;
   const Eigen::VectorXd steps =
       (Eigen::VectorXd(6) << 200, 1e-2, 2e-3, 2e-3, 2e-3, 1e-4).finished();
   for (Eigen::Index k = 0; k < at.size(); ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(at.size(), k);
-    const Eigen::VectorXd difference = (predict(at + shift, {}, &here.observed).residual -
-                                        predict(at - shift, {}, &here.observed).residual) /
-                                       (2 * steps[k]);
+    const Eigen::VectorXd difference = (predict(at + shift) - predict(at - shift)) / (2 * steps[k]);
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
     EXPECT_LT((here.by.col(k) - difference).norm(), 2e-3 * difference.norm()) << k;
     EXPECT_GT(difference.norm(), 0) << k;

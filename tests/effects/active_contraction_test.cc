@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-std::shared_ptr<Effect> Contraction(double tension) {
+std::shared_ptr<const Effect> Contraction(double tension) {
   return MakeEffect("active_contraction", {{"tension", tension},
                                            {"axis_x", 3},
                                            {"axis_y", 0},

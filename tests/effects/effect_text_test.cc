@@ -29,7 +29,7 @@ Eigen::VectorXd RandomParameters(const EffectCard& card, std::mt19937* random) {
   return values;
 }
 
-std::shared_ptr<Effect> ReadBack(const std::string& text, CatalogueEntry::Kind kind) {
+std::shared_ptr<const Effect> ReadBack(const std::string& text, CatalogueEntry::Kind kind) {
   const Config config = Config::Parse("effect: " + text + "\n", "a.yaml");
   const Config effect = config.Child("effect");
   const auto made =
@@ -43,7 +43,7 @@ void ExpectRoundTrip(const CatalogueEntry& entry, const Eigen::VectorXd& values)
   const std::optional<std::string> text = FormatEffect(*effect);
   ASSERT_TRUE(text.has_value()) << entry.card->type;
   SCOPED_TRACE(*text);
-  std::shared_ptr<Effect> read;
+  std::shared_ptr<const Effect> read;
   ASSERT_NO_THROW(read = ReadBack(*text, entry.kind));
   EXPECT_EQ(read->Card().type, entry.card->type);
   const Eigen::VectorXd expected = effect->Parameters(), got = read->Parameters();
@@ -105,7 +105,7 @@ TEST(EffectText, ReadsALawOfTheUsersOwnBack) {
       "                  meaning: \"pull, in all\"}}}\n",
       "a.yaml");
   const auto made = MakeEffect(law);
-  const auto moved = WithParameters(*made, Eigen::Vector3d(1.0 / 3, 0.007, 0.03));
+  const auto moved = made->WithParameters(Eigen::Vector3d(1.0 / 3, 0.007, 0.03));
   EXPECT_EQ(made->Parameters(), Eigen::Vector3d(100, 0.005, 0.03));
   const std::optional<std::string> text = FormatEffect(*moved);
   ASSERT_TRUE(text.has_value());

@@ -15,8 +15,8 @@ namespace {
 constexpr double kYoung = 1.2e5;  // Pa
 constexpr double kPoisson = 0.37;
 
-std::shared_ptr<Effect> Law(const std::string& type, double young = kYoung,
-                            double poisson = kPoisson) {
+std::shared_ptr<const Effect> Law(const std::string& type, double young = kYoung,
+                                  double poisson = kPoisson) {
   return MakeEffect(type, {{"young_modulus", young}, {"poisson_ratio", poisson}});
 }
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kModulus = 6e4;  // Pa
 constexpr double kYield = 0.05;
 
-std::shared_ptr<Effect> Branch(double modulus = kModulus, double yield = kYield) {
+std::shared_ptr<const Effect> Branch(double modulus = kModulus, double yield = kYield) {
   return MakeEffect("elastoplastic_branch", {{"modulus", modulus}, {"yield_strain", yield}});
 }
 

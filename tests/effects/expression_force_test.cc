@@ -26,7 +26,7 @@ parameters:
   d: {value: 50 mm, plausible: [1 mm, 20 cm], min: 0.1 mm, log_scale: true}
 )yaml";
 
-std::shared_ptr<Effect> FromYaml(const std::string& text) {
+std::shared_ptr<const Effect> FromYaml(const std::string& text) {
   const Config config = Config::Parse(text, "a.yaml");
   auto effect = MakeEffect(config);
   config.RefuseUnknownKeys();
@@ -34,8 +34,8 @@ std::shared_ptr<Effect> FromYaml(const std::string& text) {
 }
 
 // With an amplitude k.
-std::shared_ptr<Effect> MakeLaw(const std::string& per, const std::string& force,
-                                const std::string& k, const std::string& more = "") {
+std::shared_ptr<const Effect> MakeLaw(const std::string& per, const std::string& force,
+                                      const std::string& k, const std::string& more = "") {
   return FromYaml("type: expression\nname: law\nper: " + per + "\nforce: " + force +
                   "\nparameters:\n  k: {value: " + k + ", plausible: [-10 " +
                   k.substr(k.find(' ') + 1) + ", 10 " + k.substr(k.find(' ') + 1) + "]}\n" + more);
@@ -160,9 +160,9 @@ TEST(ExpressionForce, VanishesAtItsNullValueButNotItsDerivative) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.02}, {3, 2, 2}), 1000);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   const Eigen::VectorXd velocity = 0 * rest, state;
-  const auto magnet = FromYaml(kMagnet);
-  const Eigen::VectorXd per_unit = ForceAt(*magnet, body, rest, velocity) / 3;
-  magnet->SetParameters(Eigen::Vector3d(0, 0.02, 0.05));
+  const auto full = FromYaml(kMagnet);
+  const Eigen::VectorXd per_unit = ForceAt(*full, body, rest, velocity) / 3;
+  const auto magnet = full->WithParameters(Eigen::Vector3d(0, 0.02, 0.05));
   EXPECT_EQ(ForceAt(*magnet, body, rest, velocity).norm(), 0);
   Eigen::VectorXd derivative = Eigen::VectorXd::Zero(rest.size());
   magnet->AddParameterDerivative({body, rest, velocity, velocity, 0, 0, state}, 0, &derivative);

@@ -20,7 +20,7 @@ constexpr double kWidth = 0.0005;  // m
 
 // The force, N, that stretches a bar from x = 0 to kLength by one hundred thousandth. Poisson's
 // ratio is 0, so that stress is uniaxial.
-double ForceOfBar(const std::shared_ptr<Effect>& extra) {
+double ForceOfBar(const std::shared_ptr<const Effect>& extra) {
   const TetMesh mesh =
       BoxMesh({0, -kWidth / 2, -kWidth / 2}, {kLength, kWidth / 2, kWidth / 2}, {32, 1, 1}, 2);
   Model model{std::make_shared<const Body>(MakeBody(mesh, 1000)),
@@ -56,8 +56,8 @@ double ForceOfSections(const std::function<double(double)>& young) {
   return 1e-5 * kLength * kWidth * kWidth / compliance;
 }
 
-std::shared_ptr<Effect> Lump(double difference, const Eigen::Vector3d& centre, double radius,
-                             double poisson) {
+std::shared_ptr<const Effect> Lump(double difference, const Eigen::Vector3d& centre, double radius,
+                                   double poisson) {
   return MakeEffect("inclusion", {{"young_modulus_difference", difference},
                                   {"centre_x", centre[0]},
                                   {"centre_y", centre[1]},
@@ -93,7 +93,7 @@ TEST(Inclusion, StiffensABarAsSectionsInSeriesDo) {
   }
 }
 
-std::shared_ptr<Effect> Gradient(double difference) {
+std::shared_ptr<const Effect> Gradient(double difference) {
   return MakeEffect("stiffness_gradient", {{"young_modulus_difference", difference},
                                            {"axis_x", 2},
                                            {"axis_y", 0},

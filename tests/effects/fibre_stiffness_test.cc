@@ -12,7 +12,7 @@ namespace {
 constexpr double kModulus = 4e4;  // Pa
 constexpr double kAzimuth = 30 * M_PI / 180, kInclination = 20 * M_PI / 180;
 
-std::shared_ptr<Effect> Fibres(double azimuth, double inclination) {
+std::shared_ptr<const Effect> Fibres(double azimuth, double inclination) {
   return MakeEffect("fibre_stiffness",
                     {{"modulus", kModulus}, {"azimuth", azimuth}, {"inclination", inclination}});
 }

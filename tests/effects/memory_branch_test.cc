@@ -21,7 +21,7 @@ struct BranchType {
   std::string type;
   std::map<std::string, double> parameters;  // besides the modulus
 
-  std::shared_ptr<Effect> Make(double modulus = kModulus) const {
+  std::shared_ptr<const Effect> Make(double modulus = kModulus) const {
     std::map<std::string, double> all = parameters;
     all["modulus"] = modulus;
     return MakeEffect(type, all);

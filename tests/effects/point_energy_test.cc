@@ -19,12 +19,11 @@ struct Case {
 
 class PointEnergy : public testing::TestWithParam<Case> {
  protected:
-  std::shared_ptr<Effect> Make(double scale) const {
+  std::shared_ptr<const Effect> Make(double scale) const {
     const auto effect = MakeEffect(GetParam().type, GetParam().parameters);
     Eigen::VectorXd values = effect->Parameters();
     values[0] *= scale;
-    effect->SetParameters(values);
-    return effect;
+    return effect->WithParameters(values);
   }
 };
 

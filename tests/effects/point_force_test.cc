@@ -45,21 +45,21 @@ TEST(PointForce, FollowsItsSettingsAndItsBody) {
   const auto effect = MakeEffect("point_force", ForceAtTheTop(0.005));
   const Body coarse = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {8, 4, 4}), 1000);
   const Body fine = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {16, 8, 8}), 1000);
-  const auto place = [&](const Body& body) {
+  const auto place = [](const Effect& force_on, const Body& body) {
     const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), zero = 0 * rest, state;
     Eigen::VectorXd force = zero;
-    effect->AddForce({body, rest, zero, zero, 0.4, 0.01, state}, &force);
+    force_on.AddForce({body, rest, zero, zero, 0.4, 0.01, state}, &force);
     const Eigen::Matrix3Xd nodal = force.reshaped(3, body.NodeCount());
     return Eigen::Vector3d(body.mesh.nodes * nodal.row(2).transpose() / 3);
   };
   // Less than 1e-3 of the force is on other faces.
-  EXPECT_LT((place(coarse) - Eigen::Vector3d(0.04, 0.02, 0.04)).norm(), 1e-4);
-  EXPECT_LT((place(fine) - Eigen::Vector3d(0.04, 0.02, 0.04)).norm(), 1e-4);
+  EXPECT_LT((place(*effect, coarse) - Eigen::Vector3d(0.04, 0.02, 0.04)).norm(), 1e-4);
+  EXPECT_LT((place(*effect, fine) - Eigen::Vector3d(0.04, 0.02, 0.04)).norm(), 1e-4);
   Eigen::VectorXd moved = effect->Parameters();
   moved[3] = 0.05;
-  effect->SetParameters(moved);
-  EXPECT_LT((place(fine) - Eigen::Vector3d(0.05, 0.02, 0.04)).norm(), 1e-4);
-  EXPECT_LT((place(coarse) - Eigen::Vector3d(0.05, 0.02, 0.04)).norm(), 1e-4);
+  const auto other = effect->WithParameters(moved);
+  EXPECT_LT((place(*other, fine) - Eigen::Vector3d(0.05, 0.02, 0.04)).norm(), 1e-4);
+  EXPECT_LT((place(*other, coarse) - Eigen::Vector3d(0.05, 0.02, 0.04)).norm(), 1e-4);
 }
 
 // A free body keeps F (stop − start) of momentum, for steps that do not meet start and stop.

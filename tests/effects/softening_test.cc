@@ -14,7 +14,7 @@ namespace {
 constexpr double kModulus = 6e4;  // Pa
 constexpr double kHalf = 0.1;
 
-std::shared_ptr<Effect> Branch(double modulus = kModulus, double poisson = 0.4) {
+std::shared_ptr<const Effect> Branch(double modulus = kModulus, double poisson = 0.4) {
   return MakeEffect(
       "softening", {{"modulus", modulus}, {"softening_strain", kHalf}, {"poisson_ratio", poisson}});
 }

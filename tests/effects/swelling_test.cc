@@ -16,7 +16,7 @@ namespace {
 constexpr double kYoung = 8e4;  // Pa
 constexpr double kPoisson = 0.4;
 
-std::shared_ptr<Effect> SwellingBy(double strain) {
+std::shared_ptr<const Effect> SwellingBy(double strain) {
   return MakeEffect("swelling",
                     {{"strain", strain}, {"young_modulus", kYoung}, {"poisson_ratio", kPoisson}});
 }

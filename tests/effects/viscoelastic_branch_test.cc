@@ -15,7 +15,8 @@ namespace {
 constexpr double kModulus = 4e4;  // Pa
 constexpr double kTau = 0.03;     // s
 
-std::shared_ptr<Effect> Branch(double modulus = kModulus, double tau = kTau, double poisson = 0) {
+std::shared_ptr<const Effect> Branch(double modulus = kModulus, double tau = kTau,
+                                     double poisson = 0) {
   return MakeEffect("viscoelastic_branch",
                     {{"modulus", modulus}, {"relaxation_time", tau}, {"poisson_ratio", poisson}});
 }

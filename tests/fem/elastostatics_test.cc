@@ -15,11 +15,11 @@
 namespace lacuna {
 namespace {
 
-std::shared_ptr<Effect> Law(const std::string& type, double young, double poisson) {
+std::shared_ptr<const Effect> Law(const std::string& type, double young, double poisson) {
   return MakeEffect(type, {{"young_modulus", young}, {"poisson_ratio", poisson}});
 }
 
-Model MakeModel(const TetMesh& mesh, double density, std::shared_ptr<Effect> law) {
+Model MakeModel(const TetMesh& mesh, double density, std::shared_ptr<const Effect> law) {
   return {std::make_shared<const Body>(MakeBody(mesh, density)), {std::move(law)}, {}};
 }
 

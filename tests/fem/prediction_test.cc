@@ -29,7 +29,7 @@ struct Visited {
 // A bar in its weight, clamped at one end and pulled aside at the other until it is let go.
 struct HeldBar {
   std::shared_ptr<const Body> body;
-  std::vector<std::shared_ptr<Effect>> effects;
+  std::vector<std::shared_ptr<const Effect>> effects;
   Eigen::VectorXi clamped;
   Eigen::VectorXd pull;  // 3n, N
   PredictionOptions options;
@@ -213,7 +213,7 @@ TEST(Prediction, SensitivityToTheModelAgreesWithDifferencesBetweenSteps) {
   HeldBar bar;
   const Eigen::VectorXd values = bar.effects[0]->Parameters();
   ExpectDerivative(&bar, {.effect = bar.effects[0], .parameter = 0}, 50, [&](double by) {
-    bar.effects[0]->SetParameters(values + Eigen::Vector2d(by, 0));
+    bar.effects[0] = bar.effects[0]->WithParameters(values + Eigen::Vector2d(by, 0));
   });
 }
 
@@ -270,17 +270,17 @@ TEST(Prediction, QuasiStaticSensitivityAgreesWithDifferences) {
   HeldBar bar = LoadedBar();
   bar.options.time_step = 0.1;
   const std::vector<double> times{kStart, kStart + 0.2, kStart + 0.4};
-  const auto& branch = bar.effects.back();
+  const auto branch = bar.effects.back();
   const Eigen::VectorXd values = branch->Parameters();
   const double steps[] = {30, 1e-4};
   for (int k = 0; k < 2; ++k) {
     const Visited linear = bar.Run(times, {{.effect = branch, .parameter = k}});
     ASSERT_TRUE(linear.summary.IsUsable()) << linear.summary.message;
     const auto shifted = [&](double by) {
-      branch->SetParameters(values + by * Eigen::VectorXd::Unit(values.size(), k));
-      const Visited run = bar.Run(times);
-      branch->SetParameters(values);
-      return run.position.back();
+      HeldBar other = bar;
+      other.effects.back() =
+          branch->WithParameters(values + by * Eigen::VectorXd::Unit(values.size(), k));
+      return other.Run(times).position.back();
     };
     const Eigen::VectorXd difference = (shifted(steps[k]) - shifted(-steps[k])) / (2 * steps[k]);
     EXPECT_LT((linear.position_by.back() - difference).norm(), 1e-4 * difference.norm()) << k;

@@ -18,8 +18,8 @@ TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
       if (body.mesh.nodes(0, i) > 0.1 - 1e-9) tip.push_back(i);
     const Eigen::VectorXi nodes =
         Eigen::Map<const Eigen::VectorXi>(tip.data(), static_cast<Eigen::Index>(tip.size()));
-    PrescribedForce force(BoundaryShares(body, nodes),
-                          [](double time) { return Eigen::Vector3d(time, 0, -2 * time); });
+    const PrescribedForce of_gauge(BoundaryShares(body, nodes),
+                                   [](double time) { return Eigen::Vector3d(time, 0, -2 * time); });
     const Eigen::VectorXd position = body.mesh.nodes.reshaped();
     const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
     Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
@@ -79,9 +79,11 @@ TEST(BoundaryShares, CoverPartsOfFacesToo) {
 TEST(PrescribedForce, ItsEnergyAndGainAreThoseOfADeadLoad) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.03}, {3, 2, 2}, 1), 1000);
   const int nodes = body.NodeCount();
-  PrescribedForce force(BoundaryShares(body, Eigen::VectorXi::LinSpaced(nodes, 0, nodes - 1)),
-                        [](double time) { return Eigen::Vector3d(1 + time, 2, -3 * time); });
-  force.SetParameters(Eigen::VectorXd::Constant(1, 0.7));
+  const PrescribedForce of_gauge(
+      BoundaryShares(body, Eigen::VectorXi::LinSpaced(nodes, 0, nodes - 1)),
+      [](double time) { return Eigen::Vector3d(1 + time, 2, -3 * time); });
+  const auto corrected = of_gauge.WithParameters(Eigen::VectorXd::Constant(1, 0.7));
+  const Effect& force = *corrected;
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   const Eigen::VectorXd shift = 0.01 * Eigen::VectorXd::LinSpaced(rest.size(), -1, 1);
   const Eigen::VectorXd moved = rest + shift, velocity = Eigen::VectorXd::Zero(rest.size()), state;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -21,7 +22,7 @@ constexpr int kDamped = 2;          // in Case::effects
 // is lifted by `lift` times a smooth course and turned about the bar's axis.
 struct Case {
   std::shared_ptr<const Body> body;
-  std::vector<std::shared_ptr<Effect>> effects;
+  std::vector<std::shared_ptr<const Effect>> effects;
   Eigen::VectorXi clamped;
   double lift = 0.3;  // m/s²
   double turn = 0;    // rad/s²
@@ -108,13 +109,19 @@ void ExpectDerivative(const Case& motion, const Perturbation& perturbation, doub
       << name;
 }
 
-void ExpectParameterDerivative(const Case& motion, const std::shared_ptr<Effect>& effect,
+void ExpectParameterDerivative(const Case& motion, const std::shared_ptr<const Effect>& effect,
                                int parameter, double step, double tolerance) {
+  Case shifted = motion;
+  const auto place = std::find(shifted.effects.begin(), shifted.effects.end(), effect);
+  ASSERT_NE(place, shifted.effects.end());
   const Eigen::VectorXd values = effect->Parameters();
   const auto shift = [&](double by) {
-    effect->SetParameters(values + by * Eigen::VectorXd::Unit(values.size(), parameter));
+    *place =
+        by == 0
+            ? effect
+            : effect->WithParameters(values + by * Eigen::VectorXd::Unit(values.size(), parameter));
   };
-  ExpectDerivative(motion, {effect, parameter, {}}, step, shift, tolerance,
+  ExpectDerivative(shifted, {effect, parameter, {}}, step, shift, tolerance,
                    effect->Card().type + "." + effect->Card().parameters[parameter].name);
 }
 
@@ -181,7 +188,7 @@ TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAMemoryThatIsNotInTheModel) {
   Eigen::MatrixXd by_position;
   motion.Run({{branch, 0}}, &without, &velocity, &by_position);
   const double little = 5;  // Pa, of a body of 50 kPa: what is quadratic in it is 1e-4 of it
-  branch->SetParameters(Eigen::Vector3d(little, 0.03, 0.4));
+  with.effects.back() = branch->WithParameters(Eigen::Vector3d(little, 0.03, 0.4));
   with.Run({}, &plus, &velocity);
   const Eigen::VectorXd difference = (plus - without) / little;
   EXPECT_LT((by_position.col(0) - difference).norm(), 1e-3 * difference.norm());
@@ -197,9 +204,9 @@ TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAnEffectThatIsNotInTheModel) {
   Eigen::VectorXd position, velocity, plus, minus;
   Eigen::MatrixXd by_position;
   motion.Run({little}, &position, &velocity, &by_position);
-  damping->SetParameters(Eigen::VectorXd::Constant(1, 1e-3));
+  with.effects.back() = damping->WithParameters(Eigen::VectorXd::Constant(1, 1e-3));
   with.Run({}, &plus, &velocity);
-  damping->SetParameters(Eigen::VectorXd::Constant(1, -1e-3));
+  with.effects.back() = damping->WithParameters(Eigen::VectorXd::Constant(1, -1e-3));
   with.Run({}, &minus, &velocity);
   const Eigen::VectorXd difference = (plus - minus) / 2e-3;
   EXPECT_LT((by_position.col(0) - difference).norm(), 1e-5 * difference.norm());

@@ -69,7 +69,7 @@ MovingBody MakeMovingBody(const Effect& effect, int order, const std::array<int,
 
 class Checker {
  public:
-  Checker(Effect* effect, int order, const CheckEffectOptions& options)
+  Checker(const Effect* effect, int order, const CheckEffectOptions& options)
       : effect_(*effect),
         options_(options),
         order_(order),
@@ -212,6 +212,13 @@ class Checker {
     EXPECT_LE(eigenvalues.maxCoeff(), 1e-12 * largest) << "negative semi-definite";
   }
 
+  // The force in motion with other parameter values.
+  Eigen::VectorXd ForceWith(const Eigen::VectorXd& values) const {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
+    effect_.WithParameters(values)->AddForce(At(moving_.motion), &force);
+    return force;
+  }
+
   void CheckParameters() const {
     const EffectCard& card = effect_.Card();
     const Eigen::VectorXd values = effect_.Parameters();
@@ -223,25 +230,21 @@ class Checker {
       effect_.AddParameterDerivative(At(moving_.motion), static_cast<int>(k), &derivative);
       ASSERT_GT(derivative.norm(), 0) << "∂f/∂" << parameter.name << " is zero";
       const auto value = [&](double h) {
-        effect_.SetParameters(values + h * Eigen::VectorXd::Unit(values.size(), k));
-        const Eigen::VectorXd force = Force(moving_.motion);
-        effect_.SetParameters(values);
-        return force;
+        return ForceWith(values + h * Eigen::VectorXd::Unit(values.size(), k));
       };
       const double unit =
           values[k] != 0 ? std::abs(values[k]) : parameter.plausible_max - parameter.plausible_min;
       EXPECT_LT(BestError(value, derivative, 0.1 * unit), options_.tolerance)
           << "∂f/∂" << parameter.name;
-      EXPECT_EQ(effect_.Parameters(), values) << "SetParameters and Parameters agree";
+      const Eigen::VectorXd other = values + 0.1 * unit * Eigen::VectorXd::Unit(values.size(), k);
+      EXPECT_EQ(effect_.WithParameters(other)->Parameters(), other) << parameter.name;
+      EXPECT_EQ(effect_.Parameters(), values) << "an effect does not change";
       if (!std::isnan(parameter.null_value)) {
         Eigen::VectorXd at_null = values;
         at_null[k] = parameter.null_value;
         if (card.parameters.size() == 1 || k == 0) {
-          effect_.SetParameters(at_null);
-          const double left = Force(moving_.motion).norm();
-          effect_.SetParameters(values);
-          const double full = Force(moving_.motion).norm();
-          EXPECT_LT(left, full) << "the null value of " << parameter.name << " weakens the effect";
+          EXPECT_LT(ForceWith(at_null).norm(), Force(moving_.motion).norm())
+              << "the null value of " << parameter.name << " weakens the effect";
         }
       }
     }
@@ -317,7 +320,7 @@ class Checker {
         << "the same tangent on one thread and on two";
   }
 
-  Effect& effect_;
+  const Effect& effect_;
   const CheckEffectOptions options_;
   const int order_;
   const MovingBody moving_;
@@ -349,7 +352,7 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
   return force;
 }
 
-void CheckEffect(Effect* effect, const CheckEffectOptions& options) {
+void CheckEffect(const Effect* effect, const CheckEffectOptions& options) {
   CheckCard(effect->Card());
   for (const int order : {1, 2}) {
     SCOPED_TRACE(effect->Card().type + " on elements of order " + std::to_string(order));

@@ -27,7 +27,7 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
                         const Eigen::VectorXd& velocity);
 
 // At a random deformed and moving state, for linear and quadratic elements:
-//  - the card is complete and its parameters agree with Parameters() and SetParameters();
+//  - the card is complete and its parameters agree with Parameters() and WithParameters();
 //  - f = −∂E/∂x where the effect has an energy;
 //  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
 //    differences, for all weights and every parameter that is not a setting, and are not simply
@@ -36,7 +36,7 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
 //  - forces and torques sum to zero where the card says so; then the forces are the same, but
 //    turned, in a frame that is turned, shifted and spinning;
 //  - forces and tangents are bit-identical for one and for two threads.
-void CheckEffect(Effect* effect, const CheckEffectOptions& options = {});
+void CheckEffect(const Effect* effect, const CheckEffectOptions& options = {});
 
 }  // namespace lacuna
 

@@ -6,13 +6,11 @@
 #include <fstream>
 #include <random>
 
-#include "calibration/calibration_fits.h"
 #include "effects/catalogue.h"
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
-#include "support/temporary_folder.h"
 
 namespace lacuna {
 Eigen::Matrix3Xd BarMarkerPlaces() {
@@ -140,21 +138,6 @@ PredictionStudy ReadBarStudy(const std::filesystem::path& folder,
                              const std::map<std::string, std::string>& replaced) {
   return ReadPredictionStudy(
       Config::Parse(BarExperiment(folder, replaced), (folder / "study.yaml").string()));
-}
-
-Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
-                      const DiagnosisOptions& options) {
-  const TemporaryFolder folder;
-  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
-  const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
-  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const CalibrationProblem problem(study, mesh);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const Calibration calibration = FitFromStart(problem, &progress);
-  EXPECT_TRUE(calibration.usable) << calibration.message;
-  return Diagnose(problem, calibration.parameters, options, &progress);
 }
 
 }  // namespace lacuna

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/diagnosis.h"
 #include "prediction/prediction_study.h"
 #include "support/box_mesh.h"
 
@@ -28,7 +27,7 @@ struct HeldBarTruth {
   // N, over time: a net force spread over the bar by mass, that a model may lack.
   std::function<Eigen::Vector3d(double time)> body_force = {};
   std::string law = "neo_hookean";
-  std::vector<std::shared_ptr<Effect>> hidden = {};  // that a model may lack too
+  std::vector<std::shared_ptr<const Effect>> hidden = {};  // that a model may lack too
 };
 inline constexpr double kRelease = 0.0437;   // s
 inline constexpr double kFitUntil = 0.1501;  // s
@@ -56,10 +55,6 @@ std::string BarExperiment(const std::filesystem::path& folder,
                           const std::map<std::string, std::string>& replaced = {});
 PredictionStudy ReadBarStudy(const std::filesystem::path& folder,
                              const std::map<std::string, std::string>& replaced = {});
-
-// Films the bar, fits the experiment, with texts replaced, and diagnoses it.
-Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
-                      const DiagnosisOptions& options = {});
 
 }  // namespace lacuna
 

@@ -15,7 +15,7 @@ namespace lacuna {
 
 class StrainedBody {
  public:
-  explicit StrainedBody(std::shared_ptr<Effect> effect, int order = 1)
+  explicit StrainedBody(std::shared_ptr<const Effect> effect, int order = 1)
       : effect_(std::move(effect)),
         body_(MakeBody(BoxMesh({0, 0, 0}, {0.04, 0.02, 0.02}, {2, 1, 1}, order), 1000)),
         state_(effect_->StateSize(body_)) {
@@ -73,7 +73,7 @@ class StrainedBody {
   }
 
  private:
-  std::shared_ptr<Effect> effect_;
+  std::shared_ptr<const Effect> effect_;
   Body body_;
   Eigen::VectorXd state_;
 };

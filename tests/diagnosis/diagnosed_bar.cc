@@ -1,0 +1,25 @@
+#include "diagnosis/diagnosed_bar.h"
+
+#include <gtest/gtest.h>
+
+#include "calibration/calibration_fits.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+
+Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
+                      const DiagnosisOptions& options) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
+  const CalibrationProblem problem(study, mesh);
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const Calibration calibration = FitFromStart(problem, &progress);
+  EXPECT_TRUE(calibration.usable) << calibration.message;
+  return Diagnose(problem, calibration.parameters, options, &progress);
+}
+
+}  // namespace lacuna
