@@ -11,20 +11,21 @@
 namespace lacuna {
 namespace {
 
-constexpr int kWidths = 121;        // 20 a decade
-constexpr double kAsLikely = 2;     // of the logarithm of the likelihood, below the best
-constexpr double kSmallest = 1e-5;  // of s, over the plausible and √v
+constexpr int kWidths = 121;     // 20 per decade
+constexpr double kAsLikely = 2;  // decrease of the log-likelihood that counts as nearly as likely
+constexpr double kSmallest = 1e-5;  // range of √ρ, relative to the plausible width
 constexpr double kLargest = 10;
 
-// The likelihood by the ratio ρ = s²/v, in the eigenvectors of Lᵀ H L.
+// The marginal likelihood as a function of the ratio ρ = s²/v, in the eigenbasis of Lᵀ H L with the
+// information H = Sᵀ C⁻¹ S.
 class RatioLikelihood {
  public:
-  RatioLikelihood(const Eigen::MatrixXd& information, const Eigen::VectorXd& pull, double left,
-                  int coordinates)
+  RatioLikelihood(const Eigen::MatrixXd& information, const Eigen::VectorXd& pull,
+                  double residual_square, int coordinates)
       : eigen_(0.5 * (information + information.transpose())),
         values_(eigen_.eigenvalues().array().max(0)),
         along_(eigen_.eigenvectors().transpose() * pull),
-        left_(left),
+        residual_square_(residual_square),
         coordinates_(coordinates) {}
 
   double Variance(double ratio) const { return std::max(1.0, Rest(ratio) / coordinates_); }
@@ -43,25 +44,27 @@ class RatioLikelihood {
 
  private:
   Eigen::ArrayXd Spread(double ratio) const { return ratio / (1 + ratio * values_); }
-  double Rest(double ratio) const { return left_ - (along_.square() * Spread(ratio)).sum(); }
+  double Rest(double ratio) const {
+    return residual_square_ - (along_.square() * Spread(ratio)).sum();
+  }
 
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
   Eigen::ArrayXd values_, along_;
-  double left_;
+  double residual_square_;  // rᵀ C⁻¹ r
   int coordinates_;
 };
 
 }  // namespace
 
-AmplitudeEstimate EstimateAmplitudes(const FittedModel& fitted, const Eigen::MatrixXd& by,
+AmplitudeEstimate EstimateAmplitudes(const FittedModel& fitted, const Eigen::MatrixXd& jacobian,
                                      int coordinates, double plausible,
                                      const std::vector<Eigen::MatrixXd>& shapes) {
   CHECK_GT(coordinates, 0);
   CHECK_GT(plausible, 0);
   CHECK(!shapes.empty());
-  const Eigen::MatrixXd information = fitted.Product(by, by);
-  const Eigen::VectorXd pull = -fitted.Product(by, fitted.residual());
-  const double left = fitted.Product(fitted.residual(), fitted.residual())(0, 0);
+  const Eigen::MatrixXd information = fitted.Product(jacobian, jacobian);
+  const Eigen::VectorXd pull = -fitted.Product(jacobian, fitted.residual());
+  const double residual_square = fitted.Product(fitted.residual(), fitted.residual())(0, 0);
   const auto ratio_of = [&](int k) {
     const double s = plausible * kSmallest *
                      std::pow(kLargest / kSmallest, static_cast<double>(k) / (kWidths - 1));
@@ -73,8 +76,8 @@ AmplitudeEstimate EstimateAmplitudes(const FittedModel& fitted, const Eigen::Mat
   double best = -std::numeric_limits<double>::infinity();
   for (size_t shape = 0; shape < shapes.size(); ++shape) {
     const Eigen::MatrixXd& L = shapes[shape];
-    RatioLikelihood likelihood(L.transpose() * information * L, L.transpose() * pull, left,
-                               coordinates);
+    RatioLikelihood likelihood(L.transpose() * information * L, L.transpose() * pull,
+                               residual_square, coordinates);
     std::vector<double> of_shape;
     for (int k = 0; k < kWidths; ++k) {
       const double ratio = ratio_of(k);

@@ -1,13 +1,14 @@
-// Many amplitudes at once from a residual, with a prior whose width the data chooses.
+// Joint estimation of many amplitudes from a residual, under a prior whose width the data choose.
 //
-// With the whitened residual r of a fitted model, what its fit can still do taken away
-// (fitted_model.h), and its derivative S by amplitudes a of one kind and unit,
-//   r + S a ~ N(0, v C),   a ~ N(0, s² L Lᵀ),   v ≥ 1,
-// the width s and, of several given, the shape L are taken from the marginal likelihood (type II
-// maximum likelihood: MacKay, Neural Computation 4, 1992), with v what they leave: a residual that
-// no amplitude explains counts as noise. Of all s nearly as likely as the best one the largest is
-// used, so that amplitudes which the data hardly sees keep an honest deviation instead of being
-// declared zero.
+// Let r be the whitened residual of a fitted model, C its covariance when the fit is taken into
+// account (fitted_model.h), and S = ∂r/∂a its Jacobian with respect to amplitudes a of one kind and
+// unit. The model is
+//   r + S a ~ N(0, v C),   a ~ N(0, s² L Lᵀ),   v ≥ 1.
+// The width s and the shape L, one of several candidates, maximise the marginal likelihood (type II
+// maximum likelihood: MacKay, Neural Computation 4, 1992). The noise factor v follows from the
+// residual that remains, so that a residual which no amplitude explains counts as noise. Among the
+// widths that are nearly as likely as the best one, the largest is used: amplitudes to which the
+// data are hardly sensitive then keep a realistic deviation instead of being estimated as zero.
 #ifndef LACUNA_ANALYSIS_AMPLITUDE_ESTIMATE_H_
 #define LACUNA_ANALYSIS_AMPLITUDE_ESTIMATE_H_
 
@@ -19,18 +20,18 @@
 namespace lacuna {
 
 struct AmplitudeEstimate {
-  Eigen::VectorXd mean;
-  Eigen::MatrixXd covariance;
-  double width = 0;     // s, of the prior
-  int shape = 0;        // which L
-  double noise = 1;     // √v: by how much what stays unexplained exceeds the noise
-  double evidence = 0;  // ln of the likelihood with the best s over that with none
+  Eigen::VectorXd mean;        // k, posterior mean in the unit of the amplitudes
+  Eigen::MatrixXd covariance;  // k × k, posterior covariance
+  double width = 0;            // s, in the unit of the amplitudes
+  int shape = 0;               // index of the chosen L
+  double noise = 1;     // √v: standard deviation of the remaining residual, in that of the noise
+  double evidence = 0;  // natural log of the likelihood ratio of the best s to s = 0
 };
 
-// `by`: n × k, ∂r/∂a. `coordinates`: rows that were measured (others are 0 in all of them).
-// `plausible`: the largest s; the smallest that is tried is 1e-5 √v times it. `shapes`: k × k each,
-// at least one.
-AmplitudeEstimate EstimateAmplitudes(const FittedModel& fitted, const Eigen::MatrixXd& by,
+// `jacobian` is S (n × k), and `coordinates` the number of rows that were measured (> 0; all other
+// rows are 0). `plausible` (> 0) is the largest s; the smallest one tried is 1e-5 √v times as
+// large. `shapes` holds at least one L (k × k). Violations are programming errors (CHECK).
+AmplitudeEstimate EstimateAmplitudes(const FittedModel& fitted, const Eigen::MatrixXd& jacobian,
                                      int coordinates, double plausible,
                                      const std::vector<Eigen::MatrixXd>& shapes);
 

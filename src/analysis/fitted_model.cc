@@ -14,7 +14,7 @@ FittedModel::FittedModel(Eigen::VectorXd residual, Eigen::MatrixXd jacobian,
   CHECK_EQ(residual_.size(), jacobian_.rows());
   CHECK_EQ(prior_deviation.size(), jacobian_.cols());
   Eigen::MatrixXd information = jacobian_.transpose() * jacobian_;
-  // A parameter that nothing depends on and that has no prior must not make the matrix singular.
+  // Keeps the matrix regular for a parameter without influence and without prior.
   information.diagonal().array() += std::numeric_limits<double>::min();
   for (Eigen::Index k = 0; k < prior_deviation.size(); ++k)
     if (std::isfinite(prior_deviation[k]))

@@ -11,16 +11,17 @@
 namespace lacuna {
 namespace {
 
-constexpr double kRounding = 1e-8;  // of a column's square: what projecting it out leaves
+// After a projection, less than this fraction of a column's square consists of rounding errors.
+constexpr double kRounding = 1e-8;
 
-// ln(2 Φ(z)), Φ the normal distribution; its asymptotic series where erfc underflows.
+// ln(2 Φ(z)) with the standard normal distribution Φ; an asymptotic series where erfc underflows.
 double LogTwiceNormal(double z) {
   if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
   constexpr double kPi = 3.14159265358979323846;
   return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * kPi));
 }
 
-// Information and prior of the chosen parameters, in units that make its diagonal 1.
+// The posterior information matrix of the chosen parameters, scaled to a unit diagonal.
 struct ScaledInformation {
   Eigen::VectorXd unit;
   Eigen::LDLT<Eigen::MatrixXd> factor;
@@ -28,8 +29,9 @@ struct ScaledInformation {
 
 }  // namespace
 
-LinearModel::LinearModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
-                         std::vector<LinearPrior> priors)
+LinearGaussianModel::LinearGaussianModel(const Eigen::VectorXd& residual,
+                                         const Eigen::MatrixXd& columns,
+                                         std::vector<LinearPrior> priors)
     : squares_(residual.squaredNorm()),
       toward_(columns.transpose() * residual),
       products_(columns.transpose() * columns),
@@ -48,7 +50,7 @@ ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<Li
     const double deviation = priors[chosen[i]].deviation;
     const Eigen::Index k = static_cast<Eigen::Index>(i);
     if (std::isfinite(deviation)) information(k, k) += 1 / (deviation * deviation);
-    // A parameter that nothing depends on and that has no prior must not make the matrix singular.
+    // Keeps the matrix regular for a parameter without influence and without prior.
     information(k, k) = std::max(information(k, k), std::numeric_limits<double>::min());
   }
   ScaledInformation scaled;
@@ -59,26 +61,26 @@ ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<Li
 
 }  // namespace
 
-LinearModel LinearModel::WithResidual(const Eigen::VectorXd& residual,
-                                      const Eigen::MatrixXd& columns) const {
+LinearGaussianModel LinearGaussianModel::WithResidual(const Eigen::VectorXd& residual,
+                                                      const Eigen::MatrixXd& columns) const {
   CHECK_EQ(columns.cols(), products_.cols());
-  LinearModel other = *this;
+  LinearGaussianModel other = *this;
   other.squares_ = residual.squaredNorm();
   other.toward_ = columns.transpose() * residual;
   return other;
 }
 
-LinearFit LinearModel::FitAll(double variance) const {
+LinearFit LinearGaussianModel::FitAll(double variance) const {
   std::vector<int> all(priors_.size());
   std::iota(all.begin(), all.end(), 0);
   return Fit(all, variance);
 }
 
-LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) const {
+LinearFit LinearGaussianModel::Fit(const std::vector<int>& chosen, double variance) const {
   CHECK_GT(variance, 0);
   LinearFit fit;
   std::vector<int> free = chosen;
-  double cut = 0;  // what the priors' positive halves add to the evidence of the whole ones
+  double truncation = 0;  // change of the log-evidence by truncating priors at 0
   bool first = true;
   while (true) {
     const Eigen::Index count = static_cast<Eigen::Index>(free.size());
@@ -89,9 +91,9 @@ LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) cons
       if (std::isfinite(prior.deviation))
         right[k] += prior.mean / (prior.deviation * prior.deviation);
     }
-    const auto solve = [&](const Eigen::MatrixXd& what) -> Eigen::MatrixXd {
+    const auto solve = [&](const Eigen::MatrixXd& columns) -> Eigen::MatrixXd {
       return information.unit.asDiagonal() *
-             information.factor.solve(information.unit.asDiagonal() * what);
+             information.factor.solve(information.unit.asDiagonal() * columns);
     };
     const Eigen::VectorXd change = solve(right);
     const Eigen::MatrixXd covariance = solve(Eigen::MatrixXd::Identity(count, count));
@@ -103,7 +105,7 @@ LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) cons
       for (Eigen::Index k = 0; k < count; ++k) {
         const LinearPrior& prior = priors_[free[k]];
         const double deviation = std::sqrt(std::max(0.0, covariance(k, k)));
-        if (prior.positive && deviation > 0) cut += LogTwiceNormal(change[k] / deviation);
+        if (prior.positive && deviation > 0) truncation += LogTwiceNormal(change[k] / deviation);
         if (!std::isfinite(prior.deviation)) continue;
         prior_cost += std::pow((change[k] - prior.mean) / prior.deviation, 2);
         log_prior += std::log(prior.deviation);
@@ -111,7 +113,7 @@ LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) cons
       const double log_determinant = information.factor.vectorD().array().max(1e-300).log().sum() -
                                      2 * information.unit.array().log().sum();
       fit.log_evidence =
-          -0.5 * (misfit / variance + prior_cost) - 0.5 * log_determinant - log_prior + cut;
+          -0.5 * (misfit / variance + prior_cost) - 0.5 * log_determinant - log_prior + truncation;
       fit.change = Eigen::VectorXd::Zero(count);
       fit.deviation = covariance.diagonal().cwiseMax(0).cwiseSqrt();
     }
@@ -130,8 +132,9 @@ LinearFit LinearModel::Fit(const std::vector<int>& chosen, double variance) cons
   }
 }
 
-Eigen::MatrixXd LinearModel::Remaining(const std::vector<int>& taken, const std::vector<int>& a,
-                                       const std::vector<int>& b, double variance) const {
+Eigen::MatrixXd LinearGaussianModel::Remaining(const std::vector<int>& taken,
+                                               const std::vector<int>& a, const std::vector<int>& b,
+                                               double variance) const {
   Eigen::MatrixXd remaining = products_(a, b);
   if (taken.empty()) return remaining;
   const ScaledInformation information = Informed(products_, priors_, taken, variance);
@@ -141,8 +144,8 @@ Eigen::MatrixXd LinearModel::Remaining(const std::vector<int>& taken, const std:
   return remaining;
 }
 
-double LinearModel::Collinearity(const std::vector<int>& taken, const std::vector<int>& a,
-                                 const std::vector<int>& b, double variance) const {
+double LinearGaussianModel::Collinearity(const std::vector<int>& taken, const std::vector<int>& a,
+                                         const std::vector<int>& b, double variance) const {
   const auto whitener = [&](const std::vector<int>& columns) {
     const Eigen::VectorXd unit =
         products_(columns, columns).diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();

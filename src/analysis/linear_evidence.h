@@ -1,12 +1,13 @@
-// How well models explain a residual that answers linearly to their parameters.
+// Evidence of competing models for a residual that depends linearly on their parameters.
 //
-// With the residual r (whitened), the derivatives A of the chosen parameters and their priors
-// N(m, s²) (of the change δ from where r was taken), the model says
+// Let r be the whitened residual, A its derivatives with respect to the chosen parameters and
+// N(m, s²) the priors of the changes δ of these parameters. The model states
 //   r + A δ ~ N(0, v I),   δ ~ N(m, diag s²),
-// and the data's density under it, the changes integrated out, is (MacKay, Information Theory,
-// Inference, and Learning Algorithms, 2003, ch. 28; here up to a constant that all models share)
+// and its evidence, the density of the data with the changes integrated out, is (MacKay,
+// Information Theory, Inference, and Learning Algorithms, 2003, ch. 28; up to a constant common to
+// all models)
 //   ln p = −½ min_δ { ‖r + A δ‖²/v + Σ ((δ − m)/s)² } − ½ ln det(I + diag(s) AᵀA diag(s)/v).
-// The second term is the price of parameters that could have explained much else.
+// The second term penalises parameters that could have explained many other residuals as well.
 #ifndef LACUNA_ANALYSIS_LINEAR_EVIDENCE_H_
 #define LACUNA_ANALYSIS_LINEAR_EVIDENCE_H_
 
@@ -17,34 +18,38 @@
 namespace lacuna {
 
 struct LinearPrior {
-  double mean = 0;                                             // of the change
-  double deviation = std::numeric_limits<double>::infinity();  // > 0; infinite: no prior, no price
-  bool positive = false;                                       // the change cannot be negative
+  double mean = 0;                                             // m, of the change δ
+  double deviation = std::numeric_limits<double>::infinity();  // s > 0; infinite: no prior
+  bool positive = false;                                       // restricts the change to δ ≥ 0
 };
 
 struct LinearFit {
-  double log_evidence = 0;
+  double log_evidence = 0;    // ln p, natural logarithm
   Eigen::VectorXd change;     // δ̂, in the order of the chosen columns
-  Eigen::VectorXd deviation;  // of it
+  Eigen::VectorXd deviation;  // posterior standard deviations of the changes
   double misfit = 0;          // ‖r + A δ̂‖²
 };
 
-class LinearModel {
+class LinearGaussianModel {
  public:
-  // `residual`: n; `columns`: n × k, ∂r/∂δ of everything that may be chosen; `priors`: k.
-  LinearModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
-              std::vector<LinearPrior> priors);
+  // `residual` has n entries, `columns` (n × k) holds ∂r/∂δ for all parameters that may be chosen,
+  // and `priors` has k entries. CHECKs the sizes and that the deviations are positive.
+  LinearGaussianModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
+                      std::vector<LinearPrior> priors);
 
-  // The same columns with another residual.
-  LinearModel WithResidual(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns) const;
+  // A model with another residual and the values of `columns` for it; the products AᵀA are kept.
+  LinearGaussianModel WithResidual(const Eigen::VectorXd& residual,
+                                   const Eigen::MatrixXd& columns) const;
 
-  // With the chosen columns only. `variance`: v ≥ 0 of what is noise. A change that its prior wants
-  // positive and that comes out negative is set to 0; its evidence is that of the prior cut in
-  // half, exact for one such parameter and taken parameter by parameter for several.
+  // Fits the chosen columns with noise of the given variance v > 0. A change whose prior requires
+  // it to be positive is set to 0 if its estimate is negative. The evidence then belongs to the
+  // prior truncated at 0; it is exact for one such parameter and approximate, treating the
+  // parameters independently, for several.
   LinearFit Fit(const std::vector<int>& chosen, double variance) const;
-  LinearFit FitAll(double variance) const;  // with all columns
+  LinearFit FitAll(double variance) const;  // fits all columns
 
-  // AᵀB of columns a and b after the columns `taken`, with their priors, have taken what they can.
+  // The products AᵀB of columns a and b after the columns `taken`, with their priors, have been
+  // projected out.
   Eigen::MatrixXd Remaining(const std::vector<int>& taken, const std::vector<int>& a,
                             const std::vector<int>& b, double variance) const;
 
@@ -52,13 +57,14 @@ class LinearModel {
   double Square(int column) const { return products_(column, column); }
   const LinearPrior& Prior(int column) const { return priors_[column]; }
 
-  // The largest canonical correlation of two sets of columns after `taken`: near 1, the data cannot
-  // tell them apart; 0 as well where one of them is taken whole.
+  // The largest canonical correlation, 0 to 1, of two sets of columns after `taken` has been
+  // projected out. Near 1 the data cannot distinguish the two sets. It is 0 if nothing remains of
+  // one of them.
   double Collinearity(const std::vector<int>& taken, const std::vector<int>& a,
                       const std::vector<int>& b, double variance) const;
 
  private:
-  double squares_ = 0;
+  double squares_ = 0;        // rᵀ r
   Eigen::VectorXd toward_;    // Aᵀ r
   Eigen::MatrixXd products_;  // Aᵀ A
   std::vector<LinearPrior> priors_;

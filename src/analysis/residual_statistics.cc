@@ -69,7 +69,7 @@ StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& posi
   return span;
 }
 
-// Entries where neither is NaN.
+// Pairs of entries of which neither is NaN.
 std::vector<std::pair<double, double>> SeenPairs(const Eigen::MatrixXd& a,
                                                  const Eigen::MatrixXd& b) {
   CHECK_EQ(a.rows(), b.rows());
@@ -96,7 +96,7 @@ Eigen::VectorXd Ranks(const std::vector<double>& values) {
   return ranks;
 }
 
-// The rows at `time`, linear between frames; false outside them.
+// Interpolates the rows linearly at `time`; returns false outside the range of the frames.
 bool At(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows, double time,
         Eigen::VectorXd* value) {
   const Eigen::Index count = times.size();
@@ -184,7 +184,7 @@ std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::M
   const int frames = static_cast<int>(times.size());
   for (int first = 0; first + fewest <= frames;) {
     int end = first + 1;
-    // A frame that shares no point with the first tells nothing of motion: it ends the span.
+    // The span also ends at a frame without a point in common with the first one (NaN).
     while (end < frames && RmsBetween(positions, first, end) <= threshold) ++end;
     if (end - first >= fewest) {
       // Motion begins and ends slowly, within the threshold.
@@ -236,8 +236,8 @@ std::vector<ResidualBin> BinnedResiduals(const Eigen::MatrixXd& variable,
   std::sort(pairs.begin(), pairs.end());
   std::vector<ResidualBin> result;
   for (size_t begin = 0; begin < pairs.size();) {
-    const size_t left = std::max<size_t>(1, bins - std::min<size_t>(bins, result.size()));
-    const size_t share = (pairs.size() - begin + left - 1) / left;
+    const size_t bins_left = std::max<size_t>(1, bins - std::min<size_t>(bins, result.size()));
+    const size_t share = (pairs.size() - begin + bins_left - 1) / bins_left;
     size_t end = std::min(pairs.size(), begin + share);
     while (end < pairs.size() && pairs[end].first == pairs[end - 1].first) ++end;
     ResidualBin bin{pairs[begin].first, pairs[end - 1].first};
@@ -309,30 +309,31 @@ Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::Ma
                              double delay, double largest_delay) {
   CHECK_EQ(first.rows(), second.rows());
   constexpr int kFewest = 10;
-  const auto differ = [&](double by) {
+  const auto compare_at = [&](double shift) {
     Eigen::MatrixXd between = Eigen::MatrixXd::Constant(first.rows(), first.cols(), kUnknown);
     Repeatability result;
-    result.delay = by;
+    result.delay = shift;
     Eigen::VectorXd there;
     for (Eigen::Index f = 0; f < first.cols(); ++f) {
-      if (!At(second_times, second, first_times[f] + by, &there)) continue;
+      if (!At(second_times, second, first_times[f] + shift, &there)) continue;
       between.col(f) = there - first.col(f);
       ++result.frames;
     }
     if (result.frames >= kFewest) result.distance = Rms(PointLengths(Centred(between)));
     return result;
   };
-  // A delay at which little overlaps would look best: at least half of what overlaps at the start.
-  const Repeatability start = differ(delay);
+  // A delay with little overlap could appear best, so at least half of the initial overlap is
+  // needed.
+  const Repeatability start = compare_at(delay);
   Repeatability best = start;
   double reach = largest_delay;
   constexpr int kSteps = 20, kRefinements = 4;
   for (int round = 0; round < kRefinements; ++round) {
     const double centre = best.delay;
     for (int k = -kSteps; k <= kSteps; ++k) {
-      const double by =
+      const double shift =
           std::clamp(centre + reach * k / kSteps, delay - largest_delay, delay + largest_delay);
-      const Repeatability tried = differ(by);
+      const Repeatability tried = compare_at(shift);
       if (2 * tried.frames >= start.frames && tried.distance < best.distance) best = tried;
     }
     reach /= kSteps / 2;

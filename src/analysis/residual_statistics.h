@@ -1,9 +1,10 @@
-// What the residuals of a prediction say: how large they are and where, and how much noise the
-// measurement itself holds. Whether they are noise: whiteness.h.
+// Statistics of residuals: their size over points and frames, and the noise of the measurement.
+// Tests of whether residuals are noise are in whiteness.h.
 //
-// Vectors of m points over n frames are a matrix 3m × n: a point's x, y, z in three rows, frames in
-// time order in the columns, NaN where a point was not seen. Lengths of such vectors are m × n.
-// What cannot be told from the data given is NaN, never 0. All SI.
+// Vectors of m points over n frames form a 3m × n matrix: the x, y and z of a point in three
+// consecutive rows, the frames in temporal order in the columns, and NaN where a point was not
+// seen. Their lengths form an m × n matrix. All quantities are in SI units. A statistic that the
+// data do not determine is NaN, never 0.
 #ifndef LACUNA_ANALYSIS_RESIDUAL_STATISTICS_H_
 #define LACUNA_ANALYSIS_RESIDUAL_STATISTICS_H_
 
@@ -13,82 +14,86 @@
 
 namespace lacuna {
 
+// Stands for a statistic that the data do not determine.
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// m × n, NaN where a coordinate is.
+// The lengths (m × n) of vectors (3m × n); NaN if a coordinate is NaN.
 Eigen::MatrixXd PointLengths(const Eigen::MatrixXd& vectors);
 
-// Root mean square of the entries that are not NaN: of all, of each row (point), of each column
-// (frame). With σ the noise of a coordinate, a length of noise alone has √3 σ.
+// The root mean square of the entries that are not NaN: over all entries, for each row (point) and
+// for each column (frame). If σ is the noise of a coordinate, the lengths of noise have an rms of
+// √3 σ.
 double Rms(const Eigen::MatrixXd& lengths);
 Eigen::VectorXd RmsOfPoints(const Eigen::MatrixXd& lengths);
 Eigen::VectorXd RmsOfFrames(const Eigen::MatrixXd& lengths);
 
-// Rows minus the mean of what was seen of each; NaN stays.
+// Subtracts from each row the mean of its entries that are not NaN.
 Eigen::MatrixXd Centred(Eigen::MatrixXd series);
 
-// σ of the white part of measured coordinates (rows): the median of |second differences| over
-// 0.6745 √6, of each row, then the median of the rows; or the same of fourth differences (√70) where
-// that is less, as they see less of a motion that is quick for the frame rate. Noise that is
-// correlated over frames hardly shows. NaN without three frames in a row.
+// The standard deviation σ of the white part of measured coordinates (rows). For each row it is the
+// median of the absolute second differences, divided by 0.6745 √6, and the result is the median
+// over the rows. Fourth differences (with √70) are used instead if they give less, because motion
+// that is fast for the frame rate contributes less to them. Noise that is correlated over frames is
+// hardly included. NaN if no three consecutive frames are available.
 double WhiteNoise(const Eigen::MatrixXd& positions);
 
-// Frames over which the points, measured at `positions`, rest.
+// A range of consecutive frames in which all points are at rest.
 struct StaticSpan {
-  int first = 0, last = 0;      // columns
-  double deviation = kUnknown;  // m, of a coordinate from a straight line in time: all of the noise
-  double drift = kUnknown;      // m/s, rms over the points of that line's slope
+  int first = 0, last = 0;      // columns, both inclusive
+  double deviation = kUnknown;  // m, of a coordinate about a straight line in time: total noise
+  double drift = kUnknown;      // m/s, rms over the points of the slope of that line
 };
-// The spans, one after the other, of at least `fewest` (≥ 3) frames in which the rms over the
-// points of the distance from the span's first frame stays within `threshold`. Where a span borders
-// on motion the sixth of it next to that is not measured.
+// Finds the disjoint spans of at least `fewest` (≥ 3) frames in which the rms distance of the
+// points from their positions in the first frame of the span stays within `threshold` (m). At an
+// end that borders on motion, a sixth of the span is excluded from its deviation and drift.
 std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions,
                                     double threshold, int fewest);
 
-// m × n: how far from the point's place in the first frame that saw it; and how fast, from the
-// frames before and after (at the ends one of them), NaN where these did not see it.
+// The distance (m × n, m) of each point from its position in the first frame in which it was seen,
+// and its speed (m × n, m/s) by differences between the neighbouring frames, one-sided in the first
+// and the last frame. NaN where a point was not seen in the frames that are needed.
 Eigen::MatrixXd Displacements(const Eigen::MatrixXd& positions);
 Eigen::MatrixXd Speeds(const Eigen::VectorXd& times, const Eigen::MatrixXd& positions);
 
-// Lengths against a variable, of the same shape: bins with about as many points each, equal values
-// of the variable never apart.
+// Bins the lengths by a variable of the same shape. The bins contain about equally many points, and
+// equal values of the variable always fall into the same bin.
 struct ResidualBin {
-  double low = 0, high = 0, mean = 0;  // of the variable
-  int points = 0;
-  double rms = 0;
+  double low = 0, high = 0, mean = 0;  // of the variable, in its unit
+  int points = 0;                      // entries in the bin
+  double rms = 0;                      // of the lengths, m
 };
 std::vector<ResidualBin> BinnedResiduals(const Eigen::MatrixXd& variable,
                                          const Eigen::MatrixXd& lengths, int bins);
 
-// Spearman's: the correlation of the ranks, equal values sharing theirs. NaN where either is
-// constant or fewer than three pairs are there.
+// Spearman's rank correlation, with average ranks for equal values. NaN if either variable is
+// constant or if there are fewer than three pairs.
 double RankCorrelation(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-// The run with the most columns above `threshold`, of those whose columns above it lie no more than
-// `largest_gap` columns below it apart (an error that swings is small now and then). Columns that
-// are NaN neither count nor break it.
+// The run of columns with the most values above `threshold`. Within a run, up to `largest_gap`
+// consecutive values may lie below the threshold, because an oscillating error is small from time
+// to time. NaN values neither count nor end a run.
 struct FrameSpan {
-  int first = -1, last = -1;  // −1: there is none
-  int above = 0;              // columns above the threshold, from first to last
+  int first = -1, last = -1;  // −1: no value exceeds the threshold
+  int above = 0;              // number of values above the threshold from first to last
 };
 FrameSpan LongestSpanAbove(const Eigen::VectorXd& of_frames, double threshold, int largest_gap = 0);
 
-// Mean of the vectors in columns first..last, and how much they agree: |Σ e| / Σ |e|, 1 where all
-// point the same way, about 0 where they point everywhere.
+// The mean of the vectors e in the columns first … last and their agreement |Σ e| / Σ |e|, which is
+// 1 if all vectors have the same direction and near 0 if their directions are random.
 struct MeanVector {
   Eigen::Vector3d mean = Eigen::Vector3d::Constant(kUnknown);
   double agreement = kUnknown;
 };
 MeanVector MeanOver(const Eigen::MatrixXd& vectors, int first, int last);
 
-// How well two recordings of the same thing repeat each other: the second is read at the first's
-// times plus a delay, linearly between its frames, and the delay is the one, within
-// ± `largest_delay` of `delay`, at which they are nearest. Each row's mean difference (the same
-// marker stuck on elsewhere) is taken away.
+// Compares two recordings of the same experiment. The second is interpolated linearly at the times
+// of the first plus a delay; the delay that minimises the distance is searched for within
+// ± `largest_delay` of `delay` (s). The mean difference of each row is subtracted, because markers
+// may have been attached at slightly different places.
 struct Repeatability {
-  int frames = 0;              // of the first that the second covers at that delay; 0: not known
+  int frames = 0;              // of the first that the second covers at that delay; 0: no result
   double delay = kUnknown;     // s
-  double distance = kUnknown;  // m, rms between the two; of one from the truth 1/√2 of it
+  double distance = kUnknown;  // m, rms between the two; each has 1/√2 of it as its error
 };
 Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::MatrixXd& first,
                              const Eigen::VectorXd& second_times, const Eigen::MatrixXd& second,

@@ -11,14 +11,15 @@
 namespace lacuna {
 namespace {
 
-constexpr int kLags = 8;  // of the long-run variance
-// Fewer frames than this in a row say nothing about correlation.
+constexpr int kLags = 8;  // in the long-run variance
+// Series with fewer frames do not allow an estimate of the correlation.
 constexpr size_t kFewestFrames = 8;
-// Noise that remembers more than this of a frame in the next could not be told from motion.
+// Noise with a larger lag-one correlation cannot be distinguished from motion.
 constexpr double kLargestCorrelation = 0.9;
 constexpr double kCorrelationStep = 0.05;
 
-// R^(−1/2) of each column of `values` (frames × columns) of one series; 0 in frames without it.
+// Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
+// series was not observed become 0.
 Eigen::MatrixXd Uncorrelated(const Eigen::MatrixXd& values, const std::vector<double>& times,
                              const std::vector<int>& count, double correlation_time) {
   Eigen::MatrixXd white = Eigen::MatrixXd::Zero(values.rows(), values.cols());
@@ -44,12 +45,12 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout
   CHECK_GT(noise.deviation, 0);
   const Eigen::Index frame_count = static_cast<Eigen::Index>(layout.times.size());
   const double ratio = noise.offset_deviation / noise.deviation;
-  // Series that share a common part: coordinates that turn into each other, or each alone.
+  // Number of series with a joint offset: three coordinates that deform together, or one.
   const int width = layout.deformation.empty() ? 1 : 3;
   CHECK_EQ(layout.series % width, 0);
   Eigen::MatrixXd white(rows.rows(), rows.cols());
-  Eigen::MatrixXd block(width * frame_count, rows.cols());  // one coordinate after another
-  Eigen::MatrixXd common(width * frame_count, width);       // what an error along each axis does
+  Eigen::MatrixXd block(width * frame_count, rows.cols());  // coordinates outermost
+  Eigen::MatrixXd common(width * frame_count, width);       // response to a unit offset
   for (int first = 0; first < layout.series; first += width) {
     for (int c = 0; c < width; ++c) {
       const int s = first + c;
@@ -70,7 +71,7 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout
           Uncorrelated(own, layout.times, count, noise.correlation_time);
     }
     if (ratio > 0) {
-      // (I + ratio² U Uᵀ)^(−1/2) takes these shares of what lies along U's singular vectors away.
+      // (I + ratio² U Uᵀ)^(−1/2) reduces the components along the left singular vectors of U.
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(common.transpose() * common);
       const Eigen::MatrixXd along = common * eigen.eigenvectors();
       for (int k = 0; k < width; ++k) {

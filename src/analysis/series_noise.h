@@ -1,12 +1,14 @@
-// Noise of a measurement that repeats itself over frames, and its whitening.
+// Noise of a measurement that is repeated over frames, and its whitening.
 //
-// Of each series y (one coordinate of one marker, say) the noise is
-//   e ~ N(0, σ² R + s² 1 1ᵀ),   R_ij = exp(−|t_i − t_j|/τ):
-// correlated over a time τ (an Ornstein–Uhlenbeck process; 0: white) and with a part that is common
-// to all frames, as a marker's place on the object is known to s only. That part turns and
-// stretches with the object: where its deformation gradient F_t at the marker is given, the three
-// coordinates share s² F_t F_uᵀ between frames t and u. A value that is the mean of n measurements
-// has σ/√n for σ. Rows of a recording: its series in each frame, frames outermost.
+// The noise of each series, for example of one coordinate of one marker, is modelled as
+//   e ~ N(0, σ² R + s² 1 1ᵀ),   R_ij = exp(−|t_i − t_j|/τ).
+// Its first part is correlated over a time τ (an Ornstein–Uhlenbeck process; white for τ = 0). The
+// second part is an offset common to all frames, since the position of a marker on the object is
+// known to within s only. The offset moves with the material: if the deformation gradient F_t at
+// the marker is given, the three coordinates have the covariance s² F_t F_uᵀ between the frames t
+// and u. A value that is the mean of n measurements has σ/√n in place of σ.
+//
+// The rows of a recording are ordered by frame, with all series of a frame together.
 #ifndef LACUNA_ANALYSIS_SERIES_NOISE_H_
 #define LACUNA_ANALYSIS_SERIES_NOISE_H_
 
@@ -16,10 +18,11 @@
 namespace lacuna {
 
 struct SeriesLayout {
-  int series = 0;
-  std::vector<double> times;  // s, ascending, of the frames
-  std::vector<int> count;     // series × frames: n, 0 where nothing was observed
-  // (series/3) × frames: F of the point that three successive series are coordinates of; empty: 1.
+  int series = 0;             // number of series
+  std::vector<double> times;  // s, of the frames, ascending
+  std::vector<int> count;     // series × frames: n of the mean; 0 where nothing was observed
+  // (series/3) × frames: F at the point whose coordinates are three consecutive series. Empty: the
+  // offset is constant and the series are independent.
   std::vector<Eigen::Matrix3d> deformation;
 
   Eigen::Index Rows() const {
@@ -33,29 +36,33 @@ struct SeriesNoise {
   double offset_deviation = 0;  // s
 };
 
-// Σ^(−1/2) of each column; rows that were not observed, or whose frame is not in `frames` (empty:
-// all are), become 0 and the others are whitened as if those frames were not there.
+// Whitens each column, i.e. applies an inverse square root of the covariance. Rows that were not
+// observed or whose frame is not selected by `frames` (one flag per frame; empty: all) become 0,
+// and the other rows are whitened as if those frames did not exist. CHECKs the sizes and that σ >
+// 0.
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout,
                          const SeriesNoise& noise, const std::vector<char>& frames = {});
 
-// What residuals say of noise that was whitened as if it were white.
+// The temporal correlation of residuals that were whitened under the assumption τ = 0.
 struct SeriesStatistics {
-  // Correlation of neighbouring frames, after each series' mean was taken away; 0 where there is
-  // too little to tell.
+  // Correlation of consecutive frames after the mean of each series has been subtracted; 0 if there
+  // are too few frames.
   double lag_one = 0;
-  double spacing = 0;  // s, the median distance of neighbouring frames
-  // Σ_lag ρ over the first lags (Bartlett's window): how many times larger the variance of a mean
-  // over frames is than if frames were unrelated; at least 1.
+  double spacing = 0;  // s, the median time between consecutive frames
+  // The factor, at least 1, by which correlation increases the variance of a mean over frames:
+  // 1 + 2 Σ w_lag ρ_lag over the first lags, with Bartlett's weights w.
   double long_run = 1;
 };
 SeriesStatistics Statistics(const Eigen::VectorXd& residual, const SeriesLayout& layout);
 
-// σ of such noise about a straight line of each row (rows × times, every entry seen), by restricted
-// maximum likelihood over σ and τ (Patterson & Thompson, Biometrika 58, 1971): the plain deviation
-// of a short record is too small, as slow noise passes for a trend. Needs three times.
+// Estimates σ of such noise about a straight line through each row (rows × times, without NaN), by
+// restricted maximum likelihood over σ and τ (Patterson & Thompson, Biometrika 58, 1971). The plain
+// standard deviation of a short record would be too small, because slow noise resembles a trend.
+// CHECKs that there are at least three times.
 double DeviationAboutTrend(const Eigen::VectorXd& times, const Eigen::MatrixXd& rows);
 
-// τ of the process whose neighbouring frames have that correlation; 0 where it is not positive.
+// τ (s) of the process whose consecutive frames have the correlation `lag_one`; 0 if that is not
+// positive.
 double CorrelationTime(const SeriesStatistics& statistics);
 
 }  // namespace lacuna

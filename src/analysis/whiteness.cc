@@ -37,7 +37,7 @@ Products LaggedProducts(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen:
   return products;
 }
 
-// ρ_lag of one row; the denominator is over all frames seen.
+// ρ_lag of one row; the denominator includes all frames in which it was seen.
 double Autocorrelation(const Eigen::MatrixXd& centred, Eigen::Index row, Eigen::Index lag) {
   const double squares = LaggedProducts(centred, row, 0).sum;
   return squares > 0 ? LaggedProducts(centred, row, lag).sum / squares : kUnknown;
@@ -64,7 +64,8 @@ double CorrelationFrames(const Eigen::MatrixXd& centred) {
   return kInfinity;
 }
 
-// Σ over the rows of Q; `known` has 0 where `seen` has.
+// Q summed over the rows. `seen` is 1 where an entry was seen and 0 elsewhere, where `known` is 0
+// too.
 double LjungBoxStatistic(const Eigen::MatrixXd& known, const Eigen::MatrixXd& seen, int lags) {
   const Eigen::ArrayXd squares = known.rowwise().squaredNorm();
   const Eigen::ArrayXd counts = seen.rowwise().sum();
@@ -80,12 +81,12 @@ double LjungBoxStatistic(const Eigen::MatrixXd& known, const Eigen::MatrixXd& se
   return (sum * counts * (counts + 2)).sum();
 }
 
-// Fisher–Yates. Not std::shuffle, which may differ between standard libraries.
+// A Fisher–Yates shuffle. std::shuffle may differ between standard libraries.
 void Shuffle(std::vector<int>* order, std::mt19937* random) {
   for (size_t k = order->size(); k > 1; --k) std::swap((*order)[k - 1], (*order)[(*random)() % k]);
 }
 
-// Least squares over a logarithmic grid: the sum is smooth in ln ℓ, 2 % apart is near enough.
+// Least squares over a logarithmic grid. The sum is smooth in ln ℓ, so a spacing of 2 % suffices.
 double FitCorrelationLength(const std::vector<PointPair>& pairs) {
   double smallest = kInfinity, largest = 0;
   for (const PointPair& pair : pairs) {
@@ -190,7 +191,7 @@ SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Mat
         const double correlation = products.Correlation();
         if (products.count < kFewest || std::isnan(correlation)) continue;
         const double memory = std::clamp(lag_one[3 * i + axis] * lag_one[3 * j + axis], 0.0, 1.0);
-        // The means taken away cost one frame.
+        // Subtracting the means costs one degree of freedom.
         const double independent = (products.count - 1) * (1 - memory) / (1 + memory);
         statistic += independent * correlation * correlation;
         ++freedom;

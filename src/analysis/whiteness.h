@@ -1,5 +1,5 @@
-// Whether the residuals of a prediction are noise: unrelated in time and in space. Matrices as in
-// residual_statistics.h.
+// Tests of whether residuals are white, i.e. uncorrelated in time and in space. The matrices are
+// laid out as in residual_statistics.h.
 #ifndef LACUNA_ANALYSIS_WHITENESS_H_
 #define LACUNA_ANALYSIS_WHITENESS_H_
 
@@ -10,47 +10,49 @@
 
 namespace lacuna {
 
-// P(X > statistic) for χ² with that many degrees of freedom (≥ 1), by the finite sum for whole
-// degrees (Abramowitz & Stegun 1964, 26.4.4 and 26.4.5).
+// The tail probability P(X > statistic) of the χ² distribution with the given number of degrees of
+// freedom (≥ 1), by its finite sum (Abramowitz & Stegun 1964, 26.4.4 and 26.4.5). NaN for NaN.
 double ChiSquareTail(double statistic, int degrees_of_freedom);
 
-// Whether the rows of `series` (any number, equally spaced columns) are white in time. Each row's
-// mean, of the entries seen, is taken away first.
+// Tests whether the rows of `series` (any number of rows, equally spaced columns) are white in
+// time. The mean of each row is subtracted first. With the residuals e_f in frame f,
 //   ρ_k = Σ e_f e_{f+k} / Σ e_f²
 //   Q   = Σ_rows n (n + 2) Σ_{k=1..h} ρ_k² / n_k
-// (Ljung & Box, Biometrika 65, 1978; n_k, the pairs of frames both seen, is n − k without gaps, as
-// Stoffer & Toloi, Stat. Prob. Lett. 13, 1992). h is ten, or a fifth of the frames where these are
-// fewer than fifty. The p-value is not χ²'s, which would need rows that know nothing of each other
-// and is too small in the far tail: it is the share of random orders of the frames, all rows
-// alike, whose Q is as large (a permutation test; Good, Springer 2005), exact where the frames are
-// exchangeable however the rows depend on one another. The orders are the same in each call.
+// (Ljung & Box, Biometrika 65, 1978). n_k is the number of pairs of frames that were both seen, n −
+// k without gaps (Stoffer & Toloi, Stat. Prob. Lett. 13, 1992), and h is 10, or a fifth of the
+// frames if there are fewer than 50. The p-value is that of a permutation test (Good, Springer
+// 2005): the fraction of random orders of the frames, common to all rows, with a Q at least as
+// large. It is exact for exchangeable frames, however the rows depend on each other, whereas the χ²
+// distribution would require independent rows and is inaccurate in the far tail. Every call uses
+// the same orders.
 struct TimeWhiteness {
-  int lags = 0;                 // h; 0: too few frames (< 10 in every row), nothing below is known
+  int lags = 0;                 // h; 0: fewer than 10 frames in every row, and all below is NaN
   double statistic = kUnknown;  // Q
-  double lag_one = kUnknown;    // ρ_1, rows pooled
-  // The lag, in frames, where the pooled ρ has fallen to 1/e, between lags linearly; about 0.6 for
-  // white noise, infinite where it does not fall so far within half of the frames.
+  double lag_one = kUnknown;    // ρ_1, pooled over the rows
+  // The lag, in frames, at which the pooled ρ has decreased to 1/e, interpolated linearly. About
+  // 0.6 for white noise; infinite if ρ stays above 1/e over half of the frames.
   double correlation_frames = kUnknown;
-  double p_value = kUnknown;  // never below 1/(orders + 1); 999 orders, of long series 199
+  double p_value = kUnknown;  // at least 1/(orders + 1); 999 orders, or 199 for long series
 };
 TimeWhiteness WhitenessInTime(const Eigen::MatrixXd& series);
 
-// Whether different points' vectors are related, against their distance. The vectors' means over
-// time are taken away first.
+// Tests whether the vectors (3m × n) of different points are correlated, as a function of the
+// distance between their places (3 × m, m). The temporal means of the vectors are subtracted first.
 struct PointPair {
-  int first = 0, second = 0;
-  double distance = 0;            // m, between `places`
-  double correlation = kUnknown;  // Σ_f e_i · e_j / √(Σ_f |e_i|² Σ_f |e_j|²), frames that saw both
+  int first = 0, second = 0;  // columns of `places`
+  double distance = 0;        // m
+  double correlation = kUnknown;  // Σ_f e_i · e_j / √(Σ_f |e_i|² Σ_f |e_j|²), over common frames
 };
 struct SpaceWhiteness {
   std::vector<PointPair> pairs;
-  double mean_correlation = kUnknown;
-  // ℓ of exp(−d/ℓ), least squares over the pairs, m: 0 where it would be below a tenth of the
-  // smallest distance, infinite where above ten times the largest.
+  double mean_correlation = kUnknown;  // over the pairs
+  // The length ℓ (m) of the correlation exp(−d/ℓ), by least squares over the pairs. 0 if it is
+  // below a tenth of the smallest distance, infinite if it is above ten times the largest.
   double correlation_length = kUnknown;
-  // Of Σ n' ρ² over pairs and axes, χ² if unrelated (Breusch & Pagan, Rev. Econ. Stud. 47, 1980),
-  // with n' = n (1 − ρ_1i ρ_1j) / (1 + ρ_1i ρ_1j) independent frames of two rows that are
-  // correlated in time themselves (Bartlett, J. R. Stat. Soc. 98, 1935).
+  // p-value of Σ n' ρ² over pairs and axes, which is χ²-distributed for uncorrelated points
+  // (Breusch & Pagan, Rev. Econ. Stud. 47, 1980). n' = n (1 − ρ_1i ρ_1j) / (1 + ρ_1i ρ_1j) is the
+  // effective number of independent frames of two autocorrelated rows (Bartlett, J. R. Stat. Soc.
+  // 98, 1935).
   double p_value = kUnknown;
 };
 SpaceWhiteness WhitenessInSpace(const Eigen::MatrixXd& vectors, const Eigen::Matrix3Xd& places);

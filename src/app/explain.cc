@@ -2,12 +2,14 @@
 #include "app/explain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <sstream>
+#include <variant>
 
 #include "app/commands.h"
 #include "app/effect_examples.h"
@@ -83,8 +85,8 @@ std::string DefaultText(const CatalogueEntry& entry, size_t k, size_t count) {
 // What the three components' meanings begin with: "direction of the pull" of "… along x".
 std::string OfWholeVector(const std::string& meaning) {
   std::string common = meaning;
-  for (const std::string component : {" along x", " x coordinate"})
-    if (common.ends_with(component)) common.resize(common.size() - component.size());
+  const std::string component = " along x";
+  if (common.ends_with(component)) common.resize(common.size() - component.size());
   while (common.ends_with(',') || common.ends_with(';')) common.pop_back();
   return common;
 }
@@ -134,7 +136,46 @@ std::string Invariances(const EffectCard& card) {
   return "Acts from outside: its forces need not sum to zero.";
 }
 
-// In the middle of what is usual, in two digits.
+// Which variants of the effect a diagnosis tries.
+std::string TriedAtText(const CatalogueEntry& entry) {
+  if (entry.kind == CatalogueEntry::Kind::kMaterial)
+    return "Tried in place of the elasticity law of the model, with the same moduli.";
+  if (entry.make == nullptr) return "Tried if the experiment lists the law among its candidates.";
+  struct Text {
+    std::string operator()(const TriedOnce&) const { return "Tried once."; }
+    std::string operator()(const TriedAtPlaces& places) const {
+      return fmt::format(
+          "Tried at {} places along the length of a bar, or spread over the volume of any other "
+          "body.",
+          places.length_shares.size());
+    }
+    std::string operator()(const TriedAlongDirections&) const {
+      return "Tried along the principal axes of the body and the diagonals between them.";
+    }
+    std::string operator()(const TriedAsGradients&) const {
+      return "Tried along the length of a bar, or along the two longest axes of any other body.";
+    }
+    std::string operator()(const TriedAtValues& values) const {
+      return fmt::format("Tried at {} = {:g}.", values.parameter, fmt::join(values.values, ", "));
+    }
+    std::string operator()(const TriedAtRelaxationTimes& times) const {
+      return "Tried at values of " + times.parameter +
+             " between the time step of the simulation and the duration of the recordings.";
+    }
+    std::string operator()(const TriedAsSupports& supports) const {
+      return fmt::format(
+          "Tried on the whole surface, and near both ends and the middle of the "
+          "length{}.",
+          supports.slip_shares.empty() ? "" : ", at several slip distances");
+    }
+    std::string operator()(const TriedAtContactPlanes&) const {
+      return "Tried at planes that the predicted body crosses and the measured one does not.";
+    }
+  };
+  return std::visit(Text(), entry.card->tried_at);
+}
+
+// A value in the middle of the plausible range, in two digits.
 double Typical(const ParameterCard& parameter) {
   if (!std::isnan(parameter.default_value)) return parameter.default_value;
   const double low = parameter.plausible_min, high = parameter.plausible_max;
@@ -182,12 +223,13 @@ int Explain(const std::string& type) {
   PrintSection("Source", card.citation);
   PrintParameters(entry);
   PrintSection("When it is missing", card.residual_when_missing);
-  PrintSection("To tell it apart", card.separating_experiment);
-  if (!card.look_alikes.empty()) {
+  PrintSection("To tell it apart", card.separating_experiment + ".");
+  if (const auto look_alikes = LookAlikesOf(card); !look_alikes.empty()) {
     fmt::print("\nEasily taken for\n");
-    for (const std::string& other : card.look_alikes)
+    for (const std::string& other : look_alikes)
       fmt::print("  {:22} {}\n", other, FindEntry(other)->card->title);
   }
+  PrintSection("In a diagnosis", TriedAtText(entry));
   PrintSection("Invariances",
                Invariances(card) + (card.repeatable ? " A model may have several of it." : ""));
   const Snippet snippet = SnippetOf(entry);

@@ -50,7 +50,7 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
 }
 
 bool HasTheSameMarkers(const Recording& a, const Recording& b) {
-  return a.markers.names == b.markers.names && a.marker_places == b.marker_places;
+  return a.markers.names == b.markers.names && a.markers.places == b.markers.places;
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::Vector
 
 // With the least ‖left + by (change − at)‖² and prior; what would go too far stays there. `model`:
 // of any residual and `by`.
-Eigen::VectorXd BestChange(const LinearModel& model, const Eigen::VectorXd& left,
+Eigen::VectorXd BestChange(const LinearGaussianModel& model, const Eigen::VectorXd& left,
                            const Eigen::MatrixXd& by, const Eigen::VectorXd& at,
                            const ChangePrior& prior) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());  // of those that have gone too far
@@ -124,7 +124,7 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
   const ChangePrior prior = PriorOfChange(problem, values);
   Eigen::VectorXd left = difference(finer.change);
   const bool is_finer = left.size() > 0;
-  const LinearModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
+  const LinearGaussianModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
   double length = 1;
   for (int step = 0; step < kMostSteps && left.size() > 0 && length >= kShortestStep; ++step) {
     const Eigen::VectorXd way = BestChange(model, left, by, finer.change, prior) - finer.change;

@@ -46,9 +46,10 @@ void AddMarkerStrains(const PredictionStudy& study, const RecordingMisfit& misfi
 void AddTrackedStrains(const PredictionStudy& study, const PredictedRecording& item,
                        const Body& body, std::vector<std::string>* strains) {
   const Recording& recording = item.recording;
-  if (!recording.tracked || recording.reference.source == ReferenceSource::kFirstFrame) return;
+  if (!HasTrackedPoints(recording) || recording.reference.source == ReferenceSource::kFirstFrame)
+    return;
   const Eigen::VectorXd away =
-      SurfaceSearch(body.boundary.surface).Nearest(recording.marker_places).distance;
+      SurfaceSearch(body.boundary.surface).Nearest(recording.markers.places).distance;
   const double rms = std::sqrt(away.squaredNorm() / static_cast<double>(away.size()));
   if (rms > kStrained * study.place_deviation)
     strains->push_back(fmt::format(

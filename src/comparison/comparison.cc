@@ -83,8 +83,8 @@ ComparedRecording ReadRecordingRows(const CsvTable& table, int recording,
 // Distance of each place from the nearest node that the recording holds or moves; empty: no grip.
 Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
                               const Eigen::Matrix3Xd& nodes) {
-  std::vector<Region> regions = recording.fixed;
-  for (const RecordedGrip& grip : recording.grips) regions.push_back(grip.region);
+  std::vector<Region> regions = recording.object.fixed;
+  for (const RecordedGrip& grip : recording.object.grips) regions.push_back(grip.region);
   Eigen::VectorXd distances =
       Eigen::VectorXd::Constant(places.cols(), std::numeric_limits<double>::infinity());
   for (const Region& region : regions)
@@ -124,7 +124,7 @@ void AddWhatTheRecordingsTell(const std::filesystem::path& run, const Calibratio
       const Recording& now = study.recordings[r].recording;
       if (!recording.is_scan) recording.markers = now.markers.names;
       recording.grip_distance = GripDistances(
-          now, recording.is_scan ? record.recordings[r].scan->places : now.marker_places,
+          now, recording.is_scan ? record.recordings[r].scan->places : now.markers.places,
           body.mesh.nodes);
     }
   } catch (const InputError& error) {

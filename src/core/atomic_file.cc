@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Unique among the threads of this process by the count, among processes by the id.
+// The count makes the name unique among the threads of this process, the id among processes.
 fs::path TemporaryName(const fs::path& file) {
   static std::atomic<unsigned> count{0};
   return file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
@@ -84,7 +84,7 @@ void WriteFileAtomically(const fs::path& file, std::string_view content) {
 void MakeFolder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem) throw InputError({folder.string()}, "cannot be made: " + problem.message());
+  if (problem) throw InputError({folder.string()}, "cannot be created: " + problem.message());
   if (access(folder.c_str(), W_OK | X_OK) != 0)
     throw InputError({folder.string()}, "cannot be written to");
 }

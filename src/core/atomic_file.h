@@ -1,8 +1,7 @@
-// Files that are either whole or not there.
+// Writing files atomically: a reader sees the old content or the new one, never a part.
 //
-// The content goes to a temporary file in the same folder, is flushed to the disk and takes the
-// final name by rename(2). A reader, or a run after a crash, sees the old content or the new one,
-// never a part.
+// The content goes to a temporary file in the same folder, is flushed to the disk (fsync) and takes
+// the final name by rename(2). This holds after a crash, too.
 #ifndef LACUNA_CORE_ATOMIC_FILE_H_
 #define LACUNA_CORE_ATOMIC_FILE_H_
 
@@ -11,15 +10,16 @@
 
 namespace lacuna {
 
-// Replaces `file` by `content`. The folder must exist. Throws InputError naming the file when it
-// cannot be written; the old content then stands.
+// Replaces the content of `file`. The folder must exist. Throws InputError naming the file if it
+// cannot be written; the old content is then unchanged.
 void WriteFileAtomically(const std::filesystem::path& file, std::string_view content);
 
-// The same for content that comes in pieces: Write as often as needed, then Commit. Without a
-// Commit nothing is left behind.
+// The same for content that is produced in pieces: call Write as often as needed, then Commit.
+// Destroying the object without a Commit leaves no trace.
 class AtomicFile {
  public:
-  // A symbolic link is followed; a device, pipe or folder is refused with InputError.
+  // Follows a symbolic link. Throws InputError for a device, pipe or folder, and if the temporary
+  // file cannot be created. Write and Commit throw InputError if the disk refuses.
   explicit AtomicFile(const std::filesystem::path& file);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -36,11 +36,12 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
-// Makes the folder, and those above it, where they are not there. Throws InputError naming it when
-// that cannot be done or nothing can be written into it.
+// Creates the folder and its parents if they do not exist. Throws InputError naming the folder if
+// that fails or if the folder is not writable.
 void MakeFolder(const std::filesystem::path& folder);
 
-// Asks the disk to hold the entries of `folder`: names created, renamed or removed in it.
+// Flushes the entries of `folder` to the disk: names that were created, renamed or removed in it.
+// Does nothing on file systems that cannot sync a folder.
 void SyncFolder(const std::filesystem::path& folder);
 
 }  // namespace lacuna

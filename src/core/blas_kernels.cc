@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kVariable[] = "OPENBLAS_CORETYPE";
 
-// OpenBLAS's names for kernels made for AVX2 or more.
+// OpenBLAS's names for kernels that use AVX2 or wider instructions.
 constexpr std::array<std::string_view, 6> kFastKernels = {
     "Haswell", "Zen", "Excavator", "SkylakeX", "Cooperlake", "SapphireRapids"};
 

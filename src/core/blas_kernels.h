@@ -1,10 +1,10 @@
-// Makes sure that OpenBLAS works with the kernels that this processor deserves.
+// Makes OpenBLAS use kernels that match the vector instructions of this processor.
 //
-// OpenBLAS chooses its kernels when it is loaded, by a list of processors known when it was
-// released. One that is younger may be taken for "Prescott" (a Pentium 4 of 2004): everything is
-// right, but a dense product runs three to five times slower than it could, and nothing says so.
-// The choice can be overruled by the environment variable OPENBLAS_CORETYPE, but only before the
-// library is loaded; hence the program starts itself anew.
+// OpenBLAS chooses its kernels when it is loaded, from a list of the processors known at its
+// release. A newer processor may be classified as "Prescott" (a Pentium 4 of 2004): results are
+// correct, but a dense matrix product is three to five times slower than it could be, without any
+// warning. The environment variable OPENBLAS_CORETYPE overrides the choice, but only if it is set
+// before the library is loaded; therefore the program restarts itself.
 #ifndef LACUNA_CORE_BLAS_KERNELS_H_
 #define LACUNA_CORE_BLAS_KERNELS_H_
 
@@ -12,26 +12,27 @@
 
 namespace lacuna {
 
-// To be called first in main, before threads, files or output. When OpenBLAS has chosen kernels
-// without AVX2 on a processor that has it, the program is started again with OPENBLAS_CORETYPE set
-// and the same arguments; the call then does not return. A value that the user has set is
-// respected, which also rules out a second restart. Where a restart is impossible, it says so on
-// the error stream and goes on with slow kernels.
+// Call this first in main, before any thread, file or output. If OpenBLAS has chosen kernels
+// without AVX2 on a processor that supports it, the program is restarted with OPENBLAS_CORETYPE set
+// and the same arguments, and the call does not return. A value set by the user is respected, which
+// also rules out a second restart. If the restart fails, the call prints a warning on standard
+// error and the program continues with the slow kernels.
 void UseFastBlasKernels(char** argv);
 
 // The name of the kernels in use, e.g. "SkylakeX".
 std::string BlasKernelName();
 
+// The instruction sets that matter for the choice of kernels.
 struct VectorInstructions {
   bool avx2 = false;    // with FMA
   bool avx512 = false;  // F, DQ, BW, VL, CD
 };
 VectorInstructions InstructionsOfThisProcessor();
 
-// The kernels to ask for in place of the chosen ones; empty when those will do.
+// The kernels to request in place of the `chosen` ones; empty if those are good enough.
 std::string BetterBlasKernels(const std::string& chosen, const VectorInstructions& processor);
 
-// Starts the program again with OPENBLAS_CORETYPE set. Returns only when that fails.
+// Restarts the program with OPENBLAS_CORETYPE set to `name`. Returns only if that fails.
 void RestartWithBlasKernels(const std::string& name, char** argv);
 
 }  // namespace lacuna

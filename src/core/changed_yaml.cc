@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-// "effects[0].eta" → effects, [0, eta. Empty: it is no field's name.
+// Splits "effects[0].eta" into effects, [0 and eta. Empty if `field` is not a valid field name.
 std::vector<std::string> StepsOf(const std::string& field) {
   std::vector<std::string> steps;
   size_t at = 0;
@@ -30,7 +30,7 @@ std::vector<std::string> StepsOf(const std::string& field) {
   return steps;
 }
 
-// How often a mapping or list stands in the tree: more than once where it has an alias.
+// How often a mapping or list occurs in the tree: more than once if an alias refers to it.
 int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
   if (tree.is(wanted)) return 1;
   int count = 0;
@@ -41,7 +41,7 @@ int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
   return count;
 }
 
-// Of the step "[3".
+// The index in a step such as "[3"; none if it is not a number within the list.
 std::optional<size_t> IndexIn(const YAML::Node& list, const std::string& step) {
   size_t index = 0;
   const char* end = step.data() + step.size();
@@ -51,14 +51,14 @@ std::optional<size_t> IndexIn(const YAML::Node& list, const std::string& step) {
   return index;
 }
 
-// Puts an entry into a tree.
+// Sets or removes one entry of a tree.
 class Change {
  public:
   Change(const std::string& field, const YAML::Node& root) : field_(field), root_(root) {}
 
   void Put(const YAML::Node& value) {
     const std::vector<std::string> steps = StepsOf(field_);
-    if (steps.empty()) Fail("is no field; expected one like mesh.max_volume or effects[0].eta");
+    if (steps.empty()) Fail("is not a field; expected one like mesh.max_volume or effects[0].eta");
     YAML::Node at;
     at.reset(root_);
     for (size_t k = 0; k + 1 < steps.size(); ++k) at.reset(Below(at, steps[k]));
@@ -69,13 +69,13 @@ class Change {
       at[*index] = value;
       return;
     }
-    if (!at.IsMap()) Fail(path_ + " is no mapping");
+    if (!at.IsMap()) Fail(path_ + " is not a mapping");
     at.remove(last);
     if (!value.IsNull()) at.force_insert(last, value);
   }
 
  private:
-  // The mapping or list below `at`, made where it is absent.
+  // The mapping or list below `at`, created if it is absent.
   YAML::Node Below(YAML::Node at, const std::string& step) {
     YAML::Node next;
     if (step[0] == '[') {
@@ -84,7 +84,7 @@ class Change {
       next.reset(at[*index]);
       path_ += step + "]";
     } else {
-      if (!at.IsMap()) Fail(path_ + " is no mapping");
+      if (!at.IsMap()) Fail(path_ + " is not a mapping");
       path_ += (path_.empty() ? "" : ".") + step;
       const YAML::Node found = std::as_const(at)[step];
       if (!found || found.IsNull()) {
@@ -94,7 +94,7 @@ class Change {
       next.reset(at[step]);
     }
     if (Occurrences(root_, next) > 1)
-      Fail(path_ + " stands in several places of the file (an alias); write it out there");
+      Fail(path_ + " is shared by several places of the file (a YAML alias); write it out instead");
     return next;
   }
 
@@ -116,7 +116,7 @@ YAML::Node ParseValue(const YamlChange& change) {
   }
 }
 
-// Rewrites the relative paths of a file and its changes.
+// Rewrites the relative paths in a document so that they start at another folder.
 class PathMover {
  public:
   PathMover(const YamlDocument& document, const std::vector<YamlChange>& changes,

@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-// The whole file, for one alone.
+// An exclusive lock on the whole file.
 struct flock WholeFile() {
   struct flock lock {};
   lock.l_type = F_WRLCK;
@@ -56,7 +56,7 @@ std::string HolderOf(const std::filesystem::path& file) {
   if (fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK) {
     std::array<char, 512> text{};
     const ssize_t count = read(descriptor, text.data(), text.size());
-    // Between the lock and what is written into the file, its holder has no name yet.
+    // The holder writes its name only after it has got the lock.
     holder = count > 0 ? std::string(text.data(), static_cast<size_t>(count)) : "another process";
   }
   close(descriptor);

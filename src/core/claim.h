@@ -1,7 +1,7 @@
-// A lock on a file, by which processes agree who works on what.
+// A lock on a file, by which processes agree which of them works on a task.
 //
-// It is an open-file-description lock (fcntl(2), F_OFD_SETLK): the kernel drops it when its holder
-// ends, however that happens, and over NFS it holds between machines, too.
+// It is an open-file-description lock (fcntl(2), F_OFD_SETLK): the kernel releases it when its
+// holder ends, even by a crash, and over NFS it also works between machines.
 #ifndef LACUNA_CORE_CLAIM_H_
 #define LACUNA_CORE_CLAIM_H_
 
@@ -10,11 +10,12 @@
 
 namespace lacuna {
 
-// Holds a file's lock until it goes out of scope. Where another one has it, holds() is false.
+// Holds the lock of a file until it is destroyed. holds() is false if another process has it.
 class Claim {
  public:
-  // Makes the file where it is absent, and writes host and process into it when it gets the lock.
-  // Throws InputError naming the file when it cannot be written, or cannot be locked where it lies.
+  // Tries to take the lock without waiting. Creates the file if it is absent, and on success writes
+  // host and process into it. Throws InputError naming the file if it cannot be written or if its
+  // file system does not support locks.
   explicit Claim(const std::filesystem::path& file);
   ~Claim();
   Claim(const Claim&) = delete;
@@ -26,7 +27,8 @@ class Claim {
   bool holds_ = false;
 };
 
-// "host, process 123" of the claim that is held on this file; empty: none is. Takes no lock.
+// The holder of the lock on `file`, as "host, process 123"; empty if nobody holds it. Takes no
+// lock.
 std::string HolderOf(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -1,18 +1,17 @@
-// A YAML file as a checked, located, unit-aware tree.
+// A YAML file as a tree of typed reads with units, bounds and error positions.
 //
-// Each read names its key, its dimension and its bounds; from these reads alone come the check for
-// unknown keys (with the nearest known one), the messages with file:line:column and field, and the
-// resolved configuration (all values, defaults included, in SI) that goes into the manifest. There
-// is no second description of the schema to keep in step.
+// Each read names its key, its dimension and its bounds. The reads are the only description of the
+// schema: from them follow the check for unknown keys (with a suggestion), the error messages with
+// file:line:column and field, and the resolved configuration (all values in SI, defaults included)
+// that goes into the manifest.
 //
-// `use: ../configs/scanner/four_cameras.yaml` in any mapping puts in that file's entries which the
-// mapping does not give itself; what is wrong with them is told with that file's name and line.
+// `use: ../configs/scanner/four_cameras.yaml` in a mapping inserts those entries of that file which
+// the mapping does not give itself. Errors in them are reported with that file's name and line.
 #ifndef LACUNA_CORE_CONFIG_H_
 #define LACUNA_CORE_CONFIG_H_
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -20,34 +19,30 @@
 #include <utility>
 #include <vector>
 
+#include "core/bounds.h"
 #include "core/error.h"
 #include "core/quantity.h"
 
 namespace lacuna {
 
-// The values a number may take. Open ends exclude the bound itself.
-struct Bounds {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;
-  bool open_max = false;
-};
-inline constexpr Bounds kAnyValue{};
-inline constexpr Bounds kPositive{0, std::numeric_limits<double>::infinity(), true, false};
-inline constexpr Bounds kNotNegative{0, std::numeric_limits<double>::infinity(), false, false};
+struct ConfigNode;  // core/config_node.h
 
-// A mapping (or list item) of the file. Copies refer to the same document.
+// A mapping, or an item of a list of mappings. Copies refer to the same document and share what has
+// been read, so one document must not be read by several threads at once.
 class Config {
  public:
-  // Throws InputError when the file is absent, is not YAML, or its top level is not a mapping.
+  // Throws InputError if the file is absent, is not valid YAML, or its top level is not a mapping.
   static Config Load(const std::filesystem::path& file);
+  // The same for a text; `name` stands for the file in messages and as the base of relative paths.
   static Config Parse(const std::string& text, const std::string& name);
 
-  // Reads `key` of this mapping. Without a default the key is required. All values SI.
+  // The functions below read `key` of this mapping. Without a default value the key is required.
+  // All values are returned in SI units. Each throws InputError with position and field if the key
+  // is missing, has the wrong type or unit, or lies outside the bounds.
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds) const;
   double Quantity(const std::string& key, const Dimension& dimension, const Bounds& bounds,
                   double default_value) const;
-  // A quantity of whatever dimension its unit has; required.
+  // A quantity of any dimension, which its unit determines.
   MeasuredQuantity AnyQuantity(const std::string& key) const;
   double Number(const std::string& key, const Bounds& bounds) const;
   double Number(const std::string& key, const Bounds& bounds, double default_value) const;
@@ -56,20 +51,23 @@ class Config {
   bool Flag(const std::string& key, bool default_value) const;
   std::string Text(const std::string& key) const;
   std::string Text(const std::string& key, const std::string& default_value) const;
-  std::vector<std::string> Texts(const std::string& key) const;  // a text or a list; absent: empty
-  std::vector<int> Integers(const std::string& key, int min) const;  // absent: empty
-  // Three quantities: [0, 0, -9.81 m/s^2]; a bare 0 needs no unit.
+  // One text or a list of texts; empty if the key is absent.
+  std::vector<std::string> Texts(const std::string& key) const;
+  // A list of whole numbers; empty if the key is absent.
+  std::vector<int> Integers(const std::string& key, int min) const;
+  // Three quantities, as in [0, 0, -9.81 m/s^2]; 0 needs no unit.
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension) const;
   Eigen::Vector3d Vector(const std::string& key, const Dimension& dimension,
                          const Eigen::Vector3d& default_value) const;
-  // A list of any length.
+  // A list of quantities of any length; empty if the key is absent. 0 needs no unit.
   std::vector<double> Quantities(const std::string& key, const Dimension& dimension,
-                                 const Bounds& bounds) const;  // absent: empty
-  // A path, taken relative to the folder of this file.
+                                 const Bounds& bounds) const;
+  // A path. A relative one starts at the folder of the file that gives it; "${NAME}" is replaced by
+  // an environment variable.
   std::filesystem::path Path(const std::string& key) const;
   std::filesystem::path Path(const std::string& key, const std::string& default_value) const;
 
-  // One of named values; the message lists them.
+  // The value that the given name stands for; the error message lists the known names.
   template <typename T>
   T Choice(const std::string& key, const std::vector<std::pair<std::string, T>>& choices) const {
     return choices[ChoiceIndex(key, Names(choices), std::nullopt)].second;
@@ -80,29 +78,34 @@ class Config {
     return choices[ChoiceIndex(key, Names(choices), default_name)].second;
   }
 
+  // Whether the mapping has a non-null entry of this key. Does not count as a read.
   bool Has(const std::string& key) const;
   // All keys of this mapping, in the order of the file.
   std::vector<std::string> Keys() const;
-  Config Child(const std::string& key) const;  // required mapping
+  // The mapping at `key`, which is required.
+  Config Child(const std::string& key) const;
+  // The mapping at `key`, if there is one.
   std::optional<Config> OptionalChild(const std::string& key) const;
-  std::vector<Config> Items(const std::string& key) const;  // a list of mappings; absent: empty
+  // The items of the list of mappings at `key`; empty if the key is absent.
+  std::vector<Config> Items(const std::string& key) const;
 
-  // Refuses every key, here and below, that no read has asked for. Call when all has been read.
+  // Throws InputError for the first key, in this mapping or below, that no read has asked for. Call
+  // it after everything has been read.
   void RefuseUnknownKeys() const;
 
-  // Throws InputError at `key` (or, with an empty key, at this mapping): "field: message".
+  // Throws InputError "field: message" at the position of `key`, or of this mapping for an empty
+  // key.
   [[noreturn]] void Fail(const std::string& key, const std::string& message) const;
-  // The same at an item of the list at `key`.
+  // The same at an item, counted from 0, of the list at `key`.
   [[noreturn]] void FailAtItem(const std::string& key, size_t item,
                                const std::string& message) const;
 
   std::filesystem::path File() const;
-  // Everything read so far, defaults included, in SI.
+  // Everything that has been read so far, defaults included, in SI units.
   nlohmann::json Resolved() const;
 
  private:
-  struct Node;
-  explicit Config(std::shared_ptr<Node> node);
+  explicit Config(std::shared_ptr<ConfigNode> node);
   template <typename T>
   static std::vector<std::string> Names(const std::vector<std::pair<std::string, T>>& choices) {
     std::vector<std::string> names;
@@ -112,7 +115,7 @@ class Config {
   size_t ChoiceIndex(const std::string& key, const std::vector<std::string>& names,
                      const std::optional<std::string>& default_name) const;
 
-  std::shared_ptr<Node> node_;
+  std::shared_ptr<ConfigNode> node_;
 };
 
 }  // namespace lacuna

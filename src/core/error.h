@@ -1,8 +1,8 @@
-// The user's own mistakes, told so that they can be mended: file, line, column and field.
+// The exception for mistakes in the user's input, with the position at which to correct them.
 //
-// Three kinds of failure are kept apart throughout Lacuna: the user's input (InputError, caught
-// once in main), a numerical outcome (a status in the stage's result, never an exception) and our
-// own mistakes (glog CHECK).
+// Lacuna keeps three kinds of failure apart: mistakes in the user's input (InputError, caught once
+// in main), numerical outcomes such as no convergence (a status in the result, never an exception)
+// and programming errors (glog's CHECK).
 #ifndef LACUNA_CORE_ERROR_H_
 #define LACUNA_CORE_ERROR_H_
 
@@ -11,16 +11,18 @@
 
 namespace lacuna {
 
-// A place in an input file. `line` and `column` count from 1; 0 means "the file as a whole".
+// A position in an input file. `line` and `column` count from 1; line 0 means the file as a whole.
 struct SourcePosition {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
-// Thrown for input that cannot be used. what() reads "file:line:column: message".
+// Thrown for input that cannot be used. what() reads "file:line:column: message", without the parts
+// that are unknown.
 class InputError : public std::runtime_error {
  public:
+  // For input that has no position, such as an argument of the command line.
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
   InputError(const SourcePosition& position, const std::string& message)
       : std::runtime_error(Format(position, message)) {}
@@ -36,7 +38,8 @@ class InputError : public std::runtime_error {
   }
 };
 
-// What `action` returns; an InputError out of it gets `where` in front of its message.
+// Calls `action` and returns its result. An InputError that it throws is thrown on with "where: "
+// in front of its message.
 template <typename Action>
 auto NamingWhere(const std::string& where, const Action& action) {
   try {

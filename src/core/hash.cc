@@ -15,7 +15,7 @@ namespace lacuna {
 namespace {
 
 std::string Hexadecimal(XXH128_hash_t hash) {
-  XXH128_canonical_t canonical;  // byte order made independent of the machine
+  XXH128_canonical_t canonical;  // independent of the machine's byte order
   XXH128_canonicalFromHash(&canonical, hash);
   std::string text;
   for (const unsigned char byte : canonical.digest) text += fmt::format("{:02x}", byte);

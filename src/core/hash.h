@@ -1,7 +1,7 @@
-// Content hashes, by which inputs and results are recognised.
+// Content hashes, by which inputs and results are identified.
 //
-// XXH3, 128 bits (Y. Collet, xxHash 0.8): the same on every machine and far beyond chance
-// collisions, but no protection against somebody who forges a file.
+// The hash is XXH3 with 128 bits (Y. Collet, xxHash 0.8). It is the same on every machine, and
+// accidental collisions are negligible; it does not protect against deliberate forgery.
 #ifndef LACUNA_CORE_HASH_H_
 #define LACUNA_CORE_HASH_H_
 
@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-// 32 hexadecimal digits.
+// The hash of `bytes` as 32 hexadecimal digits.
 std::string HashBytes(std::string_view bytes);
 
-// The hash of a file's content. Throws InputError naming the file when it cannot be read.
+// The hash of a file's content. Throws InputError naming the file if it cannot be read.
 std::string HashFile(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -16,8 +16,8 @@ void Handle(int signal) {
   if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
   action = {};
   action.sa_handler = &Remember;
-  // The default action comes back with the first signal: the second one kills. System calls are
-  // restarted, so that an interrupt cannot look like a failed write.
+  // SA_RESETHAND restores the default action, so that a second signal terminates the program.
+  // SA_RESTART restarts system calls, so that an interrupt cannot look like a failed write.
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
   sigemptyset(&action.sa_mask);
   sigaction(signal, &action, nullptr);

@@ -27,7 +27,7 @@ class StandardErrorSink : public google::LogSink {
 
 void InitialiseLogging(const char* program, LogLevel level) {
   google::InitGoogleLogging(program);
-  // glog's own destinations are switched off: no files, nothing to standard error but our sink.
+  // Switch off glog's own destinations, so that only our sink writes.
   for (int severity = 0; severity < google::NUM_SEVERITIES; ++severity) {
     google::SetLogDestination(severity, "");
   }

@@ -1,6 +1,6 @@
-// Where log messages go: glog, one sink, standard error.
+// Set-up of glog: all log messages go to standard error, and no log files are written.
 //
-// A line reads "W 12:03:44.123 sor_filter.cc:42] message". No log files are written.
+// A line reads "W 12:03:44.123 sor_filter.cc:42] message".
 #ifndef LACUNA_CORE_LOGGING_H_
 #define LACUNA_CORE_LOGGING_H_
 
@@ -10,10 +10,11 @@ namespace lacuna {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };  // kDebug also shows VLOG(1)
 
-// Call once, first thing in main. Messages below `level` are dropped; a failed CHECK always shows.
+// Call this once at the start of main. Messages below `level` are dropped; a failed CHECK is always
+// shown.
 void InitialiseLogging(const char* program, LogLevel level = LogLevel::kWarning);
 
-// May be called again, e.g. when the command line has been read.
+// Changes the level, e.g. after the command line has been read.
 void SetLogLevel(LogLevel level);
 
 }  // namespace lacuna

@@ -16,10 +16,10 @@
 namespace lacuna {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the .npy payload is copied as it is");
+static_assert(std::endian::native == std::endian::little, "the .npy payload is copied unchanged");
 
 constexpr std::string_view kMagic = "\x93NUMPY";
-constexpr size_t kAlignment = 64;  // of the payload, as the format asks
+constexpr size_t kAlignment = 64;  // of the payload, required by the format
 
 struct RawArray {
   std::string type;  // NumPy's descr, e.g. "<f8"
@@ -40,7 +40,7 @@ std::string ReadBytes(std::ifstream& stream, size_t count) {
   return bytes;
 }
 
-// The size in bytes of one element, 0 for a type that is not read here.
+// The size in bytes of one element; 0 for an unsupported type.
 size_t ElementSize(const std::string& type) {
   for (const char* known : {"<f8", "<f4", "<i8", "<i4", "<i2", "<u4", "<u2", "|i1", "|u1"}) {
     if (type == known) return static_cast<size_t>(type[2] - '0');
@@ -54,20 +54,20 @@ void ParseHeader(const std::filesystem::path& file, const std::string& header, R
   static const std::regex type(R"re(['"]descr['"]\s*:\s*['"]([^'"]*)['"])re");
   static const std::regex order(R"re(['"]fortran_order['"]\s*:\s*(True|False))re");
   static const std::regex shape(R"re(['"]shape['"]\s*:\s*\(([0-9,\s]*)\))re");
-  if (!std::regex_search(header, match, type)) Fail(file, "the .npy header names no simple type");
+  if (!std::regex_search(header, match, type)) Fail(file, "the .npy header has no simple type");
   array->type = match[1];
-  if (!std::regex_search(header, match, order)) Fail(file, "the .npy header tells no order");
+  if (!std::regex_search(header, match, order)) Fail(file, "the .npy header has no order");
   array->fortran_order = match[1] == "True";
-  if (!std::regex_search(header, match, shape)) Fail(file, "the .npy header tells no shape");
+  if (!std::regex_search(header, match, shape)) Fail(file, "the .npy header has no shape");
   const std::string extents = match[1];
   static const std::regex digits("[0-9]+");
   for (std::sregex_iterator it(extents.begin(), extents.end(), digits), end; it != end; ++it) {
     const std::string text = it->str();
-    if (text.size() > 15) Fail(file, "the .npy header tells an impossible shape");
+    if (text.size() > 15) Fail(file, "the .npy header has an impossible shape");
     const int64_t extent = std::stoll(text);
     array->shape.push_back(extent);
     if (extent > 0 && array->count > std::numeric_limits<int64_t>::max() / 16 / extent) {
-      Fail(file, "the .npy header tells an impossible shape");
+      Fail(file, "the .npy header has an impossible shape");
     }
     array->count *= extent;
   }
@@ -99,11 +99,11 @@ RawArray ReadRaw(const std::filesystem::path& file) {
   }
   const size_t expected = element * static_cast<size_t>(array.count);
   if (size - payload_begin != expected) {
-    Fail(file, "holds " + std::to_string(size - payload_begin) + " bytes of numbers where its " +
-                   "shape asks for " + std::to_string(expected));
+    Fail(file, "holds " + std::to_string(size - payload_begin) + " bytes of numbers; its shape " +
+                   "needs " + std::to_string(expected));
   }
   array.payload = ReadBytes(stream, expected);
-  if (array.payload.size() != expected) Fail(file, "cannot be read to its end");
+  if (array.payload.size() != expected) Fail(file, "cannot be read completely");
   return array;
 }
 
@@ -120,7 +120,7 @@ void ConvertAs(const std::filesystem::path& file, const RawArray& array, std::ve
                        ", too large to be a floating-point number");
       }
     }
-    // NOLINTNEXTLINE(bugprone-signed-char-misuse): an int8 is a number here
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): an int8 is a number here, not a character
     (*out)[static_cast<size_t>(i)] = static_cast<Value>(stored);
   }
 }
@@ -144,7 +144,7 @@ std::vector<Value> Convert(const std::filesystem::path& file, const RawArray& ar
   return values;
 }
 
-// Fortran order reversed: the last index becomes the fastest.
+// Converts from Fortran order (first index fastest) to C order (last index fastest).
 template <typename Value>
 std::vector<Value> LastIndexFastest(const std::vector<int64_t>& shape,
                                     const std::vector<Value>& fortran) {

@@ -1,7 +1,8 @@
-// NumPy's array files (.npy, format 1.0 to 3.0): large arrays that Lacuna and Python both read.
+// Reading and writing of NumPy's array files (.npy, format 1.0 to 3.0).
 //
-// Read: little-endian float64, float32, int64, int32, int16, uint32, uint16 and single bytes, in
-// C or Fortran order, of any number of dimensions. Written: float64 and int64.
+// The reader accepts little-endian float64, float32, int64, int32, int16, uint32, uint16 and single
+// bytes, in C or Fortran order, with any number of dimensions. The writer produces float64 and
+// int64.
 #ifndef LACUNA_CORE_NPY_H_
 #define LACUNA_CORE_NPY_H_
 
@@ -14,21 +15,25 @@ namespace lacuna {
 
 using MatrixXi64 = Eigen::Matrix<int64_t, Eigen::Dynamic, Eigen::Dynamic>;
 
+// An array of any number of dimensions.
 struct NpyArray {
   std::vector<int64_t> shape;  // empty for a single number
-  std::vector<double> values;  // last index fastest, whatever the order in the file
+  std::vector<double> values;  // in C order (last index fastest), whatever the order in the file
 };
 
-// Each throws InputError naming the file when it is absent, not an .npy file, shorter or longer
-// than its header says, of another type, or (integers read as float64) beyond ±2^53.
+// Reads an array as float64. All readers throw InputError naming the file if it is absent, is not
+// an .npy file, is shorter or longer than its header says, has an unsupported type, or holds
+// integers beyond ±2^53 that are to be read as float64.
 NpyArray ReadNpy(const std::filesystem::path& file);
 
-// A 2-D array as rows × columns, a 1-D array as a column; another shape is an InputError.
+// Reads a 2-D array as rows × columns and a 1-D array as one column. Throws InputError for any
+// other number of dimensions.
 Eigen::MatrixXd ReadNpyMatrix(const std::filesystem::path& file);
-// The same for an integer type; an array of floating-point numbers is an InputError.
+// The same for integers. Throws InputError for an array of floating-point numbers.
 MatrixXi64 ReadNpyIntegers(const std::filesystem::path& file);
 
-// Written atomically, in Fortran order. A matrix becomes a 2-D array, also when it has one column.
+// Writes a 2-D array atomically in Fortran order; a matrix with one column stays 2-D. Throws
+// InputError if the file cannot be written.
 void WriteNpy(const std::filesystem::path& file, const Eigen::MatrixXd& matrix);
 void WriteNpyIntegers(const std::filesystem::path& file, const MatrixXi64& matrix);
 

@@ -16,8 +16,8 @@ namespace {
 std::atomic<int> thread_count{0};
 thread_local bool inside_loop = false;
 
-// Looks for the next loop so often before it goes to sleep: some 50 µs, the pause between two loops
-// of one computation.
+// A helper polls this many times for the next loop before it sleeps: some 50 µs, the typical pause
+// between two loops of one computation.
 constexpr int kSpins = 1000;
 
 void Pause() {
@@ -26,7 +26,7 @@ void Pause() {
 #endif
 }
 
-// One loop at work: its blocks are handed out one by one.
+// A loop in progress. Its blocks are handed out one by one.
 struct Loop {
   Loop(int64_t count, int64_t block, const std::function<void(int64_t, int64_t)>& body, int helpers)
       : count(count),
@@ -58,19 +58,19 @@ struct Loop {
   }
 };
 
-// Threads that help where they can. The caller of a loop never waits for a helper to arrive, only
-// for one in the middle of a block: where other programs keep the cores busy, a loop is then hardly
-// slower than on one thread. (A barrier for all, as OpenMP's, costs a scheduler's time slice for
-// each loop there, which made small loops a hundred times slower.)
+// The pool of helper threads. The caller of a loop never waits for a helper to arrive, only for one
+// that is in the middle of a block. When other programs keep the cores busy, a loop is then hardly
+// slower than on one thread; a barrier for all threads, as in OpenMP, would cost a scheduler's time
+// slice per loop.
 class Helpers {
  public:
-  // Lives until the end of the process, so that helpers need not be stopped.
+  // Never destroyed, so that the helpers need not be stopped at the end of the process.
   static Helpers& Get() {
     static Helpers& helpers = *new Helpers;
     return helpers;
   }
 
-  // False when another thread's loop has the helpers: then the caller is on its own.
+  // Returns false without running the loop if another thread's loop is using the helpers.
   bool Run(Loop* loop) {
     const std::unique_lock mine(in_use_, std::try_to_lock);
     if (!mine) return false;
@@ -116,7 +116,7 @@ class Helpers {
 
   std::mutex in_use_;
   int threads_ = 0;
-  std::mutex mutex_;  // of current_ and of entering it
+  std::mutex mutex_;  // protects current_ and the entering of its loop
   Loop* current_ = nullptr;
   std::atomic<int64_t> loops_ = 0;
 };
@@ -124,7 +124,7 @@ class Helpers {
 }  // namespace
 
 int ThreadCount() {
-  // Asked for once: the answer is read from a file each time.
+  // Called once only, because the standard library reads a file at each call.
   static const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int count = thread_count.load();
   return count > 0 ? count : cores;

@@ -1,7 +1,8 @@
-// Loops over both cores whose results do not depend on how many there are.
+// Parallel loops whose results do not depend on the number of threads.
 //
-// The rule that keeps results bit-identical for any number of threads: a body writes only to
-// places that belong to its own index, and sums are formed per block and added in block order.
+// Results are bit-identical for any number of threads if the caller obeys one rule: a body writes
+// only to locations that belong to its own index, and sums are formed per block and added in block
+// order.
 #ifndef LACUNA_CORE_PARALLEL_H_
 #define LACUNA_CORE_PARALLEL_H_
 
@@ -10,16 +11,18 @@
 
 namespace lacuna {
 
-// The number of threads that the loops below use; at first that of the machine's cores.
+// The number of threads that the loops below use; initially the number of the machine's cores.
 int ThreadCount();
 void SetThreadCount(int count);
 
-// Calls body(begin, end) for consecutive blocks [k·block, (k+1)·block) of [0, count). The blocks
-// depend on `count` and `block` alone, never on the number of threads; they run in any order.
+// Calls body(begin, end) for the consecutive blocks [k·block, (k+1)·block) of [0, count), in any
+// order and possibly at the same time. The blocks depend on `count` and `block` only. A loop inside
+// a body runs serially. An exception of a body ends the loop early and is rethrown to the caller;
+// if several throw, one of them is.
 void ParallelBlocks(int64_t count, int64_t block,
                     const std::function<void(int64_t begin, int64_t end)>& body);
 
-// Calls body(i) for each i in [0, count), in any order.
+// Calls body(i) for each i in [0, count), grouped in blocks as above.
 template <typename Body>
 void ParallelFor(int64_t count, int64_t block, const Body& body) {
   ParallelBlocks(count, block, [&body](int64_t begin, int64_t end) {

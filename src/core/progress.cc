@@ -10,12 +10,14 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "core/json_number.h"
+
 namespace lacuna {
 namespace {
 
 constexpr std::string_view kEraseLine = "\r\x1b[2K";
 
-// Progress and the log share one stream; this is what keeps them apart.
+// Progress reports and log messages share standard error; the mutex keeps their lines apart.
 std::mutex standard_error_mutex;
 bool live_line_shown = false;
 
@@ -31,10 +33,6 @@ std::string Duration(double seconds) {
   return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
 }
 
-nlohmann::json NumberOrNull(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
-
 double Rounded(double seconds) { return std::round(seconds * 1e3) / 1e3; }
 
 }  // namespace
@@ -42,7 +40,7 @@ double Rounded(double seconds) { return std::round(seconds * 1e3) / 1e3; }
 struct Progress::State {
   ProgressOptions options;
   std::mutex mutex;
-  std::string stage;  // empty: none is open
+  std::string stage;  // empty if no stage is open
   int64_t total = 0;
   int64_t done = 0;
   double residual = std::numeric_limits<double>::quiet_NaN();
@@ -51,7 +49,7 @@ struct Progress::State {
 
   double Elapsed() const { return options.clock() - begin; }
 
-  // Steps are taken to be alike.
+  // Assumes that the remaining steps take as long on average as those done so far.
   double Remaining() const {
     if (total <= 0 || done <= 0) return std::numeric_limits<double>::quiet_NaN();
     return Elapsed() * static_cast<double>(std::max<int64_t>(0, total - done)) /
@@ -91,7 +89,7 @@ Progress::Progress(const ProgressOptions& options) : state_(std::make_unique<Sta
 }
 
 Progress::~Progress() {
-  // A stage that an exception left open gets no good word; only its live line is tidied away.
+  // If an exception left a stage open, no "end" is reported; only the live line is terminated.
   if (!state_->stage.empty() && state_->options.style == ProgressStyle::kLiveLine) {
     const std::lock_guard lock(standard_error_mutex);
     *state_->options.stream << "\n" << std::flush;

@@ -1,10 +1,10 @@
-// What the program is doing, how far it is and how long it will take.
+// Progress reports: the current stage, how much of it is done and how long the rest will take.
 //
-// On a terminal: one line that is rewritten in place. Elsewhere: JSON lines on the same stream,
+// A terminal gets one line that is rewritten in place. Any other stream gets JSON lines,
 //   {"event":"progress","stage":"fit","done":3,"total":20,"residual":0.0012,"elapsed_s":4.1,
 //    "remaining_s":23.2}
-// with the event "begin" at the start of a stage and "end" at its end. A residual or a remaining
-// time that is not known is null.
+// with the event "begin" at the start of a stage and "end" at its end. An unknown residual or
+// remaining time is null.
 #ifndef LACUNA_CORE_PROGRESS_H_
 #define LACUNA_CORE_PROGRESS_H_
 
@@ -21,16 +21,17 @@ namespace lacuna {
 enum class ProgressStyle { kAutomatic, kLiveLine, kJsonLines, kSilent };
 
 struct ProgressOptions {
-  ProgressStyle style = ProgressStyle::kAutomatic;  // by whether standard error is a terminal
-  // Shortest time between two reports, s; raise for shorter logs. The begin and the end of a
-  // stage are always told.
+  // kAutomatic chooses the live line if standard error is a terminal, and JSON lines otherwise.
+  ProgressStyle style = ProgressStyle::kAutomatic;
+  // Shortest time between two reports, s. Raising it shortens the log. The beginning and the end of
+  // a stage are always reported.
   double live_interval = 0.1;
   double json_interval = 1.0;
-  std::function<double()> clock;   // s; empty: the steady clock
-  std::ostream* stream = nullptr;  // not owned; null: standard error
+  std::function<double()> clock;   // s; the steady clock if empty
+  std::ostream* stream = nullptr;  // not owned; standard error if null
 };
 
-// One run's progress. May be called from several threads.
+// The progress of one run. All functions may be called from several threads.
 class Progress {
  public:
   explicit Progress(const ProgressOptions& options = {});
@@ -38,12 +39,13 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Starts a stage of `total` frames, steps or levels (0: not known beforehand). A stage that is
-  // still open ends.
+  // Starts a stage of `total` frames, steps or levels; 0 if the number is not known beforehand.
+  // Ends a stage that is still open.
   void Begin(const std::string& stage, int64_t total);
-  // `done` of the total stand; `residual` in whatever measure the stage minimises.
+  // Reports that `done` of the total are finished. `residual` is the quantity that the stage
+  // minimises, in its own unit.
   void Report(int64_t done, double residual = std::numeric_limits<double>::quiet_NaN());
-  // The stage has ended; `note` is a few words on how ("resumed", "3 frames not converged").
+  // Ends the stage. `note` says briefly how it ended ("resumed", "3 frames not converged").
   void End(const std::string& note = "");
 
  private:
@@ -53,8 +55,8 @@ class Progress {
   const std::unique_ptr<State> state_;
 };
 
-// Writes a whole line to standard error without tearing the live line of a Progress: the live line
-// is erased, and comes back with the next report.
+// Writes a whole line to standard error. The live line of a Progress is erased first and reappears
+// with the next report.
 void WriteLineToStandardError(std::string_view line);
 
 }  // namespace lacuna

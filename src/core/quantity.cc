@@ -23,7 +23,7 @@ struct Unit {
   Dimension dimension;
 };
 
-// Symbols that may carry an SI prefix. "g" stands here, not "kg": the prefix makes the rest.
+// Symbols that may carry an SI prefix; hence "g" and not "kg".
 constexpr std::array kPrefixable = {
     Unit{"m", 1, kLength},          Unit{"g", 1e-3, kMass},   Unit{"s", 1, kTime},
     Unit{"N", 1, kForce},           Unit{"Pa", 1, kPressure}, Unit{"Hz", 1, kRate},
@@ -59,7 +59,7 @@ const Unit* FindSymbol(std::string_view symbol, bool prefixable_only) {
   return nullptr;
 }
 
-// Whole symbols win over prefixed ones, so that "min" is a minute and "m" a metre.
+// A whole symbol takes precedence over a prefixed one, so that "min" is a minute.
 Unit LookUp(std::string_view symbol) {
   if (const Unit* unit = FindSymbol(symbol, false)) return *unit;
   for (const Prefix& prefix : kPrefixes) {
@@ -71,7 +71,7 @@ Unit LookUp(std::string_view symbol) {
   throw std::invalid_argument(fmt::format("unknown unit \"{}\"", symbol));
 }
 
-// A unit product such as "kg/m^3" or "Pa s", read factor by factor.
+// Reads a product of units such as "kg/m^3" or "Pa s" factor by factor.
 class UnitReader {
  public:
   explicit UnitReader(std::string_view text) : rest_(text) {}
@@ -162,7 +162,7 @@ double ReadNumber(std::string_view text, std::string_view* rest) {
   return number;
 }
 
-// Dimensions only point to their texts; these are kept for good.
+// A Dimension only points to its texts, so these texts are kept until the program ends.
 const char* KeptText(const std::string& text) {
   static std::mutex mutex;
   static std::set<std::string> kept;
@@ -187,7 +187,7 @@ std::string UnitText(const Dimension& dimension) {
   return (above.empty() ? "1" : above) + below;
 }
 
-// The dimension with its words, those of a well-known one where it is one.
+// The dimension with its texts: those of a named dimension if it is one, else made from the unit.
 Dimension InWords(const Dimension& dimension) {
   for (const Dimension& known :
        {kDimensionless, kLength, kArea, kVolume, kTime, kRate, kVelocity, kAcceleration, kMass,
@@ -220,7 +220,7 @@ double ParseQuantity(std::string_view text, const Dimension& expected) {
     refuse(problem.what());
   }
   if (unit_text.empty() && !expected.SameAs(kDimensionless)) refuse("a unit is missing");
-  if (!unit.dimension.SameAs(expected)) refuse("its unit measures something else");
+  if (!unit.dimension.SameAs(expected)) refuse("its unit has another dimension");
   return number * unit.si;
 }
 

@@ -1,6 +1,6 @@
-// Physical quantities as users write them: "0.1 MPa", "30 mm", "12 Pa s", "9.81 m/s^2".
+// Parsing of physical quantities as users write them: "0.1 MPa", "30 mm", "12 Pa s", "9.81 m/s^2".
 //
-// Lacuna computes in SI; units exist only at the YAML door, and this is the door.
+// Lacuna computes in SI units throughout; other units exist only in the input files.
 #ifndef LACUNA_CORE_QUANTITY_H_
 #define LACUNA_CORE_QUANTITY_H_
 
@@ -9,7 +9,8 @@
 
 namespace lacuna {
 
-// Exponents of metre, kilogram, second, kelvin and radian, with a name for error messages.
+// The exponents of the base units, with texts for error messages and output. The texts must have
+// static storage duration.
 struct Dimension {
   int metre = 0, kilogram = 0, second = 0, kelvin = 0, radian = 0;
   const char* name = "a plain number";  // "a density"
@@ -39,17 +40,18 @@ inline constexpr Dimension kStiffness{0, 1, -2, 0, 0, "a stiffness", "200 N/m", 
 inline constexpr Dimension kTemperature{0, 0, 0, 1, 0, "a temperature", "20 K", "K"};
 inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 
-// The SI value of `text`. A plain number is accepted only for a dimensionless quantity; a quantity
-// with a unit of another dimension, an unknown unit or trailing text throws std::invalid_argument
-// with what was expected. Products by space, '*' or '·', quotients by '/', powers by '^'.
+// The SI value of `text`, a number and a unit. Products of units are written with a space, '*' or
+// '·', quotients with '/' and powers with '^'. A number without a unit is accepted only for a
+// dimensionless quantity. Throws std::invalid_argument, saying what was expected, for text that is
+// not a finite number, an unknown unit and a unit of another dimension.
 double ParseQuantity(std::string_view text, const Dimension& expected);
 
-// A quantity of the dimension that its own unit has ("3 N/kg"); dimensionless without a unit.
+// A quantity with the dimension of its own unit, e.g. "3 N/kg"; dimensionless without a unit.
 struct MeasuredQuantity {
   double value = 0;  // SI
   Dimension dimension;
 };
-// Throws std::invalid_argument for what is no number or has an unknown unit.
+// Throws std::invalid_argument for text that is not a number or has an unknown unit.
 MeasuredQuantity ParseAnyQuantity(std::string_view text);
 
 }  // namespace lacuna

@@ -12,7 +12,7 @@ std::string ReadWholeFile(const std::filesystem::path& file) {
   if (!stream || std::filesystem::is_directory(file))
     throw InputError({file.string()}, "cannot be opened for reading");
   std::string content(std::istreambuf_iterator<char>(stream), {});
-  if (stream.bad()) throw InputError({file.string()}, "cannot be read to its end");
+  if (stream.bad()) throw InputError({file.string()}, "cannot be read completely");
   return content;
 }
 

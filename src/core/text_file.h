@@ -1,4 +1,4 @@
-// A file, read whole.
+// Reading of a whole file into memory.
 #ifndef LACUNA_CORE_TEXT_FILE_H_
 #define LACUNA_CORE_TEXT_FILE_H_
 
@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-// All bytes of a file. Throws InputError naming it when it is not there, is a folder or cannot be
-// read to its end.
+// All bytes of `file`. Throws InputError naming it if it does not exist, is a folder or cannot be
+// read completely.
 std::string ReadWholeFile(const std::filesystem::path& file);
 
 }  // namespace lacuna

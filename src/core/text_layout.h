@@ -1,4 +1,4 @@
-// Text for a terminal: widths, columns and line breaks, in characters of UTF-8.
+// Layout of UTF-8 text for a terminal: widths, columns and line breaks.
 #ifndef LACUNA_CORE_TEXT_LAYOUT_H_
 #define LACUNA_CORE_TEXT_LAYOUT_H_
 
@@ -7,17 +7,19 @@
 
 namespace lacuna {
 
-inline constexpr size_t kTerminalWidth = 100;
+inline constexpr size_t kTerminalWidth = 100;  // the default width of a paragraph, characters
 
-// Characters: bytes that begin one.
+// The number of characters (code points) of `text`.
 size_t DisplayWidth(std::string_view text);
 
-// With spaces behind it, or before it, up to the width; at least one where it is longer.
+// `text` filled up with spaces to `width` characters, behind it (PaddedRight) or before it
+// (PaddedLeft). A longer text gets one space.
 std::string PaddedRight(std::string_view text, size_t width);
 std::string PaddedLeft(std::string_view text, size_t width);
 
-// Lines of at most `width` characters, unless a word is longer, each ended. The first begins with
-// `first`, further ones with `margin`.
+// The words of `text` as a paragraph of lines with at most `width` characters; a longer word gets a
+// line of its own. The first line begins with `first`, the others with `margin`, and each ends with
+// a newline.
 std::string Wrapped(std::string_view text, std::string_view first, std::string_view margin,
                     size_t width = kTerminalWidth);
 

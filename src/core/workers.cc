@@ -26,7 +26,7 @@ constexpr int kStopped = 3, kThrew = 4;  // exit statuses of a job's process
 constexpr auto kPause = std::chrono::milliseconds(10);
 
 int Work(size_t k, int threads, const std::function<void(size_t)>& job) {
-  // A job whose caller is killed has nobody left to report to.
+  // If the parent process is killed, the job should end, too.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   SetThreadCount(threads);
   try {
@@ -64,7 +64,7 @@ int ShareOut(size_t count, const WorkerOptions& options, const std::function<voi
   while (true) {
     while (next < count && static_cast<int>(running.size()) < options.workers &&
            !InterruptRequested()) {
-      std::fflush(nullptr);  // or the child would write it once more
+      std::fflush(nullptr);  // otherwise the child would write the buffered output again
       const pid_t child = fork();
       if (child == 0) {
         const int status = Work(next, options.threads, job);

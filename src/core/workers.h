@@ -1,4 +1,4 @@
-// A list of jobs, shared out to processes.
+// Running a list of jobs in several processes at a time.
 #ifndef LACUNA_CORE_WORKERS_H_
 #define LACUNA_CORE_WORKERS_H_
 
@@ -10,18 +10,19 @@ namespace lacuna {
 
 struct WorkerOptions {
   int workers = 1;  // processes at a time
-  int threads = 1;  // of each
-  // Told in the calling process when job k ended by a mistake of its own (a crash, an exception
-  // that nobody caught); the others go on. Not told of one that was stopped from outside: it is to
-  // be done again.
+  int threads = 1;  // threads of each process
+  // Called in the parent process if job k crashed or ended with an uncaught exception; the other
+  // jobs continue. Not called for a job that was stopped by a signal from outside, which should
+  // simply be done again.
   std::function<void(size_t k, const std::string& reason)> crashed = {};
 };
 
-// Calls job(k) for every k in [0, count), each in a process of its own, so that a crash takes
-// nothing else with it. Several calls, on several machines, may share a list: a job must claim what
-// it works on and leave what is done. SIGINT and SIGTERM are passed on to the jobs, and no further
-// one begins. Returns 0, or 1 when a job did not come to its end. Call it before threads have been
-// started: a fork would lose them.
+// Calls job(k) for every k in [0, count), each in a process of its own (fork), so that a crash does
+// not affect the others. Several calls, also on several machines, may work on the same list if each
+// job claims its task (core/claim.h) and skips a finished one. SIGINT and SIGTERM are passed on to
+// the running jobs, and no further job is started. Returns 0 if all jobs ended normally, else 1.
+// Throws InputError if no process can be started. Call it before any thread has been started, since
+// a forked process has only one.
 int ShareOut(size_t count, const WorkerOptions& options, const std::function<void(size_t)>& job);
 
 }  // namespace lacuna

@@ -23,7 +23,7 @@ namespace {
   throw InputError(position, message);
 }
 
-// A key given twice would silently lose one of its values.
+// YAML-cpp would silently drop one value of a key that is given twice.
 void RefuseRepeatedKeys(const YAML::Node& root, const std::filesystem::path& file) {
   std::vector<YAML::Node> open = {root};
   while (!open.empty()) {
@@ -60,7 +60,7 @@ YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
   return root;
 }
 
-// A field given by the file itself after all, and what a piece had put below it.
+// Removes the record that `field` and everything below it came from another file.
 void Forget(const std::string& field, YamlDocument* document) {
   auto& files = document->file_of_field;
   for (auto at = files.begin(); at != files.end();) {
@@ -72,8 +72,8 @@ void Forget(const std::string& field, YamlDocument* document) {
   }
 }
 
-// Puts the pieces into a mapping or list and all below it. `files`: those being read, outermost
-// first.
+// Inserts the pieces into a mapping or list and everything below it. `files` are the files that are
+// being read, the outermost first.
 void PutInPieces(YAML::Node node, const std::string& path,
                  const std::vector<std::filesystem::path>& files, YamlDocument* document) {
   const auto below = [&path](const std::string& key) {
@@ -117,7 +117,7 @@ void PutInPieces(YAML::Node node, const std::string& path,
   for (const auto& entry : node)
     if (entry.first.IsScalar()) keys.push_back(entry.first.Scalar());
   for (const std::string& key : keys) {
-    if (document->file_of_field.count(below(key)) > 0) continue;  // of a piece, and complete
+    if (document->file_of_field.count(below(key)) > 0) continue;  // from a piece: already complete
     PutInPieces(node[key], below(key), files, document);
   }
 }

@@ -1,5 +1,5 @@
-// The YAML behind a Config: read whole, checked for what YAML itself allows but loses, and with the
-// pieces it uses put in. Private to config.cc.
+// The YAML document behind a Config: parsed, checked for repeated keys, and with the pieces that it
+// includes by `use` inserted. Private to core.
 #ifndef LACUNA_CORE_YAML_DOCUMENT_H_
 #define LACUNA_CORE_YAML_DOCUMENT_H_
 
@@ -16,23 +16,22 @@ namespace lacuna {
 
 struct YamlDocument {
   std::filesystem::path file;
-  std::shared_ptr<YAML::Node> root;
-  // Fields ("scanner.noise") that came from another file, by `use`.
+  std::shared_ptr<YAML::Node> root;  // a mapping
+  // The fields ("scanner.noise") that another file has contributed by `use`, with that file.
   std::map<std::string, std::filesystem::path> file_of_field;
 
-  // The file that a field, or the mapping it is in, was read from.
+  // The file that `field`, or the innermost listed mapping around it, was read from.
   const std::filesystem::path& FileOf(std::string field) const;
 };
 
-// Throws InputError for what is not YAML, no mapping, a second document, a key given twice, and for
-// pieces that are not there or use one another in a circle.
-//
-// `use: piece.yaml` in a mapping (a path relative to the file it stands in) puts in the piece's
-// entries that the mapping does not give itself.
+// Parses `text`; `file` names it in messages and is the base of relative paths. `use: piece.yaml`
+// in a mapping (a path relative to the file that says so) inserts those entries of the piece that
+// the mapping does not give itself. Throws InputError if the text is not valid YAML, is not a
+// mapping, has a second document or a repeated key, and if a piece is absent or includes itself.
 YamlDocument ParseYaml(const std::string& text, const std::filesystem::path& file);
 
-// "${NAME}" replaced by the environment variable of that name, "${NAME:-value}" falling back to
-// `value`; a variable that is not set becomes `*missing`.
+// `text` with "${NAME}" replaced by the environment variable NAME. "${NAME:-value}" falls back to
+// `value`. If a variable without a fallback is not set, its name is stored in `*missing`.
 std::string ExpandEnvironment(const std::string& text, std::string* missing);
 
 }  // namespace lacuna

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <map>
 #include <utility>
+#include <variant>
 
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 #include "geometry/farthest_first.h"
 #include "record/effect_card.h"
 
@@ -25,19 +27,20 @@ struct Variant {
   VariantPosition position = {};
 };
 
-// The object's shape in a few numbers.
+// The principal extents of the body.
 struct Extent {
   Eigen::Vector3d centre;
-  Eigen::Matrix3d axis;    // columns: longest first, each pointing to its larger coordinate
-  Eigen::Vector3d length;  // along them
-  // Of a body that is no bar: in the middle of parts of about equal volume, and how far these are
-  // from one another, m; none: a place along a bar is told by a number.
+  Eigen::Matrix3d axis;    // columns: principal axes, the longest first; their largest component is
+                           // positive
+  Eigen::Vector3d length;  // m, along the axes
+  // Of a body that is not a bar: the centres of parts of about equal volume, and the distance below
+  // which two of them are neighbours, m. Empty for a bar, whose places lie along its length.
   Eigen::Matrix3Xd places;
   double spacing = 0;
 };
 
-// Centres of parts of about equal volume, each in the body (Lloyd, IEEE Trans. Inf. Theory 28,
-// 1982).
+// Centres of parts of about equal volume, each moved to the nearest quadrature point so that it
+// lies in the body (S. P. Lloyd, IEEE Trans. Inf. Theory 28, 1982).
 Eigen::Matrix3Xd EvenPlaces(const Body& body, const Eigen::Vector3d& first, int most) {
   constexpr int kRounds = 30;
   const int count = std::min(most, static_cast<int>(body.point.cols()));
@@ -75,8 +78,8 @@ Extent Measure(const Body& body) {
   const Eigen::Matrix3Xd from = body.mesh.nodes.colwise() - extent.centre;
   const Eigen::Matrix3d inertia = from * mass.asDiagonal() * from.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(inertia);
-  // Only the longest axis means something where a section is square or round; the others are taken
-  // near those of the coordinates then.
+  // Equal moments leave the axes undetermined, as those of a square or round section. They are then
+  // chosen close to the coordinate axes.
   constexpr double kDistinct = 1.1;
   const Eigen::Vector3d moment = eigen.eigenvalues();
   Eigen::Vector3d longest = eigen.eigenvectors().col(2);
@@ -98,12 +101,12 @@ Extent Measure(const Body& body) {
     const Eigen::RowVectorXd along = axis.transpose() * from;
     extent.length[k] = along.maxCoeff() - along.minCoeff();
   }
-  // Wider than this part of its length, it is no bar.
+  // A body whose width exceeds this share of its length is not a bar.
   constexpr double kBar = 0.4;
   constexpr int kPlaces = 16;
   if (extent.length[1] > kBar * extent.length[0]) {
     extent.places = EvenPlaces(body, extent.centre, kPlaces);
-    constexpr double kNear = 1.5;  // parts that share a side are so many of their widths apart
+    constexpr double kNear = 1.5;  // distance of adjacent parts, in their width
     extent.spacing = kNear * std::cbrt(body.weight.sum() / kPlaces);
   }
   return extent;
@@ -128,7 +131,7 @@ Variant AtPlace(const Eigen::Vector3d& place, double radius, std::string name) {
   return variant;
 }
 
-// Along the object's longest axis, at these shares of its length.
+// Places on the longest axis, at these shares of its length.
 std::vector<Variant> PlacesAlong(const Extent& extent, const std::vector<double>& shares,
                                  double radius_share) {
   std::vector<Variant> variants;
@@ -141,7 +144,7 @@ std::vector<Variant> PlacesAlong(const Extent& extent, const std::vector<double>
   return variants;
 }
 
-// Everywhere; along a bar, at these shares of its length.
+// Places along a bar, at these shares of its length, or throughout any other body.
 std::vector<Variant> Places(const Extent& extent, const std::vector<double>& shares,
                             double radius_share) {
   if (extent.places.cols() == 0) return PlacesAlong(extent, shares, radius_share);
@@ -165,7 +168,7 @@ Variant AlongDirection(const Eigen::Vector3d& axis) {
   return variant;
 }
 
-// Along its length; of what is no bar, its width, too.
+// Gradients along the length, and along the width of a body that is not a bar.
 std::vector<Variant> Gradients(const Extent& extent) {
   std::vector<Variant> variants;
   for (int axis = 0; axis < (extent.places.cols() > 0 ? 2 : 1); ++axis) {
@@ -176,13 +179,13 @@ std::vector<Variant> Gradients(const Extent& extent) {
   return variants;
 }
 
-// The object's axes, and the diagonals between two and all of them: none is farther than 28° from
-// one of these.
+// The principal axes and the diagonals between two and three of them: any direction is within 28°
+// of one of these.
 std::vector<Variant> Directions(const Extent& extent) {
   std::vector<Variant> variants;
   for (int code = 1; code < 27; ++code) {
     const Eigen::Vector3d steps((code + 1) % 3 - 1, (code / 3 + 1) % 3 - 1, (code / 9 + 1) % 3 - 1);
-    // Of two opposite ones, the one whose last step is forwards.
+    // Of two opposite directions one is kept: the one whose last non-zero step is positive.
     const double last = steps[2] != 0 ? steps[2] : steps[1] != 0 ? steps[1] : steps[0];
     if (last <= 0) continue;
     const Eigen::Vector3d axis = (extent.axis * steps).normalized();
@@ -192,28 +195,29 @@ std::vector<Variant> Directions(const Extent& extent) {
   return variants;
 }
 
-std::vector<Variant> Numbers(const std::string& parameter, const std::string& symbol,
-                             const std::string& unit, const std::vector<double>& numbers) {
+std::vector<Variant> AtValues(const ParameterCard& parameter, const std::string& label,
+                              const std::vector<double>& values) {
+  const std::string unit = parameter.dimension.unit;
   std::vector<Variant> variants;
-  for (const double number : numbers)
-    variants.push_back(
-        {fmt::format("{} = {:.2g}{}{}", symbol, number, unit.empty() ? "" : " ", unit),
-         {{parameter, number}},
-         {.line = 1, .number = static_cast<int>(variants.size())}});
+  for (const double value : values)
+    variants.push_back({fmt::format("{} = {:.2g}{}{}", label, value, unit.empty() ? "" : " ", unit),
+                        {{parameter.name, value}},
+                        {.line = 1, .number = static_cast<int>(variants.size())}});
   return variants;
 }
 
-// The whole surface, or near an end or the middle of the length.
+// The whole surface, and the surface near both ends and the middle of the length.
 std::vector<Variant> Supports(const Extent& extent) {
   std::vector<Variant> variants = PlacesAlong(extent, {0.05, 0.5, 0.95}, 0.1);
   variants.insert(variants.begin(), {"of the whole surface", {}});
   return variants;
 }
 
-std::vector<Variant> SlippingSupports(const Extent& extent) {
+std::vector<Variant> SlippingSupports(const Extent& extent,
+                                      const std::vector<double>& slip_shares) {
   std::vector<Variant> variants;
   int line = 0;
-  for (const double share : {0.002, 0.02}) {
+  for (const double share : slip_shares) {
     ++line;
     const double distance = share * extent.length[0];
     for (Variant variant : Supports(extent)) {
@@ -235,33 +239,44 @@ std::vector<double> RelaxationTimes(const CandidateSetting& setting) {
   return times;
 }
 
-// Of the length: the places from which that of a mass or a force is sought.
-const std::vector<double> kAlongLength = {0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95};
-
-std::vector<Variant> VariantsOf(const std::string& type, const Extent& extent,
-                                const CandidateSetting& setting) {
-  if (type == "inclusion") return Places(extent, {0.1, 0.25, 0.4, 0.55, 0.7, 0.85}, 0.15);
-  if (type == "attached_mass") return Places(extent, kAlongLength, 0.05);
-  if (type == "point_force" || type == "follower_force") return Places(extent, kAlongLength, 0.1);
-  if (type == "fibre_stiffness" || type == "active_contraction") return Directions(extent);
-  if (type == "stiffness_gradient" || type == "density_gradient") return Gradients(extent);
-  if (type == "viscoelastic_branch")
-    return Numbers("relaxation_time", "τ", "s", RelaxationTimes(setting));
-  if (type == "elastoplastic_branch")
-    return Numbers("yield_strain", "yield at a strain", "", {0.01, 0.05});
-  if (type == "elastic_support") return Supports(extent);
-  if (type == "slipping_support") return SlippingSupports(extent);
-  if (type == "softening") return Numbers("softening_strain", "κ₀", "", {0.1});
-  return {{"", {}}};
+const ParameterCard& ParameterOf(const EffectCard& card, const std::string& name) {
+  const int index = ParameterIndex(card, name);
+  CHECK_GE(index, 0) << card.type << " is tried at values of " << name
+                     << ", which it does not have";
+  return card.parameters[index];
 }
 
-Eigen::Vector3d GravityOf(const EffectList& effects) {
-  for (const auto& effect : effects)
-    if (effect->Card().type == "gravity") return effect->Parameters();
-  return Eigen::Vector3d::Zero();
-}
+// The variants that `tried_at` of a card asks for.
+class VariantsOf {
+ public:
+  VariantsOf(const EffectCard& card, const Extent& extent, const CandidateSetting& setting)
+      : card_(card), extent_(extent), setting_(setting) {}
 
-// Where a place on the body can be.
+  std::vector<Variant> operator()(const TriedOnce&) const { return {{"", {}}}; }
+  std::vector<Variant> operator()(const TriedAtPlaces& places) const {
+    return Places(extent_, places.length_shares, places.radius_share);
+  }
+  std::vector<Variant> operator()(const TriedAlongDirections&) const { return Directions(extent_); }
+  std::vector<Variant> operator()(const TriedAsGradients&) const { return Gradients(extent_); }
+  std::vector<Variant> operator()(const TriedAtValues& values) const {
+    return AtValues(ParameterOf(card_, values.parameter), values.label, values.values);
+  }
+  std::vector<Variant> operator()(const TriedAtRelaxationTimes& times) const {
+    return AtValues(ParameterOf(card_, times.parameter), times.label, RelaxationTimes(setting_));
+  }
+  std::vector<Variant> operator()(const TriedAsSupports& supports) const {
+    return supports.slip_shares.empty() ? Supports(extent_)
+                                        : SlippingSupports(extent_, supports.slip_shares);
+  }
+  std::vector<Variant> operator()(const TriedAtContactPlanes&) const { return {}; }
+
+ private:
+  const EffectCard& card_;
+  const Extent& extent_;
+  const CandidateSetting& setting_;
+};
+
+// The coordinates that a place on the body may have.
 std::map<std::string, CandidateEffect::Range> PlacesOn(const Body& body) {
   std::map<std::string, CandidateEffect::Range> ranges;
   for (int axis = 0; axis < 3; ++axis) {
@@ -271,17 +286,12 @@ std::map<std::string, CandidateEffect::Range> PlacesOn(const Body& body) {
   return ranges;
 }
 
-// The first parameter, or three where it begins a vector.
-std::vector<int> AmplitudeOf(const EffectCard& card) {
-  const bool is_vector = card.parameters[0].name.ends_with("_x");
-  return is_vector ? std::vector<int>{0, 1, 2} : std::vector<int>{0};
-}
-
-// The card's parameters, from the variant, the model, the defaults; NaN where none tells.
+// The parameters of the card: from the variant, else from the model, else the default value (NaN if
+// there is none). The size of the effect is zero.
 Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
                          const CandidateSetting& setting) {
   Values known = variant.values;
-  SetVector("gravity", GravityOf(setting.effects), &known);
+  SetVector(kGravitySetting, GravityOf(setting.effects).value_or(Eigen::Vector3d::Zero()), &known);
   const Effect& material = *setting.effects.front();
   for (size_t m = 0; m < material.Card().parameters.size(); ++m)
     known.try_emplace(material.Card().parameters[m].name,
@@ -292,14 +302,14 @@ Eigen::VectorXd ValuesOf(const EffectCard& card, const Variant& variant,
     values[static_cast<Eigen::Index>(k)] =
         found != known.end() ? found->second : card.parameters[k].default_value;
   }
-  for (const int k : AmplitudeOf(card)) values[k] = card.parameters[k].null_value;
+  for (const int k : SizeParameters(card)) values[k] = card.parameters[k].null_value;
   return values;
 }
 
 }  // namespace
 
 bool AreNeighbours(const VariantPosition& a, const VariantPosition& b) {
-  // Of the object's axes and their diagonals, an axis and the diagonals beside it.
+  // Among the principal axes and their diagonals, an axis and the diagonals next to it.
   constexpr double kNeighbourAngle = 1;  // rad
   const bool in_line = a.line > 0 && a.line == b.line && std::abs(a.number - b.number) == 1;
   const bool is_near =
@@ -329,17 +339,15 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
     const EffectCard& card = *entry.card;
     if (entry.kind != CatalogueEntry::Kind::kEffect || entry.make == nullptr) continue;
     if (card.parameters.empty() || std::isnan(card.parameters[0].null_value)) continue;
-    if (card.type == "plane_contact" ||
-        std::count(setting.without.begin(), setting.without.end(), card.type) > 0)
-      continue;
+    if (std::count(setting.without.begin(), setting.without.end(), card.type) > 0) continue;
     const bool present =
         std::any_of(setting.effects.begin(), setting.effects.end(),
                     [&](const auto& effect) { return effect->Card().type == card.type; });
     if (present && !card.repeatable) continue;
-    for (const Variant& variant : VariantsOf(card.type, extent, setting)) {
+    for (const Variant& variant : std::visit(VariantsOf(card, extent, setting), card.tried_at)) {
       const Eigen::VectorXd values = ValuesOf(card, variant, setting);
-      CHECK(values.allFinite()) << card.type << " has a parameter that no variant tells";
-      candidates.push_back({card.type, variant.name, entry.make(values), AmplitudeOf(card)});
+      CHECK(values.allFinite()) << card.type << " has a parameter without a value";
+      candidates.push_back({card.type, variant.name, entry.make(values), SizeParameters(card)});
       candidates.back().position = variant.position;
       candidates.back().known = PlacesOn(setting.body);
     }

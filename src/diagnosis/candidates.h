@@ -1,5 +1,8 @@
-// The effects that a model may lack, each at its null value and in the variants that cannot be
-// found by a derivative: places, directions, times.
+// The effects that a model may lack, each at its null value.
+//
+// The derivative of a prediction with respect to the size of an effect tells how much of the effect
+// the recordings ask for, but it needs a place, a direction or a time scale. The card of the effect
+// (record/effect_card.h) says which of these are enumerated; each combination is one candidate.
 #ifndef LACUNA_DIAGNOSIS_CANDIDATES_H_
 #define LACUNA_DIAGNOSIS_CANDIDATES_H_
 
@@ -15,67 +18,73 @@
 
 namespace lacuna {
 
-// Where a variant stands among the others of its effect; by nothing: it has no neighbours.
+// The position of a variant among the other variants of its effect. A default position has no
+// neighbours.
 struct VariantPosition {
-  // Variants of the same line, 1 or more, follow one another in place or time.
+  // Variants with the same line ≥ 1 form a sequence in place or time, ordered by number.
   int line = 0, number = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();   // either way along it
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();   // unit, of either sign; 0: no direction
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m
-  double spacing = 0;                               // m: how far away neighbours in place may be
+  double spacing = 0;                               // m: the distance below which places are
+                                                    // neighbours; 0: no place
 
   bool IsSingle() const { return line == 0 && spacing == 0 && axis.isZero(0); }
 };
+
+// Whether two variants are next to each other in a sequence, in place or in direction, so that a
+// refit of one may move towards the other.
 bool AreNeighbours(const VariantPosition& a, const VariantPosition& b);
 
 struct CandidateEffect {
-  std::string type;     // of the effect
-  std::string variant;  // "τ = 0.3 s", "at the tip"; empty where there is one only
-  std::shared_ptr<const Effect> effect;  // at its null value; a pilot's at its pilot setting
-  // The parameters that make its size: one, or the three components of a vector. Empty: a pilot,
-  // which has no derivative at its null value (pilot_hypotheses.h); its one amount is the share of
-  // what the pilot setting changes, 1 there.
+  std::string type;     // the type of the effect
+  std::string variant;  // "τ = 0.3 s", "at 5 % of the length"; empty: the only one
+  std::shared_ptr<const Effect> effect;  // at its null value; that of a pilot at its pilot setting
+  // Indices of the parameters that make the size: one, or the three components of a vector. Empty
+  // for a pilot, which has no derivative at its null value (pilot_hypotheses.h); the amount of a
+  // pilot is the share of the change that the pilot setting makes, hence 1 at that setting.
   std::vector<int> amplitude;
-  // Of a pilot that acts besides: the parameters that a refit moves, each with its prior deviation
-  // from the pilot setting, SI.
+  // The parameters of an additional pilot that a refit moves, each with the standard deviation of
+  // its prior about the pilot setting, SI.
   std::map<std::string, double> refined = {};
   VariantPosition position = {};
-  // What is known of the others that a refit moves, of some of them, SI: a place lies on the body.
+  // Bounds, SI, of further parameters that a refit moves: a place lies within the body.
   struct Range {
     double min = 0, max = 0;
   };
   std::map<std::string, Range> known = {};
-  // It takes the place of the model's elasticity law; false: it acts besides.
+  // The effect replaces the elasticity law of the model; false: it is added to the model.
   bool replaces_material = false;
 
   bool IsPilot() const { return amplitude.empty(); }
 };
 
-// The largest plausible size of a parameter: the scale of its prior.
+// The largest plausible absolute value of a parameter, SI: the scale of its prior.
 double PlausibleScale(const ParameterCard& card);
 
-// One of the numbers that make a candidate's size.
+// One of the numbers that make the size of a candidate.
 struct CandidateAmount {
   std::string name, unit;
-  double plausible = 1;      // the largest size, the scale of its prior
-  bool is_positive = false;  // it cannot be negative
+  double plausible = 1;      // the largest plausible absolute value: the scale of the prior
+  bool is_positive = false;  // the amount cannot be negative
 };
+// One amount for each amplitude, in that order; the share for a pilot.
 std::vector<CandidateAmount> AmountsOf(const CandidateEffect& candidate);
 
-// What the variants are chosen for.
+// The model and the recordings for which candidates are made.
 struct CandidateSetting {
   const Body& body;
-  // The model's effects, the material first: what effects take from the material, gravity, and
-  // which effects it has already.
+  // The effects of the model, the material first. Candidates take moduli from the material and the
+  // acceleration from gravity; effects that the model contains are not tried again.
   const EffectList& effects;
-  double time_step = 0;  // s: of the simulation,
-  double duration = 0;   // s: and of the recording; relaxation times lie between them
-  std::vector<std::string> without = {};  // types that are not wanted
-  std::vector<OwnLaw> laws = {};          // the user's, tried like the catalogue's
+  double time_step = 0;                   // s, of the simulation: the shortest relaxation time
+  double duration = 0;                    // s, of the recordings: the longest relaxation time
+  std::vector<std::string> without = {};  // types that are excluded
+  std::vector<OwnLaw> laws = {};          // laws of the user, tried like those of the catalogue
 };
 
-// All effects of the catalogue whose size has a null value and that the model does not have yet,
-// and the user's laws. Contact, which has no derivative at its null value (pilot_hypotheses.h), is
-// not among them.
+// All effects of the catalogue whose size has a null value and that the model does not contain yet
+// (or that it may contain several times), in the order of the catalogue, then the laws of the user.
+// Contact, which has no derivative at its null value, is tried by pilot_hypotheses.h instead.
 std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting);
 
 }  // namespace lacuna

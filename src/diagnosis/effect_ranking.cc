@@ -164,8 +164,8 @@ void HypothesisRanking::AddNuisance(NuisanceCandidate candidate) {
 
 Eigen::VectorXd HypothesisRanking::ResidualAfter(const std::vector<int>& chosen) const {
   const LinearFit fit =
-      LinearModel(WhitenedRows(misfit_.residual, misfit_, 0, false),
-                  WhitenedRows(hypotheses_.columns, misfit_, 0, false), hypotheses_.priors)
+      LinearGaussianModel(WhitenedRows(misfit_.residual, misfit_, 0, false),
+                          WhitenedRows(hypotheses_.columns, misfit_, 0, false), hypotheses_.priors)
           .Fit(chosen, 1);
   return misfit_.residual + hypotheses_.columns(Eigen::all, chosen) * fit.change;
 }
@@ -197,7 +197,7 @@ void HypothesisRanking::ScoreNuisancesOfEveryModel() {
     nuisance.evidence = with.log_evidence - without.log_evidence;
     nuisance.explained = std::clamp(1 - with.misfit / without.misfit, 0.0, 1.0);
     if (nuisance.candidate.unknown.cols() == 0) continue;
-    const LinearModel unknown = weighed_->all.WithResidual(
+    const LinearGaussianModel unknown = weighed_->all.WithResidual(
         WhitenedRows(nuisance.candidate.unknown, misfit_, ranking_.noise.correlation_time, false),
         weighed_->columns);
     nuisance.doubt = 0.5 * unknown.Fit(parameters_, variance).misfit / variance;

@@ -86,8 +86,8 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   hypothesis.residual = hypothesis.misfit.residual;
   if (nuisances.cols() > 0) {
     const LinearFit fit =
-        LinearModel(WhitenedRows(hypothesis.residual, correspondences, 0, false),
-                    WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
+        LinearGaussianModel(WhitenedRows(hypothesis.residual, correspondences, 0, false),
+                            WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
             .FitAll(1);
     hypothesis.residual += nuisances * fit.change;
   }
@@ -106,8 +106,8 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
   // The amounts of adopted nuisances are at their best; the parameters stay where they are.
   const LinearFit adopted =
-      LinearModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
-                  {own, hypothesis.priors.end()})
+      LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
+                          {own, hypothesis.priors.end()})
           .FitAll(noise.variance);
   double prior_cost = 0;
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
@@ -117,9 +117,9 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
       prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
   // With a residual of zero, the log evidence is the determinant term alone.
-  const LinearFit nothing =
-      LinearModel(Eigen::VectorXd::Zero(residual.size()), columns, WithoutMeans(hypothesis.priors))
-          .FitAll(noise.variance);
+  const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
+                                                WithoutMeans(hypothesis.priors))
+                                .FitAll(noise.variance);
   HypothesisEvidence evidence;
   evidence.misfit = adopted.misfit;
   evidence.log_evidence =
@@ -147,8 +147,9 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
         variant.columns;
     priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
   }
-  const LinearModel model(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-                          WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
+  const LinearGaussianModel model(
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+      WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
   std::vector<int> chosen(hypothesis.priors.size());
   std::iota(chosen.begin(), chosen.end(), 0);
   const double before = model.Fit(chosen, noise.variance).log_evidence;
@@ -195,8 +196,8 @@ namespace {
 // The best parameters for all frames, to first order.
 LinearFit BestNear(const FittedHypothesis& hypothesis) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  return LinearModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                     WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
+  return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
+                             WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
       .FitAll(1);
 }
 

@@ -101,9 +101,9 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
 }
 
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip) {
-  const size_t fixed = recording.fixed.size();  // the model has these grips first
-  return grip < fixed || grip - fixed >= recording.grips.size() ? nullptr
-                                                                : &recording.grips[grip - fixed];
+  const size_t fixed = recording.object.fixed.size();  // the model has these grips first
+  return grip < fixed || grip - fixed >= recording.object.grips.size() ? nullptr
+                                                                : &recording.object.grips[grip - fixed];
 }
 
 }  // namespace lacuna

@@ -37,8 +37,8 @@ WeighedColumns WeighColumns(const LinearisedMisfit& misfit, const Eigen::MatrixX
   const Eigen::MatrixXd all = WhitenedRows(rows, misfit, correlation_time, false);
   const Eigen::MatrixXd fitted = WhitenedRows(rows, misfit, correlation_time, true);
   const Eigen::Index count = columns.cols();
-  return {LinearModel(all.col(0), all.rightCols(count), priors),
-          LinearModel(fitted.col(0), fitted.rightCols(count), priors), all.col(0),
+  return {LinearGaussianModel(all.col(0), all.rightCols(count), priors),
+          LinearGaussianModel(fitted.col(0), fitted.rightCols(count), priors), all.col(0),
           all.rightCols(count)};
 }
 
@@ -102,7 +102,7 @@ double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& mi
   constexpr int kDraws = kThresholds.ranking.control_draws;
   std::vector<double> largest;
   for (uint64_t draw = 0; draw < kDraws; ++draw) {
-    const LinearModel control =
+    const LinearGaussianModel control =
         weighed.all.WithResidual(ShuffledResidual(residual, misfit, draw), weighed.columns);
     const double before = control.Fit(base, variance).log_evidence;
     double most = 0;

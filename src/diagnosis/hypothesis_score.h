@@ -33,7 +33,7 @@ struct Score {
 // The residual and the columns of all hypotheses, whitened with the noise: once for all frames, and
 // once for the frames that were fitted.
 struct WeighedColumns {
-  LinearModel all, fitted;
+  LinearGaussianModel all, fitted;
   Eigen::VectorXd residual;  // of all frames
   Eigen::MatrixXd columns;   // of all frames
 };

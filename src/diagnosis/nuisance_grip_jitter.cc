@@ -84,7 +84,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
       const RecordedGrip* grip = RecordedAs(recording, own.grip);
       if (grip == nullptr || grip->motion != GripMotion::kFollowsMarkers) continue;
       const std::vector<int> markers = MarkersOf(*grip, recording);
-      const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, markers);
+      const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, markers);
       AppendFrameByFrame(
           part, markers,
           at.grip_columns.middleCols(own.rigid, 6) * RigidJitter(places, grip->deforms, noise),

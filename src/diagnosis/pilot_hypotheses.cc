@@ -10,11 +10,10 @@
 #include "diagnosis/plane_proposals.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
+#include "effects/plane_contact.h"
 
 namespace lacuna {
 namespace {
-
-const char kContact[] = "plane_contact";
 
 // NaN: the law has no such parameter.
 double ParameterOf(const Effect& effect, const std::string& name) {
@@ -23,7 +22,7 @@ double ParameterOf(const Effect& effect, const std::string& name) {
 }
 
 double ContactStiffness(const Body& body, const Effect& material) {
-  const ParameterCard& card = FindEntry(kContact)->card->parameters.front();
+  const ParameterCard& card = PlaneContactCard().parameters.front();
   const double size = std::cbrt(body.weight.sum() / body.ElementCount());
   return std::clamp(
       kThresholds.pilots.stiffness_ratio * ParameterOf(material, "young_modulus") / size,
@@ -32,17 +31,15 @@ double ContactStiffness(const Body& body, const Effect& material) {
 
 CandidateEffect Contact(const ProposedPlane& plane, double stiffness, double friction) {
   CandidateEffect candidate;
-  candidate.type = kContact;
+  candidate.type = PlaneContactCard().type;
   candidate.variant =
       fmt::format("normal ({:.2g}, {:.2g}, {:.2g}), at {:.1f} mm{}", plane.normal.x() + 0.0,
                   plane.normal.y() + 0.0, plane.normal.z() + 0.0, 1e3 * plane.offset,
                   friction > 0 ? ", with friction" : "");
-  candidate.effect = MakeEffect(kContact, {{"stiffness", stiffness},
-                                           {"normal_x", plane.normal.x()},
-                                           {"normal_y", plane.normal.y()},
-                                           {"normal_z", plane.normal.z()},
-                                           {"offset", plane.offset},
-                                           {"friction", friction}});
+  candidate.effect = MakePlaneContact({.normal = plane.normal,
+                                       .offset = plane.offset,
+                                       .stiffness = stiffness,
+                                       .friction = friction});
   candidate.refined["offset"] = kThresholds.pilots.plane_offset;
   if (friction > 0) candidate.refined["friction"] = friction;
   return candidate;
@@ -82,14 +79,15 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
   std::vector<CandidateEffect> candidates;
   for (const CandidateEffect& law : OtherLaws(material))
     if (is_wanted(law.type)) candidates.push_back(law);
-  if (is_wanted(kContact)) {
+  const std::string& contact = PlaneContactCard().type;
+  if (is_wanted(contact)) {
     std::vector<ProposedPlane> planes = ProposePlanes(problem, values, misfit);
     planes.resize(std::min(planes.size(), kThresholds.pilots.most_planes));
     const double stiffness = ContactStiffness(*problem.body(), material);
     for (const ProposedPlane& plane : planes) candidates.push_back(Contact(plane, stiffness, 0));
     if (planes.empty())
       pilots.untried.push_back(
-          {kContact, "the predicted body crosses no plane that the measured one stays behind"});
+          {contact, "the predicted body crosses no plane that the measured one stays behind"});
     else
       candidates.push_back(Contact(planes.front(), stiffness, kThresholds.pilots.friction));
   }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "diagnosis/thresholds.h"
+#include "effects/gravity.h"
 #include "fem/prediction.h"
 
 namespace lacuna {
@@ -77,11 +78,9 @@ Eigen::MatrixXd DirectionsToTry(const PredictionStudy& study,
   };
   for (const double sign : {1.0, -1.0})
     for (int axis = 0; axis < 3; ++axis) add(sign * Eigen::Vector3d::Unit(axis));
-  for (const auto& effect : study.effects) {
-    if (effect->Card().type != "gravity") continue;
-    const Eigen::Vector3d gravity = effect->Parameters().head<3>();
-    add(gravity);
-    add(-gravity);
+  if (const std::optional<Eigen::Vector3d> gravity = GravityOf(study.effects)) {
+    add(*gravity);
+    add(-*gravity);
   }
   add(largest_misfit);
   Eigen::MatrixXd all(3, static_cast<Eigen::Index>(directions.size()));

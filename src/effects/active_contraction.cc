@@ -1,12 +1,13 @@
-// Active contraction along one direction of the material, as of muscle or of an embedded actuator.
+// Active contraction along one direction of the material, such as that of muscle or of an embedded
+// actuator.
 //
-// The second Piola–Kirchhoff stress T a ⊗ a, a pull along the direction a of the rest shape that
-// does not depend on strain: its force per rest area on a face across a is T times the stretch.
+// The second Piola–Kirchhoff stress is T a ⊗ a, a pull along the direction a of the rest shape that
+// does not depend on strain: the force per rest area on a face normal to a is T times the stretch.
 #include <algorithm>
 #include <limits>
-#include <string>
 
 #include "effects/catalogue.h"
+#include "effects/vector_parameters.h"
 #include "fem/point_energy_effect.h"
 
 namespace lacuna {
@@ -70,13 +71,16 @@ class ActiveContractionLaw {
             "2000, 113–141",
         .parameters = {},
         .residual_when_missing =
-            "without a load to cause it the body draws together along one of its own directions, "
-            "most where it is softest, and thickens across",
+            "Without a load that would cause it, the body contracts along one of its own "
+            "directions, most where it is softest, and thickens across that direction.",
         .separating_experiment =
-            "switch the drive off, or wait for it to end: an active stress goes with it, swelling "
-            "and a wrong rest shape stay; turn the body: the pull turns with it, gravity does not; "
-            "add a load: the pull stays, that of stiffer fibres grows with their stretch",
+            "Switch the drive off, or wait for it to end: an active stress vanishes with it, "
+            "whereas swelling and a wrong rest shape stay. Turn the body: the pull rotates with "
+            "it, gravity does not. Add a load: the pull stays the same, that of stiffer fibres "
+            "grows with their stretch",
         .look_alikes = {"swelling", "gravity", "fibre_stiffness"},
+        .tried_at = TriedAlongDirections{},
+        .trial = {.axis_along_bar = true},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
@@ -89,18 +93,8 @@ class ActiveContractionLaw {
                                .plausible_min = -1e4,
                                .plausible_max = 1e5,
                                .default_value = kNone});
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back(
-          {.name = std::string("axis_") + axis,
-           .meaning = std::string("direction in the rest shape, of any length, a, along ") + axis,
-           .dimension = kDimensionless,
-           .bounds = kAnyValue,
-           .null_value = kNone,
-           .plausible_min = -1,
-           .plausible_max = 1,
-           .default_value = kNone,
-           .setting = true});
-    }
+    AppendDirectionSetting("axis", "direction in the rest shape, of any length, a,",
+                           Eigen::Vector3d::Constant(kNone), &card);
     card.parameters.push_back({.name = "start",
                                .meaning = "time at which the pull sets in, t₀",
                                .dimension = kTime,

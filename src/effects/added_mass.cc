@@ -20,7 +20,7 @@ std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
 }
 
 Eigen::VectorXd AddedMass::MassPerUnitBy(const Body&, int, const Eigen::VectorXd&) const {
-  LOG(FATAL) << "its other parameters are settings";
+  LOG(FATAL) << "all other parameters of this effect are settings";
 }
 
 void AddedMass::AddScaledForce(const Kinematics& at, double size, const Eigen::VectorXd& mass,

@@ -1,11 +1,16 @@
-// What effects share that add mass to a body, and so inertia and weight:
-//   f_i = θ μ_i (g − a_i),
-// with a size θ, a field μ ≥ 0 or of either sign over the nodes, the acceleration of free fall g
-// and the nodes' accelerations a.
+// Base class of effects that add mass to a body, and with it inertia and weight:
+//   f_i = θ μ_i (g − a_i)   (I. Newton, Philosophiæ Naturalis Principia Mathematica, 1687),
+// with the size θ of the effect, a field μ over the nodes (kg per unit of θ, of either sign), the
+// acceleration of free fall g (m/s²) and the accelerations a of the nodes (m/s²).
+//
+// A derived class gives the field and its derivatives; the card must begin with θ and end with the
+// setting `gravity`. The field is kept for the body that was asked about last (rest_quantity.h), so
+// that the effect may be used by several threads.
 #ifndef LACUNA_EFFECTS_ADDED_MASS_H_
 #define LACUNA_EFFECTS_ADDED_MASS_H_
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 
 #include "effects/rest_quantity.h"
@@ -17,28 +22,29 @@ class AddedMass : public Effect {
  public:
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override;
 
-  // Where θ μ_i < 0, the stand-in leaves out what is indefinite.
+  // With `convexify`, nodes with θ μ_i < 0 contribute nothing.
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override;
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override;
 
-  // In statics, where inertia is silent: that of the weight.
+  // The potential energy of the weight, J; nothing in dynamics, where inertia has no potential.
   std::optional<double> Energy(const Kinematics& at) const override;
 
   Eigen::VectorXd Parameters() const override { return parameters_; }
   void SetParameters(const Eigen::VectorXd& values);
 
  protected:
-  // μ: kg per unit of θ at each node (n), from the other parameters and the body at rest.
+  // μ at each node (n), kg per unit of θ, from the other parameters and the body at rest.
   virtual Eigen::VectorXd MassPerUnit(const Body& body) const = 0;
 
-  // ∂μ/∂(parameter), of those that are no settings; `mass`: μ.
+  // ∂μ/∂(parameter) at each node (n), for a parameter that is not a setting; `mass`: μ. The default
+  // is for classes all of whose other parameters are settings: it must not be called (LOG(FATAL)).
   virtual Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
                                         const Eigen::VectorXd& mass) const;
 
-  // In the order of the card: θ first, the three components of g last.
+  // In the order of the card: θ first, the three components of g last. SI.
   Eigen::VectorXd parameters_;
 
  private:

@@ -1,14 +1,15 @@
-// A small mass on or in the body, such as a marker, a sensor or a bolt: inertia and weight.
+// The inertia and weight of a small mass on or in the body, such as a marker, a sensor or a bolt.
 //
-// The mass is spread as exp(−|X − c|²/(2 r²)) over the nodes around its place c at rest, by the
-// volume around each node, so that the result tends to a limit as the mesh is refined. With r well
-// below the element size it falls on the nearest nodes; then only the mesh knows where it is.
-// It adds no stiffness, and turns with the body only as its nodes do.
+// The mass is distributed over the nodes around its place c at rest as exp(−|X − c|²/(2 r²)) times
+// the volume around each node, so that the result converges as the mesh is refined. With r well
+// below the element size the mass falls on the nearest nodes, and its place is only resolved to the
+// element size. It adds no stiffness and no rotational inertia beyond that of the nodes.
 #include <glog/logging.h>
 
 #include <limits>
 
 #include "effects/added_mass.h"
+#include "effects/catalogue.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
@@ -61,13 +62,14 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
                         .plausible_max = 0.05,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
-            "a force at one place, m g at rest and m (g − a) in motion, against the local "
-            "acceleration: all modes that move the place are slower than the model's, those with a "
-            "node there are not",
+            "The residual is a force at one place, m g at rest and m (g − a) in motion with the "
+            "local acceleration a. All modes that move this place are slower than predicted, modes "
+            "with a node there are not.",
         .separating_experiment =
-            "hold still, then shake: a point force stays what it was, a mass pulls against the "
-            "acceleration too; turn the fixture: its weight turns with gravity",
+            "Hold still, then shake: a point force stays the same, a mass also pulls against the "
+            "acceleration. Turn the fixture: the weight of the mass rotates relative to the body",
         .look_alikes = {"gravity", "density_gradient", "point_force"},
+        .tried_at = TriedAtPlaces{{0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}, 0.05},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -38,15 +38,10 @@ void AppendBeddedPart(EffectCard* card) {
                 .plausible_max = 1,
                 .setting = true},
                Eigen::Vector3d::Zero(), card);
-  AppendVector({.name = "normal",
-                .meaning = "the support holds the boundary nodes that at rest lie on this side "
-                           "of the plane; left out, on both;",
-                .dimension = kDimensionless,
-                .null_value = kNoNull,
-                .plausible_min = -1,
-                .plausible_max = 1,
-                .setting = true},
-               Eigen::Vector3d::Zero(), card);
+  AppendDirectionSetting("normal",
+                         "the support holds the boundary nodes that at rest lie on this side "
+                         "of the plane; left out, on both;",
+                         Eigen::Vector3d::Zero(), card);
   card->parameters.push_back({.name = "radius",
                               .meaning = "the support fades within this distance of the point "
                                          "(standard deviation), r; 0: it does not fade",
@@ -56,7 +51,8 @@ void AppendBeddedPart(EffectCard* card) {
                               .plausible_min = 0,
                               .plausible_max = 0.1,
                               .default_value = 0,
-                              .setting = true});
+                              .setting = true,
+                              .trial = {.share_of_length = 0.1}});
 }
 
 void BeddedPart::SetParameters(const Eigen::VectorXd& values) {

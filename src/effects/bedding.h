@@ -1,5 +1,5 @@
-// The part of a body's surface that lies on a bed, for effects that hold it there: the settings that
-// name it, and its areas.
+// The part of a body's surface that lies on a bed, for effects that hold it there: the settings
+// that name it, and its areas.
 #ifndef LACUNA_EFFECTS_BEDDING_H_
 #define LACUNA_EFFECTS_BEDDING_H_
 
@@ -11,21 +11,23 @@
 
 namespace lacuna {
 
-// Pa/m: a pressure per displacement.
+// The parameter `modulus`, k, Pa/m: pressure per displacement; the null value is 0.
 ParameterCard BeddingModulus();
 
-// Adds the settings `point`, `normal` and `radius`: the boundary nodes of a half-space of the body
-// at rest, fading as exp(−|X − c|²/(2 r²)) where a radius is given.
+// Appends the settings `point` (c, m), `normal` and `radius` (r, m): the half-space n·(X − c) ≥ 0
+// of the body at rest. A normal of length zero selects all of the surface, a radius of zero does
+// not fade.
 void AppendBeddedPart(EffectCard* card);
 
-// What an effect whose card ends with these settings holds.
+// The bedded part for an effect whose card ends with these settings. The areas are kept for the
+// body that was asked about last, and may be asked for by several threads.
 class BeddedPart {
  public:
-  // The effect's parameters, in the order of its card.
+  // All parameters of the effect, in the order of its card; the last seven are the settings.
   void SetParameters(const Eigen::VectorXd& values);
 
-  // w_i A_i (n, m²). Throws InputError, naming the effect's `type`, where no node of the surface is
-  // held.
+  // w_i A_i at each node (n), m². Throws InputError, naming the effect by `type`, if no node of the
+  // surface is held.
   std::shared_ptr<const Eigen::VectorXd> Areas(const Body& body, const std::string& type) const;
 
  private:

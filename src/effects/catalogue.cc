@@ -2,6 +2,7 @@
 
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -43,7 +44,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       CorotationalElasticity(),
       SaintVenantKirchhoff(),
       NeoHookean(),
-      // What the material does besides.
+      // Further behaviour of the material.
       StrainStiffening(),
       FibreStiffness(),
       Inclusion(),
@@ -66,7 +67,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       PlaneContact(),
       ElasticSupport(),
       SlippingSupport(),
-      // The user's own.
+      // A force law that the user writes.
       ExpressionForce(),
   };
   return entries;
@@ -85,7 +86,7 @@ std::shared_ptr<const Effect> MakeOfKind(CatalogueEntry::Kind kind, const std::s
   return entry->make(entry->read(*entry->card, config, material));
 }
 
-// What a parameter is when it is left out: the card's default, else what the material has under the
+// The values of omitted parameters: the default of the card, else the material's parameter of the
 // same name, else NaN.
 Eigen::VectorXd DefaultValues(const EffectCard& card, const Effect* material) {
   Eigen::VectorXd values(card.parameters.size());
@@ -121,10 +122,16 @@ const CatalogueEntry* FindEntry(const std::string& type) {
   return nullptr;
 }
 
-int ParameterIndex(const EffectCard& card, const std::string& name) {
-  for (size_t k = 0; k < card.parameters.size(); ++k)
-    if (card.parameters[k].name == name) return static_cast<int>(k);
-  return -1;
+std::vector<std::string> LookAlikesOf(const EffectCard& card) {
+  const auto contains = [](const std::vector<std::string>& list, const std::string& type) {
+    return std::find(list.begin(), list.end(), type) != list.end();
+  };
+  std::vector<std::string> types = card.look_alikes;
+  for (const CatalogueEntry& other : Catalogue()) {
+    if (contains(other.card->look_alikes, card.type) && !contains(types, other.card->type))
+      types.push_back(other.card->type);
+  }
+  return types;
 }
 
 std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material) {

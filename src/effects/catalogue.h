@@ -1,7 +1,9 @@
-// All physical effects that Lacuna knows, by their YAML names.
+// The catalogue of all physical effects that Lacuna knows, by their YAML names.
 //
-// A new effect: its .cc file, one line in catalogue.cc (with the declaration of its entry above), a
-// test, a YAML entry.
+// A new effect needs its own .cc file with its card, one line in catalogue.cc (with the declaration
+// of its entry above it), a test and a file in configs/effects. The list is written by hand because
+// the linker drops self-registration from a static library. The catalogue is constant and may be
+// read by any thread. Parameter values are in SI units, in the order of the effect's card.
 #ifndef LACUNA_EFFECTS_CATALOGUE_H_
 #define LACUNA_EFFECTS_CATALOGUE_H_
 
@@ -18,57 +20,59 @@ namespace lacuna {
 
 struct CatalogueEntry {
   enum class Kind {
-    kMaterial,  // the elasticity law of the body: `material: {law: …}`
-    kEffect,    // anything that acts besides: `effects: [{type: …}]`
+    kMaterial,  // an elasticity law of the body: `material: {law: …}`
+    kEffect,    // any other effect: `effects: [{type: …}]`
   };
   const EffectCard* card = nullptr;
   Kind kind = Kind::kEffect;
-  // From parameter values in the order of the card, SI.
+  // Makes the effect from its parameter values.
   std::shared_ptr<const Effect> (*make)(const Eigen::VectorXd& parameters) = nullptr;
-  // The parameter values of a YAML mapping. `material`: the body's elasticity law, from which an
-  // effect may take what its own mapping leaves out; may be null.
+  // Reads the parameter values of a YAML mapping. A parameter that the mapping omits may be taken
+  // from `material`, the elasticity law of the body, which may be null.
   Eigen::VectorXd (*read)(const EffectCard& card, const Config& config,
                           const Effect* material) = nullptr;
-  // In place of `make` and `read`, which are then null: an effect that is more than its numbers and
-  // whose card is its own, of the same type as `card`.
+  // Replaces `make` and `read`, which are null then, for an effect that has more than its parameter
+  // values and therefore a card of its own, of the same type as `card`.
   std::shared_ptr<const Effect> (*make_from_yaml)(const Config& config) = nullptr;
-  // The mapping that is read back to such an effect.
+  // For such an effect: the YAML mapping that describes it.
   std::string (*format)(const Effect& effect) = nullptr;
 };
 
-// Every entry, elasticity laws first.
+// Every entry; the elasticity laws come first.
 const std::vector<CatalogueEntry>& Catalogue();
 
-// The entry of this name, or null.
+// The entry of this type, or null.
 const CatalogueEntry* FindEntry(const std::string& type);
 
-// Where the card's parameter of this name stands; −1: it has none.
-int ParameterIndex(const EffectCard& card, const std::string& name);
+// The types of the effects that are easily confused with this one: those on its own card in their
+// order, then those whose cards name this effect. A new effect thus names its look-alikes on its
+// own card alone.
+std::vector<std::string> LookAlikesOf(const EffectCard& card);
 
 // The effect that `{type: mass_damping, alpha: 0.5 1/s}` describes. Throws InputError at the key
 // when the type is unknown or a parameter is missing, has the wrong unit or is out of bounds.
 std::shared_ptr<const Effect> MakeEffect(const Config& config, const Effect* material = nullptr);
 
 // The elasticity law that `{law: neo_hookean, young_modulus: 0.1 MPa, poisson_ratio: 0.3}`
-// describes. Throws like MakeEffect.
+// describes. Throws InputError as MakeEffect does.
 std::shared_ptr<const Effect> MakeMaterial(const Config& config);
 
-// An effect from parameters by name, SI; a parameter left out takes the card's default. A name that
-// the catalogue or the card does not have, an effect that YAML alone describes, or a parameter
-// without value, is our own mistake (CHECK).
+// An effect from parameter values by name, SI. An omitted parameter takes the default value of the
+// card. The caller must know the catalogue (CHECK): a type or a parameter that does not exist, a
+// parameter without a value, and an effect that only YAML can describe are errors of the program.
 std::shared_ptr<const Effect> MakeEffect(const std::string& type,
                                          const std::map<std::string, double>& parameters);
 
-// The usual `make`, for a class that is made from its parameters.
+// The usual `make`, for a class whose constructor takes the parameter values.
 template <typename Type>
 std::shared_ptr<const Effect> MakeAs(const Eigen::VectorXd& parameters) {
   return std::make_shared<Type>(parameters);
 }
 
-// The usual `read`: each parameter of the card under its own name, but three that are called n_x,
-// n_y and n_z as one vector, `n: [0, 0, 1]`. A vector without dimension is a direction: of any
-// length, but not of length 0 (InputError). One that is left out has the card's default; without
-// one, the value of the material's parameter of the same name.
+// The usual `read`. Each parameter of the card has a key of its own name; three parameters n_x, n_y
+// and n_z form one vector, `n: [0, 0, 1]`. A dimensionless vector is a direction: its length may be
+// anything but 0. An omitted parameter takes the default value of the card; without a default, the
+// value of the material's parameter of the same name. Throws InputError if there is neither.
 Eigen::VectorXd ReadParameters(const EffectCard& card, const Config& config,
                                const Effect* material);
 

@@ -1,4 +1,4 @@
-// Corotational elasticity: Hooke's law in a frame that turns with the material.
+// Corotational elasticity: Hooke's law in a frame that rotates with the material.
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -70,12 +70,12 @@ class CorotationalLaw {
             "2011",
         .parameters = ElasticParameters(),
         .residual_when_missing =
-            "where a small-strain law stands in for it, turned parts of the body look swollen, by "
-            "1 − cos of the angle",
+            "If a small-strain law is used instead, rotated parts of the body appear swollen, by 1 "
+            "− cos of the angle.",
         .separating_experiment =
-            "bend or twist a slender part by more than 20°: linear elasticity swells, this law "
-            "does not; stretch by more than 20 %: its force stays proportional to the "
-            "elongation, a hyperelastic one does not",
+            "Bend or twist a slender part by more than 20°: linear elasticity swells, this law "
+            "does not. Stretch by more than 20 %: the force of this law stays proportional to the "
+            "elongation, that of a hyperelastic law does not",
         .look_alikes = {"linear", "st_venant_kirchhoff", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

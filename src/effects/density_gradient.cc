@@ -1,12 +1,13 @@
-// A density that changes linearly along an axis, as where a filler has settled or air has risen:
+// A density that changes linearly along an axis, for example because a filler has settled:
 //   ρ(X) = ρ₀ + ρ′ n·(X − X₀),
-// with the body's own density ρ₀. Adds the inertia and the weight of the second term, with the
-// volumes around the nodes that the lumped mass uses, so that the total is exact.
+// with the density ρ₀ of the body. The effect adds the inertia and the weight of the second term.
+// It uses the nodal volumes of the lumped mass, so that the total mass is exact.
 #include <glog/logging.h>
 
 #include <limits>
 
 #include "effects/added_mass.h"
+#include "effects/catalogue.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
@@ -62,23 +63,20 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
                         .plausible_max = 2000,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
-            "too much weight and inertia at one end and too little at the other, in proportion to "
-            "the distance from the origin: sag and frequencies that no single density explains",
+            "Weight and inertia are too large at one end and too small at the other, in proportion "
+            "to the distance from the origin: no single density explains both the sag and the "
+            "frequencies.",
         .separating_experiment =
-            "balance the body on an edge, which shows its centre of mass; or turn it end for end "
-            "in the clamp: a gradient of density changes sign with it, gravity and a soft place "
-            "elsewhere do not",
+            "Balance the body on an edge, which shows its centre of mass; or turn it end for end "
+            "in the clamp: the residual of a density gradient changes sign, that of gravity or of "
+            "a soft place elsewhere does not",
         .look_alikes = {"gravity", "attached_mass"},
+        .tried_at = TriedAsGradients{},
+        .trial = {.axis_along_bar = true},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
-    AppendVector({.name = "axis",
-                  .meaning = "direction in which the density grows, of any length,",
-                  .dimension = kDimensionless,
-                  .null_value = kNoNull,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::UnitZ(), &card);
+    AppendDirectionSetting("axis", "direction in which the density grows, of any length,",
+                           Eigen::Vector3d::UnitZ(), &card);
     AppendVector({.name = "origin",
                   .meaning = "a point at rest where the density is the body's; at the centre of "
                              "volume the total mass stays",

@@ -2,7 +2,7 @@
 //
 // |v| v and its derivative |v| I + v vᵀ/|v| are continuous at v = 0, where both vanish, and the
 // derivative is positive semi-definite: no smoothing is needed and the exact tangent is definite.
-// The law knows neither the wake nor the added mass of the medium, and the shape only through c.
+// The law neglects the wake and the added mass of the medium; the shape enters through c only.
 #include <glog/logging.h>
 
 #include <limits>
@@ -54,12 +54,13 @@ class DragEffect final : public CloneableEffect<DragEffect> {
               .default_value = 0,
               .log_scale = false}},
         .residual_when_missing =
-            "a force against the velocity on the surface only, that quadruples when the velocity "
-            "doubles: large swings die out faster than the model's, small ones do not",
+            "The residual is a force against the velocity, on the surface only, which quadruples "
+            "when the velocity doubles: large oscillations decay faster than predicted, small ones "
+            "do not.",
         .separating_experiment =
-            "let it swing from a large and from a small amplitude: under drag the decay rate "
-            "grows in proportion to the amplitude, with damping linear in the velocity it does "
-            "not; or swing it in another medium",
+            "Let the body oscillate from a large and from a small amplitude: under drag the decay "
+            "rate grows in proportion to the amplitude, with damping linear in the velocity it "
+            "does not. Or repeat the motion in another medium",
         .look_alikes = {"mass_damping", "stiffness_damping"},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -1,4 +1,4 @@
-// Effects as the YAML that describes them.
+// Writes effects as the YAML mappings that describe them.
 #ifndef LACUNA_EFFECTS_EFFECT_TEXT_H_
 #define LACUNA_EFFECTS_EFFECT_TEXT_H_
 
@@ -9,15 +9,15 @@
 
 namespace lacuna {
 
-// A flow mapping that MakeEffect(Config), or MakeMaterial for an elasticity law, reads back to the
-// same type and, to the last bit, the same parameters:
+// A flow mapping from which MakeEffect(Config), or MakeMaterial for an elasticity law, makes an
+// effect of the same type with bit-identical parameter values:
 //   {type: gravity, acceleration: [0 m/s^2, 0 m/s^2, -9.80665 m/s^2]}
-// SI units, numbers in their shortest form. What YAML cannot say, an infinite value or a direction
-// of length 0, is left out where it is the default. Parameters must be within the card's bounds, or
-// they are refused when they are read.
+// Values are in SI units and in their shortest form. A value that YAML cannot express (infinity, a
+// direction of length 0) is omitted if it is the default. Values outside the bounds of the card are
+// written, but refused when they are read.
 //
-// Nothing for an effect that is not the catalogue's (a measured force) or one with such a value
-// that is not the default.
+// Returns nothing for an effect that is not in the catalogue (a measured force), and for an effect
+// with an inexpressible value that is not the default.
 std::optional<std::string> FormatEffect(const Effect& effect);
 
 }  // namespace lacuna

@@ -1,4 +1,6 @@
-// The two parameters that all isotropic elasticity laws have in common.
+// The two parameters that all isotropic elasticity laws have in common: Young's modulus E (Pa) and
+// Poisson's ratio ν, both at small strain (A. E. H. Love, A Treatise on the Mathematical Theory of
+// Elasticity, 4th ed., 1927, §69).
 #ifndef LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
 #define LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
 
@@ -9,7 +11,8 @@
 
 namespace lacuna {
 
-// young_modulus and poisson_ratio, in the order that ElasticSolid expects.
+// young_modulus and poisson_ratio, in the order that ElasticSolid (fem/elastic_solid.h) expects.
+// The bounds exclude ν = ½, where the bulk modulus is infinite.
 inline std::vector<ParameterCard> ElasticParameters() {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return {{.name = "young_modulus",
@@ -34,7 +37,7 @@ inline std::vector<ParameterCard> ElasticParameters() {
            .log_scale = false}};
 }
 
-// The same two as settings of an effect, which takes them from the material when it is not told.
+// The same two parameters as settings of an effect, which takes omitted values from the material.
 inline std::vector<ParameterCard> ElasticSettings() {
   std::vector<ParameterCard> settings = ElasticParameters();
   for (ParameterCard& setting : settings) {

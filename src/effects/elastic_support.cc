@@ -1,9 +1,9 @@
-// An elastic bed that holds a part of the surface: springs that pull it to its place at rest.
+// An elastic bed that holds a part of the surface: springs that pull the nodes to their places at
+// rest.
 //
-// Winkler's bedding, with the same modulus along the normal and across it, on the boundary nodes of
-// a half-space of the body at rest, fading as exp(−|X − c|²/(2 r²)) where a radius is given. It
-// stands for a clamp or a ground that gives way; nodes that a grip holds do not feel it. It pulls
-// as well as it pushes: what only pushes is a contact.
+// This is Winkler's bedding (bedding.h) with the same modulus along the normal and tangential to
+// it. It models a clamp or a ground that yields. Nodes that a grip holds are not affected. The bed
+// pulls as well as it pushes; a support that can only push is a contact (plane_contact.cc).
 #include <glog/logging.h>
 
 #include "effects/bedding.h"
@@ -66,13 +66,14 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
         .citation = "E. Winkler, Die Lehre von der Elasticität und Festigkeit, Prag 1867",
         .parameters = {BeddingModulus()},
         .residual_when_missing =
-            "a force against the displacement of one part of the surface, whatever the velocity: "
-            "the model moves too much there and its slow modes are too slow",
+            "The residual is a force against the displacement of one part of the surface, whatever "
+            "the velocity: the model moves too much there and its slow modes are too slow.",
         .separating_experiment =
-            "take the body out of its support, or load it beside the support and away from it: a "
-            "stiffer material changes both answers, a support only the first; to tell it from one "
-            "that slips, load it further and let go: it comes all the way back",
+            "Take the body out of its support, or load it near the support and away from it: a "
+            "stiffer material changes both responses, a support only the first. To distinguish it "
+            "from a support that slips, load it further and release it: it returns completely",
         .look_alikes = {"plane_contact", "slipping_support"},
+        .tried_at = TriedAsSupports{},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

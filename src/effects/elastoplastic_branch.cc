@@ -108,17 +108,19 @@ class ElastoplasticLaw {
                   .plausible_min = 1e-3,
                   .plausible_max = 0.3,
                   .default_value = kNone,
-                  .log_scale = true}},
+                  .log_scale = true,
+                  .trial = {.min = 0.005, .max = 0.03, .draw = 2}}},
             .residual_when_missing =
-                "after unloading the body does not come back to its rest shape, by a residual "
-                "where it was strained most; force against displacement is a loop whose area does "
-                "not depend on the speed",
+                "After unloading the body does not return to its rest shape; the permanent set is "
+                "largest where the strain was largest. Force against displacement is a loop whose "
+                "area does not depend on the speed.",
             .separating_experiment =
-                "load, unload and scan again after a long rest: a permanent set stays, a "
-                "viscoelastic branch recovers; run the loop at half the speed: here its width "
-                "stays the same, that of any damping changes",
+                "Load, unload and scan again after a long rest: a permanent set remains, whereas a "
+                "viscoelastic branch recovers. Run the loop at half the speed: here its width "
+                "stays the same, with any damping it changes",
             .look_alikes = {"viscoelastic_branch", "softening", "stiffness_damping", "mass_damping",
                             "slipping_support"},
+            .tried_at = TriedAtValues{"yield_strain", "yield at a strain", {0.01, 0.05}},
             .repeatable = true,
             .conserves_momentum = true,
             .conserves_angular_momentum = true};

@@ -1,15 +1,15 @@
-// A force law of the user's own, written as an expression in the YAML file.
+// A force law that the user writes as expressions in the YAML file (expression_law.h).
 //
 //   f_i = M_i F(x_i, X_i, v_i, t, N_i; p),
 // with M_i the lumped mass (per: mass), the volume at rest (per: volume) or the boundary area at
 // rest (per: area) of node i, and F three expressions, one for each axis, in N per that measure.
-// N_i is the outward unit normal of the boundary at rest, 0 inside: measures and normals do not
-// follow the deformation (a dead load), and so a node's force depends on its own place and velocity
-// alone and the tangents are blocks on the diagonal. The stand-in of `convexify` is the negative
-// semi-definite part of the symmetric part of each block.
+// N_i is the outward unit normal of the boundary at rest, and 0 inside. Measures and normals do not
+// follow the deformation (a dead load), so that the force of a node depends on its own place and
+// velocity alone and the tangents are diagonal blocks. With `convexify` a block is replaced by the
+// negative semi-definite part of its symmetric part.
 //
-// docs/expression.md describes the language and the YAML. Where an expression is not defined, the
-// force is NaN, the step fails, and the first such place is told in a warning.
+// docs/expression.md describes the language and the YAML. Where an expression is undefined the
+// force is NaN, the step fails, and a warning names the first such node.
 #include <fmt/format.h>
 #include <glog/logging.h>
 
@@ -47,10 +47,10 @@ const EffectCard& TheCard() {
       .citation = "the user's own",
       .parameters = {},
       .residual_when_missing =
-          "an unexplained force that depends on place, velocity and time as "
-          "the expression says",
+          "The residual is a force that depends on place, velocity and time as the expression "
+          "says.",
       .separating_experiment =
-          "change what the expression depends on and nothing else: turn the fixture for a force "
+          "Change what the expression depends on and nothing else: turn the fixture for a force "
           "that depends on place, repeat at another speed for one that depends on velocity",
       .look_alikes = {},
       .repeatable = true,
@@ -83,7 +83,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
     ForEachNode<double>(at, [&](int node, double measure, const Values<double>& values) {
       const Eigen::Vector3d density = Evaluate(values);
       force->segment<3>(3 * node) += measure * density;
-      if (!density.allFinite()) undefined.Tell(node);
+      if (!density.allFinite()) undefined.Report(node);
     });
     if (!undefined.IsNone()) WarnOnce(at, undefined.node());
   }
@@ -94,7 +94,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
       AddBlocks(at, weights.position, weights.velocity, 1, Part::kSymmetric, tangent);
       return;
     }
-    // Each by itself: the definite part of a sum is not the sum of the definite parts.
+    // Separately, because the definite part of a sum is not the sum of the definite parts.
     AddBlocks(at, 1, 0, weights.position, Part::kDefinite, tangent);
     AddBlocks(at, 0, 1, weights.velocity, Part::kDefinite, tangent);
   }
@@ -116,10 +116,10 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
   }
 
  private:
-  // The first of the nodes that threads tell of.
+  // The lowest of the node numbers that several threads report.
   class FirstNode {
    public:
-    void Tell(int node) {
+    void Report(int node) {
       for (int first = node_; node < first && !node_.compare_exchange_weak(first, node);) {
       }
     }
@@ -159,7 +159,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
     return NodeBoundaryAreas(body);
   }
 
-  // Empty where no expression asks for them.
+  // Empty if no expression uses them.
   Eigen::Matrix3Xd Normals(const Body& body) const {
     if (!UsesAny(ExpressionLaw::kNormal, 3)) return {};
     Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, body.NodeCount());
@@ -182,7 +182,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
     if (normals.cols() > 0) set(ExpressionLaw::kNormal, normals.col(node));
   }
 
-  // All that is the same at each node; the rest 0.
+  // The values that are the same at each node; all others are 0.
   template <typename Number>
   Values<Number> CommonValues(double time) const {
     Values<Number> values;
@@ -213,7 +213,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
             law_.force[2].At(values.data())};
   }
 
-  // Of a derivative; kDefinite: of its symmetric part.
+  // A part of a derivative; kDefinite is the definite part of its symmetric part.
   enum class Part { kSymmetric, kDefinite, kSkew };
 
   // Adds a part of scale · (by_position ∂f/∂x + by_velocity ∂f/∂v). Returns whether it may be
@@ -237,7 +237,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
       const Eigen::Matrix3d mirror = (part == Part::kSkew ? -1 : 1) * block.transpose();
       block = 0.5 * (block + mirror);
       if (!block.allFinite()) {
-        undefined.Tell(node);
+        undefined.Report(node);
       } else if (part == Part::kDefinite) {
         block = NegativePart(block);
       }
@@ -247,7 +247,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
     return true;
   }
 
-  // Tells what is not defined at a node.
+  // Warns that an expression is undefined at a node, and with which values.
   void WarnOnce(const Kinematics& at, int node) const {
     if (warned_->exchange(true)) return;
     Values<double> values = CommonValues<double>(at.time);

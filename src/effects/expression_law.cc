@@ -19,7 +19,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 const char* const kVariableNames[Law::kVariables] = {"x",  "y",  "z",  "X",  "Y", "Z",  "ux", "uy",
                                                      "uz", "vx", "vy", "vz", "t", "nx", "ny", "nz"};
 
-// A quantity of this dimension, where a bare 0 needs no unit.
+// A quantity of this dimension; 0 needs no unit.
 double ReadLike(const Config& config, const std::string& key, const Dimension& dimension,
                 const Bounds& bounds) {
   const MeasuredQuantity any = config.AnyQuantity(key);
@@ -138,9 +138,9 @@ void ReadForce(const Config& config, Law* law) {
   }
 }
 
-// The diagnosis asks what the law would add where it is absent, so it must vanish at the null value
-// of its amplitude, but not its derivative. Tried at places, velocities and times of any size up to
-// 1 m, 1 m/s and 10 s.
+// The diagnosis uses the derivative with respect to the amplitude at its null value, so there the
+// law must vanish, but its derivative must not. Checked at random places, velocities and times of
+// magnitudes up to 1 m, 1 m/s and 10 s.
 void CheckAmplitude(const Config& config, const Law& law) {
   const ParameterCard& amplitude = law.card.parameters.front();
   const double farthest = std::abs(amplitude.plausible_max - amplitude.null_value) >
@@ -168,7 +168,7 @@ void CheckAmplitude(const Config& config, const Law& law) {
       const double full = law.force[axis].At(values.data()).value;
       values[Law::kVariables] = Dual<1>::Variable(amplitude.null_value, 0);
       const Dual<1> null = law.force[axis].At(values.data());
-      // Beyond rounding; a place where the law is not defined tells nothing.
+      // A place where the law is undefined (NaN) is not an error here.
       if (std::abs(null.value) > 1e-12 * std::abs(full)) {
         config.FailAtItem(
             "force", axis,
@@ -188,7 +188,7 @@ void CheckAmplitude(const Config& config, const Law& law) {
   }
 }
 
-// In quotes, as YAML and JSON have them alike.
+// A quoted string, in the syntax that YAML and JSON share.
 std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
 std::string FormatParameter(const ParameterCard& card, double value) {

@@ -1,4 +1,6 @@
-// What the YAML file says of a force law of the user's own (docs/expression.md).
+// A force law that the user writes as expressions in the YAML file (docs/expression.md), as data:
+//   f_i = M_i F(x_i, X_i, v_i, t, N_i; p),
+// with the mass, volume or boundary area M_i of node i. The effect is in expression_force.cc.
 #ifndef LACUNA_EFFECTS_EXPRESSION_LAW_H_
 #define LACUNA_EFFECTS_EXPRESSION_LAW_H_
 
@@ -14,7 +16,7 @@
 namespace lacuna {
 
 struct ExpressionLaw {
-  // Where the variables that every law may use stand; the parameters follow.
+  // Index of the first component of each variable that a law may use; the parameters follow them.
   enum Variable {
     kPosition,
     kRest = 3,
@@ -32,19 +34,20 @@ struct ExpressionLaw {
 
   std::string name;
   Measure per = Measure::kMass;
-  std::vector<Expression> force;  // one for each axis
-  EffectCard card;                // the amplitude first
-  Eigen::VectorXd parameters;     // in the order of the card
+  std::vector<Expression> force;  // F: one for each axis, N per kg, m³ or m²
+  EffectCard card;             // its first parameter is the amplitude, to which F is proportional
+  Eigen::VectorXd parameters;  // in the order of the card, SI
 
-  // Of a variable or parameter, as it stands in Values.
+  // The name of a variable or parameter, by its index in Values.
   std::string NameOf(int variable) const;
 };
 
-// `card`: what is said of all such laws. Throws InputError at the key that is wrong; so it does for
-// a force that does not vanish with its amplitude, or not in proportion to it.
+// `card` is the common part of the cards of all such laws. Throws InputError at the key that is
+// wrong; also for a force that does not vanish with its amplitude, or whose derivative with respect
+// to the amplitude vanishes there.
 ExpressionLaw ReadExpressionLaw(const Config& config, const EffectCard& card);
 
-// The flow mapping that is read back to the same law, with its present parameter values.
+// The YAML flow mapping that describes the law with its present parameter values.
 std::string FormatExpressionLaw(const ExpressionLaw& law);
 
 }  // namespace lacuna

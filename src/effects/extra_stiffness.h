@@ -1,17 +1,16 @@
-// A stiffness that differs from place to place: an extra Young's modulus ΔE, weighted by a function
-// w of the place in the rest shape, on top of the body's elasticity law.
+// A stiffness that varies in space: an extra Young's modulus ΔE (Pa), weighted by a function w of
+// the place X in the rest shape, in addition to the elasticity law of the body:
+//   ψ = w(X) ψ_nH(F; ΔE, ν), J/m³,
+// with the neo-Hookean energy ψ_nH (neo_hookean_energy.h), which is proportional to E. A
+// neo-Hookean body with this effect therefore has Young's modulus E + w ΔE if Poisson's ratios
+// agree; for other elasticity laws that holds at small strain.
 //
-//   ψ = w(X) ψ_nH(F; ΔE, ν)
-// with the neo-Hookean energy ψ_nH, in which E is a factor: a neo-Hookean body with this effect is
-// one of Young's modulus E + w ΔE where Poisson's ratios are the same. With another law that is so
-// at small strain.
-//
-// A `Weight` is a value type made from the card's parameters:
+// A `Weight` is a value type with these members:
 //   static const EffectCard& Card();       parameters: young_modulus_difference, …, poisson_ratio
-//   explicit Weight(const Eigen::VectorXd& parameters);
-//   double Value(const Vector3d& X) const;                       w
-//   double Derivative(const Vector3d& X, int parameter) const;   by a parameter between these two;
-//                                          only where they are not all settings
+//   explicit Weight(const Eigen::VectorXd& parameters);    all parameters of the card
+//   double Value(const Vector3d& X) const;                 w
+//   double Derivative(const Vector3d& X, int parameter) const;    ∂w/∂(parameter), for a parameter
+//                     between the first and the last; only needed if these are not all settings
 #ifndef LACUNA_EFFECTS_EXTRA_STIFFNESS_H_
 #define LACUNA_EFFECTS_EXTRA_STIFFNESS_H_
 
@@ -26,7 +25,8 @@
 
 namespace lacuna {
 
-// young_modulus_difference; `where` completes "Young's modulus added to the body's …".
+// The parameter young_modulus_difference (Pa). `where` completes "Young's modulus added to the
+// body's …".
 inline ParameterCard YoungModulusDifference(const std::string& where) {
   return {.name = "young_modulus_difference",
           .meaning = "Young's modulus added to the body's " + where +
@@ -39,6 +39,7 @@ inline ParameterCard YoungModulusDifference(const std::string& where) {
           .default_value = std::numeric_limits<double>::quiet_NaN()};
 }
 
+// A law for PointEnergyEffect (fem/point_energy_effect.h).
 template <typename Weight>
 class ExtraStiffnessLaw {
  public:
@@ -77,7 +78,7 @@ class ExtraStiffnessLaw {
 
   Weight weight_;
   double difference_;          // ΔE, Pa
-  LameConstants per_modulus_;  // for a Young's modulus of 1
+  LameConstants per_modulus_;  // λ and μ per unit of Young's modulus
 };
 
 }  // namespace lacuna

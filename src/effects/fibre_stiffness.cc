@@ -1,4 +1,4 @@
-// Fibres of one direction, which make a body stiffer along it: transverse isotropy.
+// Parallel fibres, which make a body stiffer along their direction: transverse isotropy.
 //
 // The quadratic "standard reinforcing" energy of the fibres' stretch, k/8 (a·C·a − 1)², with
 // C = FᵀF and the unit direction a in the rest shape. At small strain it is k/2 (a·ε·a)²: an extra
@@ -93,14 +93,15 @@ class FibreStiffnessLaw {
             "J. Appl. Mech. 50, 1983, 149–156",
         .parameters = {},
         .residual_when_missing =
-            "stretch along one direction of the body is predicted too large, across it is met; "
-            "under a load askew to the fibres the body also shears or twists, which no isotropic "
-            "law can do",
+            "Stretch along one direction of the body is predicted too large, stretch across it is "
+            "predicted well. Under a load oblique to the fibres the body also shears or twists, "
+            "which no isotropic law can explain.",
         .separating_experiment =
-            "turn the body by 90° about the load and load it again: with fibres the response "
-            "changes, with a stiffness that differs from place to place it turns with the place",
+            "Turn the body by 90° about the load and load it again: with fibres the response "
+            "changes; with a stiffness that varies in space the residual rotates with the body",
         .look_alikes = {"strain_stiffening", "inclusion", "stiffness_gradient",
                         "active_contraction"},
+        .tried_at = TriedAlongDirections{},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
@@ -121,7 +122,8 @@ class FibreStiffnessLaw {
                                .null_value = kNone,
                                .plausible_min = -M_PI / 2,
                                .plausible_max = M_PI / 2,
-                               .default_value = 0});
+                               .default_value = 0,
+                               .trial = {.min = -1.2, .max = 1.2, .draw = 4}});
     card.parameters.push_back({.name = "inclination",
                                .meaning = "angle of the fibres above the xy plane, θ",
                                .dimension = kAngle,
@@ -129,7 +131,8 @@ class FibreStiffnessLaw {
                                .null_value = kNone,
                                .plausible_min = -M_PI / 2,
                                .plausible_max = M_PI / 2,
-                               .default_value = 0});
+                               .default_value = 0,
+                               .trial = {.min = -1.2, .max = 1.2, .draw = 5}});
     return card;
   }
 

@@ -1,18 +1,19 @@
-// A force fixed to the body: it turns as the material at its place turns, such as the thrust of a
-// nozzle, the pull of a tendon or the push of a tool that is glued on.
+// A force that rotates with the body at its place, such as the thrust of a nozzle, the pull of a
+// tendon or the push of a tool that is glued on.
 //
 // A force density R F, spread as exp(−|X − c|²/(2 r²)) about the place c at rest over the volume, R
 // the rotation nearest to the deformation gradient of each quadrature point:
 //   f_a = Σ_q s_q N_a R_q F,   Σ s_q = 1,
-// so that a body that turns as a whole carries the force with it. Near the surface the bump is cut
-// off, which moves the centre of the force inward by less than r.
+// so that the force rotates with a rigid rotation of the body. Near the surface the distribution is
+// cut off, which moves the centre of the force inwards by less than r.
 //
 // With w = G⁻¹ axial(δF Rᵀ − R δFᵀ), G = (tr V) I − V, F = V R the gradient, δR = [w]× R, so that
-// with h_b = R g_b and the turned force t = R F
+// with h_b = R g_b and the rotated force t = R F
 //   ∂f_a/∂x_b = −Σ_q s_q N_a [t]× G⁻¹ [h_b]×.
-// The force has no energy, and its tangent is neither symmetric nor definite: the definite stand-in
-// leaves it out. G is singular where two principal stretches cancel, which takes an inverted
-// element; R jumps there, and the tangent uses eigenvalues of G of at least 0.01.
+// The force has no potential, and its tangent is neither symmetric nor definite; with `convexify`
+// it is omitted. G is singular where the sum of two principal stretches vanishes, which requires an
+// inverted element; R is discontinuous there, and the tangent limits the eigenvalues of G to at
+// least 0.01.
 #include <glog/logging.h>
 
 #include <Eigen/Eigenvalues>
@@ -20,6 +21,7 @@
 #include <limits>
 #include <vector>
 
+#include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
@@ -131,12 +133,14 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
             "1963; M. Beck, Z. angew. Math. Phys. 3 (1952) 225–228",
         .parameters = {},
         .residual_when_missing =
-            "a force at one place that keeps its size and turns as the place turns; beside a force "
-            "of fixed direction the residual grows with the rotation there",
+            "The residual is a force at one place that keeps its magnitude and rotates as the "
+            "place rotates. If the model has a force of fixed direction instead, the residual "
+            "grows with the rotation there.",
         .separating_experiment =
-            "bend the body far: a force of fixed direction keeps its direction, a follower turns "
-            "with the surface; at small rotations the two are the same",
+            "Bend the body far: a force of fixed direction keeps its direction, a follower force "
+            "rotates with the surface. At small rotations the two are the same",
         .look_alikes = {"point_force", "pressure"},
+        .tried_at = TriedAtPlaces{{0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}, 0.1},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -1,13 +1,13 @@
-// Uniform gravity, or any other uniform acceleration of the laboratory.
+#include "effects/gravity.h"
+
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
+#include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
 namespace {
-
-constexpr double kStandardGravity = 9.80665;  // m/s²
 
 class GravityEffect final : public CloneableEffect<GravityEffect> {
  public:
@@ -25,7 +25,7 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
     acceleration_ = values;
   }
 
-  // With the lumped masses that inertia uses, so that a body in free fall stays undeformed.
+  // The lumped masses are those of the inertia, so that a body in free fall stays undeformed.
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     for (int i = 0; i < at.body.NodeCount(); ++i) {
       force->segment<3>(3 * i) += at.body.node_mass[i] * acceleration_;
@@ -42,7 +42,7 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
     }
   }
 
-  // Zero at the rest shape, which keeps the digits where they are needed.
+  // Zero at the rest shape, so that small differences are not lost to rounding.
   std::optional<double> Energy(const Kinematics& at) const override {
     double energy = 0;
     for (int i = 0; i < at.body.NodeCount(); ++i) {
@@ -63,27 +63,24 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
             "9.80665 m/s²: 3rd CGPM, 1901",
         .parameters = {},
         .residual_when_missing =
-            "a force field constant in time and proportional to volume; the whole body sags one "
-            "way, most at its free end. It vanishes to first order if the rest shape is itself a "
-            "scan in gravity",
+            "The residual is a force field constant in time and proportional to volume: the whole "
+            "body sags in one direction, most at its free end. It vanishes to first order if the "
+            "rest shape is itself a scan in gravity.",
         .separating_experiment =
-            "turn the fixture upside down and scan again: sag changes sign "
-            "with gravity, swelling or a wrong rest shape does not",
+            "Turn the fixture upside down and scan again: sag changes sign with gravity, swelling "
+            "or a wrong rest shape does not",
         .look_alikes = {"attached_mass", "density_gradient", "point_force", "swelling", "pressure",
                         "plane_contact", "active_contraction"},
+        .trial = {.is_in_every_model = true},
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back({.name = std::string("acceleration_") + axis,
-                                 .meaning = std::string("acceleration of free fall along ") + axis,
-                                 .dimension = kAcceleration,
-                                 .bounds = kAnyValue,
-                                 .null_value = 0,
-                                 .plausible_min = -kStandardGravity,
-                                 .plausible_max = kStandardGravity,
-                                 .default_value = 0,
-                                 .log_scale = false});
-    }
+    AppendVector({.name = "acceleration",
+                  .meaning = "acceleration of free fall",
+                  .dimension = kAcceleration,
+                  .null_value = 0,
+                  .plausible_min = -kStandardGravity,
+                  .plausible_max = kStandardGravity},
+                 Eigen::Vector3d::Zero(), &card);
     return card;
   }
 
@@ -96,6 +93,19 @@ Eigen::VectorXd ReadAcceleration(const EffectCard&, const Config& config, const 
 }
 
 }  // namespace
+
+const EffectCard& GravityCard() { return GravityEffect::TheCard(); }
+
+std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration) {
+  return std::make_shared<GravityEffect>(acceleration);
+}
+
+std::optional<Eigen::Vector3d> GravityOf(
+    const std::vector<std::shared_ptr<const Effect>>& effects) {
+  for (const auto& effect : effects)
+    if (&effect->Card() == &GravityCard()) return effect->Parameters().head<3>();
+  return std::nullopt;
+}
 
 CatalogueEntry Gravity() {
   return {&GravityEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<GravityEffect>,

@@ -1,10 +1,10 @@
-// A stiffer or softer lump inside the body, with a smooth boundary.
+// A stiffer or softer inclusion in the body, with a smooth boundary (extra_stiffness.h).
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "effects/catalogue.h"
 #include "effects/extra_stiffness.h"
+#include "effects/vector_parameters.h"
 
 namespace lacuna {
 namespace {
@@ -48,29 +48,26 @@ class BumpWeight {
             "elastography: A. A. Oberai et al., Inverse Problems 19, 2003, 297–313",
         .parameters = {},
         .residual_when_missing =
-            "the surface moves too much on one side of a place inside the body and too little "
-            "around it, at the same place of the body under every load that strains it there, in "
-            "proportion to the strain",
+            "The surface moves too much on one side of a place inside the body and too little "
+            "around it. The residual appears at the same place of the body under every load that "
+            "strains it there, in proportion to the strain.",
         .separating_experiment =
-            "turn the load, or press elsewhere: the residual stays where the lump is and vanishes "
-            "under loads that do not strain it; a residual of fibres follows the direction of the "
-            "load, one of the grip stays at the grip",
+            "Change the direction of the load, or press elsewhere: the residual stays at the "
+            "inclusion and vanishes under loads that do not strain it. The residual of fibres "
+            "follows the direction of the load, that of a grip stays at the grip",
         .look_alikes = {"stiffness_gradient", "fibre_stiffness"},
+        .tried_at = TriedAtPlaces{{0.1, 0.25, 0.4, 0.55, 0.7, 0.85}, 0.15},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     card.parameters.push_back(YoungModulusDifference("at the centre of the lump"));
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back(
-          {.name = std::string("centre_") + axis,
-           .meaning = std::string("place of the lump in the rest shape, ") + axis + " coordinate",
-           .dimension = kLength,
-           .bounds = kAnyValue,
-           .null_value = kNone,
-           .plausible_min = -0.2,
-           .plausible_max = 0.2,
-           .default_value = kNone});
-    }
+    AppendVector({.name = "centre",
+                  .meaning = "place of the lump in the rest shape,",
+                  .dimension = kLength,
+                  .null_value = kNone,
+                  .plausible_min = -0.2,
+                  .plausible_max = 0.2},
+                 Eigen::Vector3d::Constant(kNone), &card);
     card.parameters.push_back({.name = "radius",
                                .meaning = "distance from the centre at which 61 % of the "
                                           "difference is left, r; some element sizes at least",
@@ -80,7 +77,8 @@ class BumpWeight {
                                .plausible_min = 0.002,
                                .plausible_max = 0.05,
                                .default_value = kNone,
-                               .log_scale = true});
+                               .log_scale = true,
+                               .trial = {.share_of_length = 0.15}});
     card.parameters.push_back(ElasticSettings()[1]);
     return card;
   }

@@ -18,12 +18,12 @@ class LinearLaw {
             "Method, Dover 2000, ch. 2.7",
         .parameters = ElasticParameters(),
         .residual_when_missing =
-            "without any elasticity the body flows; where a nonlinear law stands in for it, "
-            "nothing "
-            "is missing as long as rotations stay below a few degrees",
+            "Without any elasticity the body flows. If a nonlinear law is used instead, nothing is "
+            "missing as long as rotations stay below a few degrees.",
         .separating_experiment =
-            "load in small steps: the linear law's displacements are proportional to the load at "
-            "every amplitude and its body swells when it turns; a corotational body does neither",
+            "Load in small steps: under the linear law displacements are proportional to the load "
+            "at every amplitude, and the body swells when it rotates; a corotational body does "
+            "neither",
         .look_alikes = {"corotational", "st_venant_kirchhoff", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         // Torques balance about the rest positions only: the law does not know of rotations.
@@ -47,7 +47,7 @@ class LinearLaw {
     return stress;
   }
 
-  // Constant and positive semi-definite by itself.
+  // The tangent is constant and positive semi-definite.
   StressTangent Tangent(const Eigen::Matrix3d& /*F*/, bool /*convexify*/) const {
     StressTangent tangent = StressTangent::Zero();
     for (int i = 0; i < 3; ++i) {

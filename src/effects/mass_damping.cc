@@ -25,12 +25,12 @@ class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
                         .default_value = std::numeric_limits<double>::quiet_NaN(),
                         .log_scale = false}},
         .residual_when_missing =
-            "a force against the velocity, proportional to mass: all modes, "
-            "and free flight too, die out at the same rate α/2",
+            "The residual is a force against the velocity, proportional to mass: the amplitudes of "
+            "all modes, and of rigid motion too, decay at the same rate α/2.",
         .separating_experiment =
-            "compare the decay of a slow and a fast mode: here both decay at the same rate, with "
-            "stiffness-proportional damping the fast one decays by the square of its frequency "
-            "sooner; or let it fall freely",
+            "Compare the decay of a slow and a fast mode: here both decay at the same rate, with "
+            "stiffness-proportional damping the rate grows as the square of the frequency. Or let "
+            "the body fall freely",
         .look_alikes = {"stiffness_damping", "drag", "viscoelastic_branch", "elastoplastic_branch",
                         "plane_contact"},
         .conserves_momentum = false,

@@ -1,4 +1,5 @@
-// The neo-Hookean law of rubber as the elasticity of a body.
+#include "effects/neo_hookean.h"
+
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
 #include "effects/neo_hookean_energy.h"
@@ -24,12 +25,12 @@ class NeoHookeanLaw : public NeoHookeanEnergy {
             "Long-Chain Molecules II, Trans. Faraday Soc. 39, 1943",
         .parameters = ElasticParameters(),
         .residual_when_missing =
-            "measured tension softens more (about as 1/length²) than the fitted law says, and "
-            "large compression is far stiffer",
+            "Measured tension softens more than the fitted law predicts (about as 1/length²), and "
+            "large compression is much stiffer.",
         .separating_experiment =
-            "stretch by more than 30 %: a rubber's force falls below the "
-            "straight line, St. Venant–Kirchhoff's rises above it; squeeze to "
-            "half: only this law resists without buckling of elements",
+            "Stretch by more than 30 %: the force of a rubber falls below the straight line, that "
+            "of St. Venant–Kirchhoff rises above it. Compress to half the length: only this law "
+            "resists without buckling elements",
         .look_alikes = {"linear", "corotational", "st_venant_kirchhoff", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
@@ -38,6 +39,8 @@ class NeoHookeanLaw : public NeoHookeanEnergy {
 };
 
 }  // namespace
+
+const EffectCard& NeoHookeanCard() { return NeoHookeanLaw::Card(); }
 
 CatalogueEntry NeoHookean() {
   return {&NeoHookeanLaw::Card(), CatalogueEntry::Kind::kMaterial,

@@ -1,12 +1,12 @@
-// A compressible neo-Hookean solid whose energy is a polynomial of F, hence finite and smooth for
-// flattened and inverted elements too.
+// A compressible neo-Hookean solid whose energy is a polynomial of F, and therefore finite and
+// smooth for flattened and inverted elements too.
 //
-// The volumetric part is that of Smith, de Goes & Kim 2018 ("Stable neo-Hookean flesh simulation",
-// Eq. 13), with the rest state at J = 1 and the constants chosen so that λ and μ are the Lamé
-// constants at small strain. Their extra term log(I_C + 1) is left out: it removes a shallow local
-// minimum at F = 0 (all nodes of an element in one point) but makes the shear stiffness grow with
-// stretch (4/3 of μ in the limit), so that the law would not be neo-Hookean: at twice the length of
-// an incompressible bar it is 11 % too stiff.
+// The volumetric part is that of B. Smith, F. de Goes & T. Kim, Stable Neo-Hookean Flesh
+// Simulation, ACM TOG 37(2), 2018, Eq. 13, with the rest state at J = 1 and constants chosen so
+// that λ and μ are the Lamé constants at small strain. Their additional term log(I_C + 1) is
+// omitted: it removes a shallow local minimum at F = 0 (all nodes of an element in one point), but
+// it lets the shear stiffness grow with stretch (to 4/3 μ in the limit), so that the law would not
+// be neo-Hookean: an incompressible bar at twice its length would be 11 % too stiff.
 #ifndef LACUNA_EFFECTS_NEO_HOOKEAN_ENERGY_H_
 #define LACUNA_EFFECTS_NEO_HOOKEAN_ENERGY_H_
 
@@ -20,7 +20,8 @@
 namespace lacuna {
 
 //   ψ = μ/2 (F:F − 3) − μ (J − 1) + (λ + μ)/2 (J − 1)²,    P = μ F + ((λ + μ)(J − 1) − μ) ∂J/∂F
-// in J/m³ and Pa, linear in λ and μ, which may be negative where this is a softening.
+// in J/m³ and Pa, with J = det F. Both are linear in λ and μ (Pa), which may be negative to
+// describe a reduced stiffness.
 class NeoHookeanEnergy {
  public:
   explicit NeoHookeanEnergy(const LameConstants& lame) : lame_(lame) {}
@@ -35,6 +36,8 @@ class NeoHookeanEnergy {
     return lame_.mu * F + VolumetricSlope(F.col(0).dot(cofactor.col(0))) * cofactor;
   }
 
+  // ∂P/∂F (9 × 9, column-major in F and P), Pa; with `convexify` its projection onto the positive
+  // semi-definite matrices.
   StressTangent Tangent(const Eigen::Matrix3d& F, bool convexify) const {
     const Eigen::Matrix3d cofactor = Cofactor(F);
     const double slope = VolumetricSlope(F.col(0).dot(cofactor.col(0)));

@@ -1,37 +1,14 @@
-// Contact with a half-space at rest, such as a floor: it pushes and never pulls, and may rub.
-//
-// Penalty. A boundary point at depth d = c − n·x below the plane n·x = c meets the pressure
-//   p(d) = k d²/(2s)  for 0 ≤ d ≤ s,   k (d − s/2)  beyond,   0 above the plane.
-// It grows from zero with its slope continuous, so that Newton's method sees one smooth equation
-// whichever nodes touch; unlike a cubic potential, its slope stays below k, which keeps the tangent
-// as well conditioned at a hard impact as at rest; and nothing is felt before the plane is reached.
-// k is a pressure per depth, so the law refers to no mesh. The penetration under a
-// pressure P is P/k + s/2 (√(2 s P/k) while that is below s): choose k some 10 E / element size.
-//
-// Quadrature is nodal, over the areas A_i of the boundary at rest: there is then a potential,
-// E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
-// face is zero, and could carry no penalty; so each such face counts as the four flat triangles
-// that its nodes make, a third of whose area falls on each of their corners: always positive.
-// A node on a sharp edge carries a share of the other face too, and so is stiffer than the law
-// says, the less the finer the mesh.
-//
-// Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
-//   traction = −μ p u/√(|u|² + w²),
-// the gradient of the convex dissipation μ p √(|u|² + w²), hence smooth and never a source of
-// energy. A body that should stick under a tangential force of r times the limit creeps at
-// w r/√(1 − r²); one that slides at |u| ≫ w misses 1/2 (w/|u|)² of the limit. In statics there is
-// no velocity and so no friction. p is that of the end of the step, not lagged: exact at long steps
-// and at the first touch. The price is the unsymmetric ∂f/∂x = A p′ (−n + μ u/√…) nᵀ, of which
-// AddTangents takes the symmetric part; the definite stand-in keeps −A p′ n nᵀ, with which the
-// normal problem is solved exactly and the tangential one follows.
+#include "effects/plane_contact.h"
+
 #include <glog/logging.h>
 
 #include <cmath>
 #include <limits>
-#include <string>
+#include <vector>
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
+#include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
@@ -54,6 +31,33 @@ Penalty PenaltyAt(double depth, double smoothing) {
   return {linear * linear / 2 + s * s / 24, linear, 1};
 }
 
+// Contact with a half-space at rest, such as a floor: it pushes but never pulls, and may have
+// friction.
+//
+// Penalty. A boundary point at depth d = c − n·x below the plane n·x = c is under the pressure
+//   p(d) = k d²/(2s)  for 0 ≤ d ≤ s,   k (d − s/2)  beyond,   0 above the plane.
+// It grows from zero with a continuous slope, so that Newton's method solves one smooth equation
+// whichever nodes touch. Unlike that of a cubic potential, its slope stays below k, so that the
+// tangent is as well conditioned in a hard impact as at rest. Nothing acts above the plane. k is a
+// pressure per depth, so the law is independent of the mesh. The penetration under a pressure P is
+// P/k + s/2 (√(2 s P/k) while that is below s); a suitable k is about 10 E / (element size).
+//
+// Quadrature is nodal, over the areas A_i of the boundary at rest: there is then a potential,
+// E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
+// face is zero and could carry no penalty. Each such face therefore counts as the four flat
+// triangles of its nodes, a third of whose area belongs to each of their corners, which is always
+// positive. A node on a sharp edge also carries a share of the other face, so that it is stiffer
+// than the law; this error decreases as the mesh is refined.
+//
+// Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
+//   traction = −μ p u/√(|u|² + w²),
+// the gradient of the convex dissipation μ p √(|u|² + w²), hence smooth and never a source of
+// energy. A body that should stick under a tangential force of r times the limit creeps at
+// w r/√(1 − r²); one that slides at |u| ≫ w lacks 1/2 (w/|u|)² of the limit. In statics there is
+// no velocity and hence no friction. p is that of the end of the step, not lagged, so that it is
+// exact at long steps and at the first touch. In return ∂f/∂x = A p′ (−n + μ u/√…) nᵀ is
+// unsymmetric; AddTangents adds its symmetric part, or with `convexify` −A p′ n nᵀ, with which the
+// normal problem is solved exactly and the tangential one converges after it.
 class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
  public:
   enum Parameter { kStiffness, kNormal, kOffset = kNormal + 3, kFriction, kSlip, kSmoothing };
@@ -153,14 +157,17 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
             "1785",
         .parameters = {},
         .residual_when_missing =
-            "a push along one fixed direction, on the lowest boundary nodes only, that sets in at "
-            "touch and ends at lift-off; without it the body sinks through the plane. With contact "
-            "but no friction: a force within the touching face, against its slip",
+            "The residual is a push in one fixed direction, on the lowest boundary nodes only, "
+            "that begins at touch-down and ends at lift-off; without it the body sinks through the "
+            "plane. If the model has contact without friction, it is a force within the touching "
+            "surface, against the slip.",
         .separating_experiment =
-            "lift the body off the plane: contact ends at once, gravity and damping stay; for "
-            "friction, push it at two speeds: Coulomb's force is the same, mass-proportional "
-            "damping doubles, and only friction grows with a weight laid on top",
+            "Lift the body off the plane: contact ends at once, gravity and damping stay. For "
+            "friction, push the body at two speeds: Coulomb friction stays the same, "
+            "mass-proportional damping doubles, and only friction grows with a weight placed on "
+            "top",
         .look_alikes = {"gravity", "mass_damping", "elastic_support", "slipping_support"},
+        .tried_at = TriedAtContactPlanes{},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
@@ -173,19 +180,13 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                                .plausible_max = 1e10,
                                .default_value = kMustBeGiven,
                                .log_scale = true});
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back(
-          {.name = std::string("normal_") + axis,
-           .meaning =
-               std::string("direction away from the half-space, of any length, along ") + axis,
-           .dimension = kDimensionless,
-           .bounds = kAnyValue,
-           .null_value = kNoNull,
-           .plausible_min = -1,
-           .plausible_max = 1,
-           .default_value = axis[0] == 'z' ? 1.0 : 0.0,
-           .log_scale = false});
-    }
+    AppendVector({.name = "normal",
+                  .meaning = "direction away from the half-space, of any length,",
+                  .dimension = kDimensionless,
+                  .null_value = kNoNull,
+                  .plausible_min = -1,
+                  .plausible_max = 1},
+                 Eigen::Vector3d::UnitZ(), &card);
     card.parameters.push_back({.name = "offset",
                                .meaning = "height of the plane along its unit normal, c = n·x",
                                .dimension = kLength,
@@ -287,6 +288,34 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
 };
 
 }  // namespace
+
+const EffectCard& PlaneContactCard() { return PlaneContactEffect::TheCard(); }
+
+std::shared_ptr<const Effect> MakePlaneContact(const ContactPlane& plane) {
+  const std::vector<ParameterCard>& cards = PlaneContactCard().parameters;
+  Eigen::VectorXd values(PlaneContactEffect::kParameters);
+  for (int k = 0; k < PlaneContactEffect::kParameters; ++k) values[k] = cards[k].default_value;
+  values[PlaneContactEffect::kStiffness] = plane.stiffness;
+  values.segment<3>(PlaneContactEffect::kNormal) = plane.normal;
+  values[PlaneContactEffect::kOffset] = plane.offset;
+  values[PlaneContactEffect::kFriction] = plane.friction;
+  return std::make_shared<PlaneContactEffect>(values);
+}
+
+std::optional<ContactPlane> ContactPlaneOf(const Effect& effect) {
+  if (&effect.Card() != &PlaneContactCard()) return std::nullopt;
+  const Eigen::VectorXd values = effect.Parameters();
+  return ContactPlane{.normal = values.segment<3>(PlaneContactEffect::kNormal),
+                      .offset = values[PlaneContactEffect::kOffset],
+                      .stiffness = values[PlaneContactEffect::kStiffness],
+                      .friction = values[PlaneContactEffect::kFriction]};
+}
+
+const Effect* FindPlaneContact(const std::vector<std::shared_ptr<const Effect>>& effects) {
+  for (const auto& effect : effects)
+    if (&effect->Card() == &PlaneContactCard()) return effect.get();
+  return nullptr;
+}
 
 CatalogueEntry PlaneContact() {
   return {&PlaneContactEffect::TheCard(), CatalogueEntry::Kind::kEffect,

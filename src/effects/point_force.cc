@@ -1,14 +1,16 @@
-// A constant force on a small place of the surface, for a while: a hand, a string, a weight on it.
+// A constant force on a small part of the surface during an interval of time, such as that of a
+// hand, a string or a weight.
 //
-// Spread as exp(−|X − c|²/(2 r²)) over the boundary nodes around the place c at rest, by the area
-// around each node; it keeps its direction in space. In a step from t − h to t it acts with the
-// share of the step that lies between `start` and `stop`, so that its impulse is F (stop − start)
-// whichever steps are taken; in statics it acts if start ≤ t < stop.
+// The force is distributed over the boundary nodes around the place c at rest as
+// exp(−|X − c|²/(2 r²)) times the area around each node. It keeps its direction in space. In a step
+// from t − h to t it acts with the share of the step that lies between `start` and `stop`, so that
+// its impulse is F (stop − start) for any time steps; in statics it acts if start ≤ t < stop.
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
@@ -81,12 +83,14 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
             "away)",
         .parameters = {},
         .residual_when_missing =
-            "a force constant in size and direction at one place, from one moment to another, "
-            "while nothing in the model changes; its reaction is in no other force",
+            "The residual is a force at one place, constant in magnitude and direction from one "
+            "moment to another, without a counterpart in any other force.",
         .separating_experiment =
-            "shake the body: a force that is constant stays, an attached mass pulls against the "
-            "acceleration too; turn the fixture: what pulls down as before is not fixed to it",
+            "Shake the body: a constant force stays the same, an attached mass also pulls against "
+            "the acceleration. Turn the fixture: a force that keeps its direction in space is not "
+            "fixed to the fixture",
         .look_alikes = {"gravity", "attached_mass", "follower_force"},
+        .tried_at = TriedAtPlaces{{0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}, 0.1},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
@@ -124,7 +128,7 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
     });
   }
 
-  // The share of the step in which the force is there.
+  // The share of the step in which the force acts.
   double PresentShare(const Kinematics& at) const {
     const double start = parameters_[kStart], stop = parameters_[kStop];
     if (at.time_step == 0) return start <= at.time && at.time < stop ? 1 : 0;

@@ -1,4 +1,4 @@
-// Pressure of a fluid on the surface, in the direction of the deformed surface's normal.
+// Pressure of a fluid on the surface, along the normal of the deformed surface.
 //
 // The nodal forces are f_a = −p ∫ N_a n dA over the deformed boundary faces, curved ones of
 // quadratic elements included: with x = Σ N_b(ξ, η) x_b and the tangents t₁ = ∂x/∂ξ, t₂ = ∂x/∂η,
@@ -9,9 +9,10 @@
 // sum and moment vanish.
 //
 // With s_b = ∂N_b/∂η t₁ − ∂N_b/∂ξ t₂, d(t₁ × t₂) = Σ s_b × dx_b, and of the tangent the symmetric
-// part has the blocks −½ p ∫ [N_a s_b − N_b s_a]× dξ dη. On a closed surface it is the whole; on a
-// part the rest sits on the part's rim. It is indefinite, and small against the elastic stiffness
-// while p is below the modulus: the definite stand-in leaves it out.
+// part has the blocks −½ p ∫ [N_a s_b − N_b s_a]× dξ dη. On a closed surface this is the whole
+// tangent; on a part of it the skew-symmetric rest belongs to the rim of the part. The tangent is
+// indefinite, and small against the elastic stiffness while p is below the modulus; with
+// `convexify` it is omitted.
 #include <fmt/format.h>
 #include <glog/logging.h>
 
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
@@ -139,7 +141,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
     AddScaledForce(at, 1, derivative);
   }
 
-  // Of all of the boundary, p (V − V at rest).
+  // p (V − V at rest) if the pressure acts on all of the boundary; on a part there is no potential.
   std::optional<double> Energy(const Kinematics& at) const override {
     if (!Faces(at.body)->closed) return std::nullopt;
     const Eigen::VectorXd rest = at.body.mesh.nodes.reshaped();
@@ -170,12 +172,12 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                         .plausible_max = 1e4,
                         .default_value = kMustBeGiven}},
         .residual_when_missing =
-            "a force along the normal of the surface, in proportion to area and turning with it; "
-            "from all sides the body shrinks or swells without moving, the more the farther ν is "
-            "from ½",
+            "The residual is a force along the normal of the surface, proportional to area, which "
+            "rotates with the surface. Under pressure from all sides the body shrinks or swells "
+            "without moving, more so the further ν is from ½.",
         .separating_experiment =
-            "turn the body: pressure turns with it, gravity does not; open or vent the chamber: "
-            "pressure goes at once, a wrong rest shape stays",
+            "Turn the body: pressure rotates with it, gravity does not. Vent the chamber: pressure "
+            "vanishes at once, a wrong rest shape stays",
         .look_alikes = {"gravity", "follower_force", "swelling"},
         .repeatable = true,
         .conserves_momentum = false,
@@ -188,15 +190,10 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                   .plausible_max = 1,
                   .setting = true},
                  Eigen::Vector3d::Zero(), &card);
-    AppendVector({.name = "normal",
-                  .meaning = "the pressure acts on the faces that at rest lie wholly on this side "
-                             "of the plane; left out, everywhere;",
-                  .dimension = kDimensionless,
-                  .null_value = kNoNull,
-                  .plausible_min = -1,
-                  .plausible_max = 1,
-                  .setting = true},
-                 Eigen::Vector3d::Zero(), &card);
+    AppendDirectionSetting("normal",
+                           "the pressure acts on the faces that at rest lie wholly on this side "
+                           "of the plane; left out, everywhere;",
+                           Eigen::Vector3d::Zero(), &card);
     return card;
   }
 

@@ -1,4 +1,4 @@
-// What an effect derives from the rest shape of its body, computed once and kept.
+// A quantity that an effect derives from the rest shape of its body, computed once and kept.
 #ifndef LACUNA_EFFECTS_REST_QUANTITY_H_
 #define LACUNA_EFFECTS_REST_QUANTITY_H_
 
@@ -18,7 +18,7 @@ namespace lacuna {
 template <typename T>
 class RestQuantity {
  public:
-  // make(body), at the first call for this body.
+  // Returns the kept value, or calls make(body) if there is none for the mesh of this body.
   template <typename Make>
   std::shared_ptr<const T> Of(const Body& body, const Make& make) const {
     const std::scoped_lock lock(kept_->mutex);

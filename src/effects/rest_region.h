@@ -1,4 +1,6 @@
-// Places of a body at rest that an effect's settings name: near a point, or in a half-space.
+// Regions of a body at rest that the settings of an effect select: around a point, or in a
+// half-space. Points are 3 × n, in m; n counts the nodes of the body unless a function says
+// otherwise. A radius must be positive (CHECK).
 #ifndef LACUNA_EFFECTS_REST_REGION_H_
 #define LACUNA_EFFECTS_REST_REGION_H_
 
@@ -8,24 +10,26 @@
 
 namespace lacuna {
 
-// exp(−|X − c|²/(2 r²)) at each node (n).
+// exp(−|X − c|²/(2 r²)) at each node (n), with the centre c and the radius r.
 Eigen::VectorXd BumpAround(const Eigen::Vector3d& centre, double radius, const Body& body);
 
-// `measure` (n; areas or volumes that belong to the places, 3 × n) times that bump, scaled to the
-// sum 1; 0 where it is below 1e-12 of its largest. All falls on the nearest places that have a
-// measure when r is small against their distances.
+// Shares s of a total: `measure` (n: the areas or volumes of the places, 3 × n) times that bump,
+// scaled to the sum 1. Shares below 1e-12 of the largest are 0. If r is small against the distances
+// of the places, the nearest places with a measure get everything. Some measure must be positive
+// (CHECK).
 Eigen::VectorXd BumpShares(const Eigen::Vector3d& centre, double radius,
                            const Eigen::Matrix3Xd& places, const Eigen::VectorXd& measure);
 
-// ∂(those shares)/∂c along a coordinate: s_i (X_i − Σ_j s_j X_j)/r².
+// The derivative of those shares with respect to a coordinate of c: s_i (X_i − Σ_j s_j X_j)/r²,
+// 1/m.
 Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3Xd& places,
                                    const Eigen::VectorXd& shares);
 
-// Volume around each node (n, m³): its share of the lumped mass by the density.
+// Volume around each node (n), m³: its lumped mass over the density.
 Eigen::VectorXd NodeVolumes(const Body& body);
 
-// 1 at each node with n·(X − point) ≥ 0, to rounding, else 0 (n). A normal of length zero: 1
-// everywhere.
+// 1 at each node with n·(X − point) ≥ 0, up to rounding, and 0 elsewhere (n). A normal of length
+// zero gives 1 everywhere.
 Eigen::VectorXd InHalfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                             const Body& body);
 

@@ -16,12 +16,12 @@ class SaintVenantKirchhoffLaw {
         .citation = "G. A. Holzapfel, Nonlinear Solid Mechanics, Wiley 2000, sec. 6.5, Eq. 6.151",
         .parameters = ElasticParameters(),
         .residual_when_missing =
-            "measured tension stiffens more, and compression less, than the fitted law says; it "
-            "softens and finally collapses when squeezed to about 58 % of its length",
+            "Measured tension stiffens more, and compression less, than the fitted law predicts; "
+            "in compression the body softens and finally collapses at about 58 % of its length.",
         .separating_experiment =
-            "stretch and squeeze by more than 20 %: only this law stiffens in "
-            "tension and softens in compression; in bending of thin parts it "
-            "cannot be told from the corotational law",
+            "Stretch and compress by more than 20 %: only this law stiffens in tension and softens "
+            "in compression. In bending of thin parts it cannot be distinguished from the "
+            "corotational law",
         .look_alikes = {"linear", "corotational", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -1,15 +1,14 @@
-// A support that slips: an elastic bed whose springs slide once they are stretched by so much.
-//
+// A support that slips: an elastic bed whose springs slide once their stretch reaches a limit,
 //   f_i = −k w_i A_i e_i,  e_i = u_i − s_i,  ‖e_i‖ ≤ d,  s_i flows along e_i at the limit only,
-// with the displacement u_i = x_i − X_i and the slip s_i of each boundary node: a Jenkin element in
-// the plane of forces, in any direction. It stands for a clamp, a glued pad or a sleeve in which
-// the body begins to slide: under a clamping pressure p with the coefficient of friction μ, k d = μ
-// p. The limit is stated as a distance so that the slip does not depend on k: a support of size
-// zero slips as one of any size would, and can be tried to first order. Nodes that a grip holds do
-// not feel it. What is at rest in a plane that the body may leave is a contact.
+// with the displacement u_i = x_i − X_i and the slip s_i of each boundary node: an isotropic Jenkin
+// element in three dimensions. It models a clamp, a glued pad or a sleeve in which the body begins
+// to slide; under a clamping pressure p with the coefficient of friction μ, k d = μ p. The limit is
+// a distance so that the slip does not depend on k: a support with k = 0 slips as one with any k
+// would, and the derivative with respect to k at 0 exists. Nodes that a grip holds are not
+// affected. A support that the body may leave is a contact (plane_contact.cc).
 //
-// The nearest point at the end of the step (radial return, M. L. Wilkins 1964): its incremental
-// potential is quadratic up to the limit and linear beyond, convex.
+// The slip at the end of a step follows from a radial return (M. L. Wilkins 1964), whose
+// incremental potential is convex: quadratic up to the limit and linear beyond it.
 #include <glog/logging.h>
 
 #include <limits>
@@ -120,15 +119,17 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                         .plausible_min = 1e-5,
                         .plausible_max = 1e-2,
                         .default_value = std::numeric_limits<double>::quiet_NaN(),
-                        .log_scale = true}},
+                        .log_scale = true,
+                        .trial = {.min = 2e-4, .max = 2e-3, .draw = 9}}},
         .residual_when_missing =
-            "one part of the surface is held back at small displacements, then slides and does not "
-            "come back: what is left over after each large motion stays until the next",
+            "One part of the surface is held at small displacements, then slides and does not "
+            "return: the residual after each large motion persists until the next one.",
         .separating_experiment =
-            "load gently, then hard, and look at the support at rest in between: a slip stays and "
-            "shows at the support itself; a yielding support or a softer body come back, and a "
-            "permanent set of the material is where it is strained most",
+            "Load gently, then hard, and look at the support at rest in between: a slip persists "
+            "and is visible at the support itself. A yielding support or a softer body returns, "
+            "and a permanent set of the material is largest where the strain was largest",
         .look_alikes = {"elastic_support", "elastoplastic_branch", "plane_contact"},
+        .tried_at = TriedAsSupports{.slip_shares = {0.002, 0.02}},
         .repeatable = true,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};

@@ -1,14 +1,14 @@
-// A branch that softens with the largest strain it has ever seen (the Mullins effect): a body is
+// A branch that softens with the largest strain of its history (the Mullins effect): a body is
 // stiffer on its first stretch than on later ones up to the same stretch, at any speed, without
 // permanent set.
 //
 //   S = m g(κ) C : E,   g = 1/(1 + κ/κ₀),   κ = largest √(E : C : E) so far, the present included,
 // with Hooke's moduli C for Young's modulus 1: damage driven by the energy norm of the strain (Simo
 // 1987). On first loading the stress m κ/(1 + κ/κ₀) still rises, towards m κ₀; so the incremental
-// potential is convex and no element softens at its neighbours' cost, as it would with g falling
-// faster than 1/κ. The elasticity law beside the branch is what is left when all has softened: the
-// branch adds a stiffness that wears off, it never takes any away. Independent of rate; statics is
-// a step like any other.
+// potential is convex and strain does not localise in single elements, as it would if g decreased
+// faster than 1/κ. The elasticity law of the body is the limit of complete softening: the branch
+// adds a stiffness that decreases to zero and never reduces that of the body. It is independent of
+// the rate, and statics is a step like any other.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,7 +37,7 @@ class SofteningLaw {
   double Potential(const KelvinVector& strain, const State& state) const {
     const double before = state[0], now = Norm(strain);
     if (now <= before) return 0.5 * Remaining(before) * now * now;
-    // ∫ κ g(κ) dκ beyond what was seen.
+    // ∫ κ g(κ) dκ from the largest past strain on.
     const double c = softening_strain_;
     return 0.5 * Remaining(before) * before * before +
            c * (now - before - c * std::log1p((now - before) / (c + before)));
@@ -99,7 +99,8 @@ class SofteningLaw {
                         .plausible_min = 0.01,
                         .plausible_max = 1,
                         .default_value = kNone,
-                        .log_scale = true},
+                        .log_scale = true,
+                        .trial = {.min = 0.03, .max = 0.2, .draw = 3}},
                        {.name = "poisson_ratio",
                         .meaning = "Poisson's ratio of the branch (if left out: the material's)",
                         .dimension = kDimensionless,
@@ -111,14 +112,15 @@ class SofteningLaw {
                         .log_scale = false,
                         .setting = true}},
         .residual_when_missing =
-            "the same load moves the body further the second time; force against displacement "
-            "of the first loading lies above all later ones, which agree with each other and "
-            "end at the same rest shape",
+            "The same load displaces the body further the second time. Force against displacement "
+            "of the first loading lies above that of all later ones, which agree with each other "
+            "and end at the same rest shape.",
         .separating_experiment =
-            "repeat one cycle three times: only the first differs, whereas the loop of a "
-            "yielding or viscoelastic branch comes again each time; then stretch further: the "
-            "first curve goes on where it was left",
+            "Repeat one cycle three times: only the first differs, whereas the loop of a yielding "
+            "or viscoelastic branch repeats each time. Then stretch further: the curve of the "
+            "first loading continues where it ended",
         .look_alikes = {"elastoplastic_branch", "viscoelastic_branch"},
+        .tried_at = TriedAtValues{"softening_strain", "κ₀", {0.1}},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -1,14 +1,5 @@
-// Stiffness-proportional damping, the second half of Rayleigh's, for large rotations and strains.
-//
-// The textbook force −β K v is unsound in a nonlinear body whichever K is taken: with the stiffness
-// of the rest shape it brakes a body that merely turns (a rigid rotation is a null vector of K only
-// about the rest position), with the current tangent it feeds energy in where that is indefinite.
-// Here the rest-state elasticity acts on the *rate of the Green–Lagrange strain* instead, a
-// Kelvin–Voigt solid: no force under any rigid motion, power −Ė : βC : Ė ≤ 0 always, and −β K v for
-// small strains and rotations whatever the elasticity law.
-//
-// The moduli are the effect's own (by default copies of the material's): when a fit changes
-// Young's modulus, the viscosity βC stays what it was, and ∂f/∂(parameter) is complete.
+#include "effects/stiffness_damping.h"
+
 #include <glog/logging.h>
 
 #include <string>
@@ -31,6 +22,17 @@ Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matri
   return stress;
 }
 
+// Stiffness-proportional damping, the second half of Rayleigh's, for large rotations and strains.
+//
+// The textbook force −β K v is unsuitable for a nonlinear body with any choice of K. With the
+// stiffness of the rest shape it brakes a body that merely rotates (a rigid rotation is a null
+// vector of K only about the rest position); with the current tangent it adds energy where that is
+// indefinite. Here the elasticity at rest acts on the *rate of the Green–Lagrange strain* instead,
+// as in a Kelvin–Voigt solid: rigid motions cause no force, the power −Ė : βC : Ė is never
+// positive, and for small strains and rotations the force is −β K v for any elasticity law.
+//
+// The moduli belong to the effect (by default they are copies of the material's): when a fit
+// changes Young's modulus, the viscosity βC stays the same, and ∂f/∂(parameter) is complete.
 class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffect> {
  public:
   static const EffectCard& TheCard() {
@@ -114,13 +116,15 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
             "Springer 1998, ch. 10",
         .parameters = {},
         .residual_when_missing =
-            "a self-equilibrated force against the rate of strain: fast modes "
-            "die out much sooner than predicted, slow ones hardly",
+            "The residual is a self-equilibrated force against the strain rate: fast modes decay "
+            "much sooner than predicted, slow ones hardly.",
         .separating_experiment =
-            "compare the decay of two modes: here the decay rate grows as the square of the "
-            "frequency, with mass-proportional damping it is the same; strain it and hold: stress "
-            "relaxes at once, with a viscoelastic branch it takes the branch's time",
+            "Compare the decay of two modes: here the decay rate grows as the square of the "
+            "frequency, with mass-proportional damping it is the same. Strain the body and hold "
+            "it: the stress relaxes at once, with a viscoelastic branch it takes the relaxation "
+            "time",
         .look_alikes = {"mass_damping", "viscoelastic_branch", "elastoplastic_branch", "drag"},
+        .trial = {.is_in_every_model = true},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     card.parameters.push_back({.name = "beta",
@@ -140,7 +144,7 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
     return card;
   }
 
-  // As in statics: nothing is damped, whatever the strain.
+  // Without a velocity, as in statics, there is no damping force at any strain.
   static bool IsAtRest(const Kinematics& at) { return at.velocity.isZero(0); }
 
   LameConstants Viscosity() const {
@@ -177,10 +181,11 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
     });
   }
 
-  // Of C(F, Ḟ), symmetric or with kMirror = −1 skew-symmetric. ∂P/∂Ḟ is symmetric, ∂P/∂F is not.
-  // The definite stand-in drops the latter, as it is small beside ∂P/∂Ḟ by the strain increment of
-  // a step; but a strained body that turns owes its freedom from stress to both: without the skew
-  // part of ∂P/∂F the derivative of its strain is braked by the turn.
+  // Adds the matrix of the moduli C(F, Ḟ): its symmetric part, or with kMirror = −1 its
+  // skew-symmetric part. ∂P/∂Ḟ is symmetric, ∂P/∂F is not. With `convexify` the latter is omitted,
+  // because it is smaller than ∂P/∂Ḟ by the strain increment of a step. The exact tangent needs
+  // both: a deformed body that rotates is free of viscous stress only if the skew part of ∂P/∂F is
+  // included.
   template <int kMirror, typename Moduli>
   static void AddMatrix(const Kinematics& at, const Moduli& C, BlockMatrix* tangent) {
     WithNodesPerElement(
@@ -205,7 +210,7 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
     });
   }
 
-  // ∂P/∂F at fixed Ḟ: δF S + F βC : sym(δFᵀ Ḟ).
+  // ∂P/∂F at fixed Ḟ: the map δF ↦ δF S + F βC : sym(δFᵀ Ḟ).
   static StressTangent PositionTangent(const LameConstants& viscosity, const Eigen::Matrix3d& F,
                                        const Eigen::Matrix3d& rate) {
     StressTangent tangent = RateTangent(viscosity, F, rate);
@@ -239,6 +244,8 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
 };
 
 }  // namespace
+
+const EffectCard& StiffnessDampingCard() { return StiffnessDampingEffect::TheCard(); }
 
 CatalogueEntry StiffnessDamping() {
   return {&StiffnessDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect,

@@ -1,10 +1,10 @@
-// Stiffness that changes evenly along a direction of the body, as of a casting that cured or
-// settled unevenly.
+// A stiffness that changes linearly along a direction of the body, as in a casting that cured or
+// settled unevenly (extra_stiffness.h).
 #include <limits>
-#include <string>
 
 #include "effects/catalogue.h"
 #include "effects/extra_stiffness.h"
+#include "effects/vector_parameters.h"
 
 namespace lacuna {
 namespace {
@@ -41,41 +41,27 @@ class LinearWeight {
             "2018, Eq. 13",
         .parameters = {},
         .residual_when_missing =
-            "strain is predicted too small towards one end of the body and too large towards the "
-            "other, in proportion to the load and whatever its direction",
+            "Strain is predicted too small towards one end of the body and too large towards the "
+            "other, in proportion to the load and for any direction of the load.",
         .separating_experiment =
-            "hold the body at its other end and load it again: the soft end stays soft, whereas an "
-            "error of the grip or of the load changes ends with the grip",
+            "Hold the body at its other end and load it again: the soft end stays soft, whereas an "
+            "error of the grip or of the load moves to the other end with the grip",
         .look_alikes = {"inclusion", "fibre_stiffness"},
+        .tried_at = TriedAsGradients{},
+        .trial = {.axis_along_bar = true},
         .conserves_momentum = true,
         .conserves_angular_momentum = true};
     card.parameters.push_back(YoungModulusDifference("over the length L, evenly along a"));
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back(
-          {.name = std::string("origin_") + axis,
-           .meaning =
-               std::string("place in the rest shape where nothing is added, o, along ") + axis,
-           .dimension = kLength,
-           .bounds = kAnyValue,
-           .null_value = kNone,
-           .plausible_min = -0.2,
-           .plausible_max = 0.2,
-           .default_value = 0,
-           .setting = true});
-    }
-    for (const char* axis : {"x", "y", "z"}) {
-      card.parameters.push_back(
-          {.name = std::string("axis_") + axis,
-           .meaning =
-               std::string("direction in which stiffness grows, of any length, along ") + axis,
-           .dimension = kDimensionless,
-           .bounds = kAnyValue,
-           .null_value = kNone,
-           .plausible_min = -1,
-           .plausible_max = 1,
-           .default_value = kNone,
-           .setting = true});
-    }
+    AppendVector({.name = "origin",
+                  .meaning = "place in the rest shape where nothing is added, o,",
+                  .dimension = kLength,
+                  .null_value = kNone,
+                  .plausible_min = -0.2,
+                  .plausible_max = 0.2,
+                  .setting = true},
+                 Eigen::Vector3d::Zero(), &card);
+    AppendDirectionSetting("axis", "direction in which stiffness grows, of any length,",
+                           Eigen::Vector3d::Constant(kNone), &card);
     card.parameters.push_back({.name = "length",
                                .meaning = "distance over which the difference is added, L",
                                .dimension = kLength,
@@ -84,7 +70,8 @@ class LinearWeight {
                                .plausible_min = 0.01,
                                .plausible_max = 1,
                                .default_value = 0.1,
-                               .setting = true});
+                               .setting = true,
+                               .trial = {.share_of_length = 1}});
     card.parameters.push_back(ElasticSettings()[1]);
     return card;
   }

@@ -1,12 +1,12 @@
-// Stiffening with strain, as of rubber near its chains' full length and of soft tissue: the second
-// term of Yeoh's energy.
+// Stiffening with strain, as in soft tissue and in rubber whose chains approach their full length:
+// the second term of Yeoh's energy.
 //
 // Yeoh's invariant Ī₁ − 3 = J^(−2/3) F:F − 3 is singular where an element is flat. Here a
-// polynomial of F stands for it,
+// polynomial of F replaces it,
 //   I = F:F − 3 − 2 (J − 1) + (J − 1)²/3,
-// which is Ī₁ − 3 wherever J = 1, and 2 e:e to second order in the strain, e its deviator, just as
-// Ī₁ − 3 is. So I² is of fourth order (of sixth in a mere change of volume): the moduli at small
-// strain stay the material's, and nothing has to be fitted anew when the effect is added.
+// which equals Ī₁ − 3 where J = 1. Like Ī₁ − 3 it is 2 e:e to second order in the strain, with the
+// strain deviator e. Hence I² is of fourth order (of sixth order in a pure change of volume): the
+// effect does not change the moduli of the material at small strain.
 #include <Eigen/LU>
 #include <limits>
 
@@ -39,12 +39,12 @@ class StrainStiffeningLaw {
                         .plausible_max = 1e5,
                         .default_value = std::numeric_limits<double>::quiet_NaN()}},
         .residual_when_missing =
-            "small loads are met, large ones are not: the measured displacement falls more and "
-            "more behind the predicted one, most where the body is stretched or sheared most, in "
-            "tension and compression alike",
+            "Small loads are predicted well, large ones are not: the measured displacement falls "
+            "more and more behind the prediction, most where the body is stretched or sheared "
+            "most, in tension and compression alike.",
         .separating_experiment =
-            "double and treble the load: the missing force grows as the third power of the strain; "
-            "that of an added linear stiffness grows in proportion",
+            "Double and treble the load: the missing force grows as the third power of the strain, "
+            "that of an additional linear stiffness in proportion to it",
         .look_alikes = {"linear", "corotational", "st_venant_kirchhoff", "neo_hookean",
                         "fibre_stiffness"},
         .conserves_momentum = true,

@@ -1,12 +1,12 @@
 // Swelling or shrinking: without stress the body would be larger than its rest shape by a linear
-// strain ε, by uptake of a liquid, by heat (ε = α ΔT) or by curing (ε < 0).
+// strain ε, because of the uptake of a liquid, heat (ε = α ΔT) or curing (ε < 0).
 //
 //   ψ = −3 K ε (J − 1)
-// adds the true stress −3 K ε I wherever the body is and however it is strained, which is the
-// thermal stress of small-strain elasticity: a body free to do so grows by ε (to first order), one
-// held on all sides pushes with 3 K ε = E ε/(1 − 2ν). As that stress is the same everywhere, its
-// nodal forces act on the boundary only. K belongs to the effect: when a fit changes the material's
-// modulus, the push 3 K ε stays what it was, and ε is to be read with the K given here.
+// adds the Cauchy stress −3 K ε I at any deformation, the thermal stress of small-strain
+// elasticity: a free body grows by ε (to first order), a body that is held on all sides exerts the
+// pressure 3 K ε = E ε/(1 − 2ν). As that stress is uniform, its nodal forces act on the boundary
+// only. K belongs to the effect: when a fit changes the modulus of the material, 3 K ε stays the
+// same, and ε refers to the K given here.
 #include <Eigen/LU>
 #include <limits>
 
@@ -69,12 +69,12 @@ class SwellingLaw {
             "Wiley 1960, ch. 1",
         .parameters = {},
         .residual_when_missing =
-            "already without load the body is larger, or smaller, than its rest shape by the same "
-            "share in all directions, and bulges beside a clamp that keeps it from growing; the "
-            "residual does not change with the load",
+            "Even without load the body is larger, or smaller, than its rest shape by the same "
+            "ratio in all directions, and bulges beside a clamp that prevents its growth. The "
+            "residual does not change with the load.",
         .separating_experiment =
-            "take all load away and turn the body upside down: swelling stays as it is, the sag of "
-            "gravity changes sign; free the clamp: a swollen body is then of the same shape, only "
+            "Remove all load and turn the body upside down: swelling stays as it is, the sag of "
+            "gravity changes sign. Free the clamp: a swollen body then has the same shape, only "
             "larger",
         .look_alikes = {"gravity", "active_contraction", "pressure"},
         .conserves_momentum = true,

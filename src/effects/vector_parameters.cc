@@ -2,10 +2,12 @@
 
 #include <limits>
 
+#include "effects/gravity.h"
+
 namespace lacuna {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s²
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -21,6 +23,18 @@ void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_va
   }
 }
 
+void AppendDirectionSetting(const std::string& name, const std::string& meaning,
+                            const Eigen::Vector3d& default_value, EffectCard* card) {
+  AppendVector({.name = name,
+                .meaning = meaning,
+                .dimension = kDimensionless,
+                .null_value = kNone,
+                .plausible_min = -1,
+                .plausible_max = 1,
+                .setting = true},
+               default_value, card);
+}
+
 std::string VectorNameAt(const EffectCard& card, size_t k) {
   const std::string& first = card.parameters[k].name;
   if (k + 2 >= card.parameters.size() || !first.ends_with("_x")) return "";
@@ -31,7 +45,6 @@ std::string VectorNameAt(const EffectCard& card, size_t k) {
 }
 
 void AppendPlace(const std::string& meaning, EffectCard* card) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   AppendVector({.name = "centre",
                 .meaning = meaning,
                 .dimension = kLength,
@@ -52,7 +65,7 @@ void AppendPlace(const std::string& meaning, EffectCard* card) {
 }
 
 void AppendGravitySetting(EffectCard* card) {
-  AppendVector({.name = "gravity",
+  AppendVector({.name = kGravitySetting,
                 .meaning = "acceleration of free fall, which must be that of the model's gravity "
                            "(0, 0, 0 in a model without),",
                 .dimension = kAcceleration,

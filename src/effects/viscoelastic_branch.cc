@@ -106,7 +106,8 @@ class ViscoelasticLaw {
                         .plausible_min = 1e-3,
                         .plausible_max = 1e2,
                         .default_value = kNone,
-                        .log_scale = true},
+                        .log_scale = true,
+                        .trial = {.min = 0.02, .max = 0.3, .draw = 1}},
                        {.name = "poisson_ratio",
                         .meaning = "Poisson's ratio of the branch (if left out: the material's)",
                         .dimension = kDimensionless,
@@ -118,15 +119,16 @@ class ViscoelasticLaw {
                         .log_scale = false,
                         .setting = true}},
         .residual_when_missing =
-            "the body creeps on under a constant load, or the force of a hold decays, along "
-            "the shape of the elastic deformation; fast loading looks stiffer than slow, and "
-            "oscillations decay most where their period is about 6 τ",
+            "The body creeps under a constant load, or the force relaxes while the body is held, "
+            "with the shape of the elastic deformation. Fast loading appears stiffer than slow "
+            "loading, and oscillations decay most where their period is about 6 τ.",
         .separating_experiment =
-            "stretch quickly, hold for several τ, release and wait: here the force decays over "
-            "τ and the rest shape comes back, stiffness-proportional damping has no force in "
-            "the hold, a yielding branch keeps its force in the hold and a permanent set after "
-            "it; two frequencies tell a branch from both kinds of damping",
+            "Stretch quickly, hold for several τ, release and wait: here the force relaxes over τ "
+            "and the rest shape is recovered; stiffness-proportional damping exerts no force while "
+            "the body is held; a yielding branch keeps its force while held and leaves a permanent "
+            "set. Two frequencies distinguish a branch from both kinds of damping",
         .look_alikes = {"stiffness_damping", "mass_damping", "elastoplastic_branch", "softening"},
+        .tried_at = TriedAtRelaxationTimes{"relaxation_time", "τ"},
         .repeatable = true,
         .conserves_momentum = true,
         .conserves_angular_momentum = true};

@@ -60,11 +60,11 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
   const Frame frame = LoadFrame(recording, frame_number);
   FrameState state;
   state.time = frame.time;
-  if (recording.tracked || recording.kind == FrameKind::kMarkers) {
+  if (!IsScan(recording)) {
     SplitTracked(frame, options.hold_out_every, &state);
     return state;
   }
-  if (recording.kind == FrameKind::kMesh && frame.triangles.cols() > 0) {
+  if (frame.triangles.cols() > 0) {
     state.surface = {frame.cloud.points, frame.triangles};
     state.cloud = {frame.cloud.points, VertexNormals(state.surface)};
     return state;

@@ -17,37 +17,39 @@ namespace lacuna {
 // One state S_k of the object.
 struct FrameState {
   double time = 0;   // s
-  PointCloud cloud;  // cleaned, with normals where they can be told
+  PointCloud cloud;  // cleaned, with normals where they can be oriented
   TriMesh surface;   // closed; without triangles where the frame has none
-  // For tracked recordings: the material point of each row; NaN columns were not seen. Held-out
-  // points are in `held_out`, not in `cloud` or `tracked`.
+  // For tracked recordings, the material point of each row; columns of NaN were not seen. Held-out
+  // points are in `held_out` and neither in `cloud` nor in `tracked`.
   Eigen::Matrix3Xd tracked;
   Eigen::Matrix3Xd held_out;
 };
 
-// Of a tracked frame, 3 × rows, m; NaN where a row was not seen.
+// The points of a tracked frame by row, 3 × rows, m; NaN where a row was not seen.
 Eigen::Matrix3Xd PointsByRow(const Frame& frame);
 
-// The points that stand for the state in a registration: the surface's vertices, or the cloud.
+// The points that represent the state in a registration: the surface's vertices or, without a
+// surface, the cloud.
 PointCloud StatePoints(const FrameState& state);
 
-// What is made of a frame.
+// How a frame is processed.
 struct FrameStateOptions {
   FilterOptions filter;
   SurfaceOptions surface;
-  bool surfaces = true;    // Poisson surface of the points; else they stand for it
-  int hold_out_every = 0;  // tracked points that are kept apart; 0: none
+  bool surfaces = true;    // reconstruct a Poisson surface; false: the points represent it
+  int hold_out_every = 0;  // hold out every k-th tracked point; 0: none
 };
-// Frame `frame` of the recording. Throws InputError naming it.
+// Processes one frame of the recording. Throws InputError, naming the frame, where it cannot be
+// read or has no closed surface.
 FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
 
-// For the run directory.
+// The files of a run directory: arrays in .npy format, one set per frame.
 void SaveFrameStates(const std::vector<FrameState>& states, const std::filesystem::path& folder);
 std::vector<FrameState> ReadFrameStates(const std::filesystem::path& folder);
 
-// The standard deviation of a cloud's points about their own surface, m: the median over the points
-// of the distance from the plane through their neighbours, corrected for the plane's own error.
-// Curvature adds to it.
+// The standard deviation of a cloud's points (3 × n, m) about their own surface, m: the median over
+// the points of the rms distance of their neighbours from the plane through them, corrected for the
+// degrees of freedom of the plane. Curvature increases it.
 double EstimateNoise(const Eigen::Matrix3Xd& points);
 
 }  // namespace lacuna

@@ -50,15 +50,16 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
       return nodes;
     });
   };
-  for (const Region& region : recording.fixed) model->grips.push_back({nodes_in(region), {}});
-  for (const RecordedGrip& grip : recording.grips) {
+  for (const Region& region : recording.object.fixed)
+    model->grips.push_back({nodes_in(region), {}});
+  for (const RecordedGrip& grip : recording.object.grips) {
     auto track = std::make_shared<Track>();
     track->grip = grip;
     track->nodes = nodes_in(grip.region);
     track->rest = reference.nodes(Eigen::all, track->nodes);
     track->markers = MarkersOf(grip, recording);
     if (!track->markers.empty()) {
-      const Eigen::Matrix3Xd places = recording.marker_places(Eigen::all, track->markers);
+      const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, track->markers);
       track->span = FitRigidMotion(places, places).span;
       if (grip.deforms && track->span < 2)
         throw InputError(fmt::format("{}: \"{}\" is to deform with its markers, which {}",
@@ -98,7 +99,7 @@ const RecordedGrip* GripTracks::Extend(double time, const Eigen::Matrix3Xd& befo
         break;
       }
       case GripMotion::kFollowsMarkers: {
-        const Eigen::Matrix3Xd at_rest = recording_.marker_places(Eigen::all, track->markers);
+        const Eigen::Matrix3Xd at_rest = recording_.markers.places(Eigen::all, track->markers);
         const Eigen::Matrix3Xd seen = markers(Eigen::all, track->markers);
         const RigidFit fit = FitRigidMotion(at_rest, seen);
         if (fit.span < std::max(track->span, 0)) {

@@ -1,6 +1,6 @@
-// A scene's recording that is made once and found again. Beside it lies scene.key: what it was made
-// from, and a hash of its files. It is written last, so that half a recording, or one that was
-// changed since, is none.
+// The recording of a synthetic scene, made once and used again. The file scene.key beside it holds
+// the key of the scene and a hash of the recording's files. It is written last, so that a recording
+// that is incomplete or was changed later is recognised.
 #ifndef LACUNA_EXPERIMENT_KEPT_RECORDING_H_
 #define LACUNA_EXPERIMENT_KEPT_RECORDING_H_
 
@@ -11,10 +11,11 @@
 
 namespace lacuna {
 
-// Whether `folder` holds the recording that `key` names, as it was written.
+// Whether `folder` holds the recording of this key, unchanged.
 bool IsKeptRecording(const std::filesystem::path& folder, const std::string& key);
-// Says that it does. Throws InputError when that cannot be written, as KeepRecording does.
+// Writes scene.key for a recording that is complete. Throws InputError when it cannot be written.
 void MarkRecording(const std::filesystem::path& folder, const std::string& key);
+// Writes the recording and then scene.key. Throws InputError when they cannot be written.
 void KeepRecording(const Scene& scene, const SceneMotion& motion,
                    const std::filesystem::path& folder, const std::string& key);
 

@@ -14,7 +14,7 @@ EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_bo
   const Body& body = *grips_and_body.body;
   const Eigen::VectorXd areas = NodeBoundaryAreas(body);
   const std::vector<char> gripped = GrippedNodes(grips_and_body);
-  for (const MeasuredForce& force : recording.forces) {
+  for (const MeasuredForce& force : recording.object.forces) {
     const std::string where = recording.file.string() + ": " + force.name;
     std::vector<int> nodes =
         NamingWhere(where, [&] { return SelectNodes(*force.region, body.mesh.nodes); });

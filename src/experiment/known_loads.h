@@ -10,9 +10,9 @@
 
 namespace lacuna {
 
-// The recording's measured forces as loads on the boundary nodes of their regions. Throws
-// InputError when a region holds no boundary node, or only nodes that a grip holds, where the force
-// would move nothing.
+// One load for each measured force of the recording, spread over the boundary nodes of its region.
+// Throws InputError when a region contains no boundary node, or only nodes that a grip holds, where
+// the force would move nothing.
 EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_body);
 
 }  // namespace lacuna

@@ -1,4 +1,5 @@
-// The parts of a YAML file that describe a model: mesh, material, effects, time.
+// Reads the parts of a YAML file that describe a model: mesh, material, effects, time scheme. All
+// functions throw InputError with the position of the key.
 #ifndef LACUNA_EXPERIMENT_MODEL_READER_H_
 #define LACUNA_EXPERIMENT_MODEL_READER_H_
 
@@ -14,41 +15,42 @@
 
 namespace lacuna {
 
-// `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`; q and v of the paper.
+// `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`. The first two are q and v of the
+// paper; the order is that of the elements, 1 or 2.
 struct MeshSettings {
   TetOptions tets;
   int order = 1;
 };
 MeshSettings ReadMeshSettings(const Config& config);
 
-// `material: {law: …}` and `effects: [{type: …}]`, the material first.
+// Reads `material: {law: …}` and `effects: [{type: …}]`. The material comes first.
 EffectList ReadEffects(const Config& config);
 
 // A force law of the user's own (docs/expression.md) that the model may lack.
 struct OwnLaw {
-  std::string name;  // by which it is ranked and added; letters, digits and underscores
+  std::string name;  // under which it is ranked and added: letters, digits and underscores
   std::shared_ptr<const Effect> effect;
 };
-// `candidates: [{type: expression, name: magnet, …}]`, what a diagnosis tries besides the
-// catalogue.
+// Reads `candidates: [{type: expression, name: magnet, …}]`, the laws that a diagnosis tries
+// besides the catalogue.
 std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material);
 
-// Warnings about values far outside the range that the effect's card calls plausible.
+// One warning for each value far outside the plausible range on its effect's card.
 std::vector<std::string> ImplausibleParameters(const EffectList& effects);
 
-// `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
+// Reads `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);
 
-// A number over time: linear between its points, constant before the first and after the last.
+// A number that varies with time, linearly between given points and constant outside of them.
 struct Profile {
   std::vector<double> times;   // s, ascending
   std::vector<double> values;  // dimensionless
   double At(double time) const;
 };
-// `profile: {times: [0 s, 0.5 s], values: [0, 1]}`; absent: 1 at all times.
+// Reads `profile: {times: [0 s, 0.5 s], values: [0, 1]}`; without it the profile is 1 at all times.
 Profile ReadProfile(const Config& config);
 
-// The mesh nodes inside a region, as the model wants them.
+// The indices of the mesh nodes (3 × n, m) inside a region.
 Eigen::VectorXi NodesIn(const Region& region, const Eigen::Matrix3Xd& nodes);
 
 }  // namespace lacuna

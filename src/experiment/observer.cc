@@ -4,7 +4,7 @@
 
 namespace lacuna {
 
-Eigen::MatrixXd LinearRows::operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const {
+Eigen::MatrixXd ObservationMatrix::operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(Count(), nodal.cols());
   for (Eigen::Index k = 0; k < nodal.cols(); ++k)
     for (int row = 0; row < Count(); ++row)
@@ -14,8 +14,8 @@ Eigen::MatrixXd LinearRows::operator*(const Eigen::Ref<const Eigen::MatrixXd>& n
 }
 
 MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
-    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.marker_places)) {
-  LinearRows rows;
+    : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.markers.places)) {
+  ObservationMatrix rows;
   for (Eigen::Index m = 0; m < places_.tet.size(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
       for (Eigen::Index a = 0; a < places_.weight.rows(); ++a) {
@@ -25,7 +25,7 @@ MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
       rows.begin.push_back(static_cast<int>(rows.column.size()));
     }
   }
-  rows_ = std::make_shared<const LinearRows>(std::move(rows));
+  rows_ = std::make_shared<const ObservationMatrix>(std::move(rows));
 }
 
 std::vector<Eigen::Matrix3d> MarkerObserver::DeformationAt(const Eigen::VectorXd& position) const {

@@ -25,14 +25,15 @@ TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::strin
     given.mesh.vertices = reference.world_from_file * given.mesh.vertices;
     return given.mesh;
   }
-  if (request.recording.tracked && request.recording.connectivity.cols() > 0) {
+  if (HasTrackedPoints(request.recording)) {
     const Frame frame = LoadFrame(request.recording, request.first_frame);
-    if (frame.cloud.Size() != frame.row_count) {
+    const bool has_triangles = frame.triangles.cols() > 0;
+    if (has_triangles && frame.cloud.Size() != frame.row_count) {
       throw InputError(fmt::format("{}: frame {}: the reference frame lacks {} of its {} points",
                                    request.recording.file.string(), request.first_frame,
                                    frame.row_count - frame.cloud.Size(), frame.row_count));
     }
-    return {frame.cloud.points, request.recording.connectivity};
+    if (has_triangles) return {frame.cloud.points, frame.triangles};
   }
   return request.first_surface != nullptr ? *request.first_surface : TriMesh{};
 }
@@ -44,8 +45,9 @@ void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile&
     renumbered = renumbered || given.node_in_file[i] != i;
   if (!renumbered) return;
   std::vector<Region> regions = request.regions;
-  regions.insert(regions.end(), request.recording.fixed.begin(), request.recording.fixed.end());
-  for (const RecordedGrip& grip : request.recording.grips) regions.push_back(grip.region);
+  regions.insert(regions.end(), request.recording.object.fixed.begin(),
+                 request.recording.object.fixed.end());
+  for (const RecordedGrip& grip : request.recording.object.grips) regions.push_back(grip.region);
   for (const Region& region : regions) {
     if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
     throw InputError(fmt::format(

@@ -15,26 +15,27 @@
 namespace lacuna {
 
 struct ReferenceBody {
-  TetMesh mesh;  // of the study's order, world frame, m
+  TetMesh mesh;  // of the order that the study asks for, in the world frame, m
   MeshRecord quality;
   std::vector<std::string> notes;
 };
 
-// What the undeformed body is made from.
+// What the undeformed body is made from. The members must outlive the request.
 struct ReferenceRequest {
   const std::string& name;  // of the study, for messages
   const Recording& recording;
   const MeshSettings& mesh;
   int sheet_layers = 1;
   int first_frame = 0;
-  const TriMesh* first_surface = nullptr;  // of that frame; null: there is none
-  // Regions of the study, besides the recording's, that may list nodes of a given mesh.
+  const TriMesh* first_surface = nullptr;  // the surface of that frame; null: there is none
+  // Regions of the study, besides those of the recording, that may list nodes of a given mesh.
   std::vector<Region> regions = {};
 };
 
-// Throws InputError when the shape cannot be meshed, saying why and where.
+// Throws InputError when the shape cannot be meshed, with the reason.
 ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 
+// The files of a run directory: body.msh and notes.txt.
 void SaveReferenceBody(const ReferenceBody& body, const std::filesystem::path& folder);
 ReferenceBody ReadReferenceBody(const std::filesystem::path& folder);
 

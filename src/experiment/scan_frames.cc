@@ -33,7 +33,7 @@ ScannedPoints ReadPoints(const Recording& recording, int number, const ScanSetti
   const Frame frame = LoadFrame(recording, number);
   ScannedPoints scanned;
   scanned.in_files = frame.cloud.Size();
-  if (recording.kind == FrameKind::kMesh && frame.triangles.cols() > 0) {
+  if (frame.triangles.cols() > 0) {
     scanned.cloud = {frame.cloud.points, VertexNormals({frame.cloud.points, frame.triangles})};
   } else {
     const FilterResult filtered =

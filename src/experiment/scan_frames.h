@@ -1,5 +1,6 @@
-// The scanned points of a recording as a prediction is compared with them: cleaned as a
-// reconstruction does, with normals, thinned, nothing smoothed and nothing registered.
+// The scanned points of a recording in the form in which predictions are compared with them:
+// cleaned as for a reconstruction, with normals, and thinned. They are neither smoothed nor
+// registered.
 #ifndef LACUNA_EXPERIMENT_SCAN_FRAMES_H_
 #define LACUNA_EXPERIMENT_SCAN_FRAMES_H_
 
@@ -16,9 +17,9 @@ namespace lacuna {
 
 struct ScannedPoints {
   PointCloud cloud;           // with unit normals
-  bool points_out = true;     // the normals' sign is known; false: only their line
-  double noise = 0;           // m, about the points' own surface (EstimateNoise)
-  Eigen::Index in_files = 0;  // finite points before the filter and the thinning
+  bool points_out = true;     // whether the sign of the normals is known
+  double noise = 0;           // m, σ about the points' own surface (EstimateNoise)
+  Eigen::Index in_files = 0;  // finite points before filtering and thinning
 };
 
 // Reads a frame when it is first asked for and keeps it. Copies of a study share it; several
@@ -27,7 +28,7 @@ class ScanFrames {
  public:
   ScanFrames(Recording recording, const ScanSettings& settings);
 
-  // Throws InputError naming the frame.
+  // Throws InputError, naming the frame.
   const ScannedPoints& At(int frame) const;
   const Recording& recording() const { return recording_; }
 
@@ -38,12 +39,12 @@ class ScanFrames {
   mutable std::map<int, ScannedPoints> frames_;
 };
 
-// How far the surface moves along its normal from one scan to the other: the 95th percentile over
-// the points of `to` of the distance from the plane through their nearest point of `from`, m.
+// The motion of the surface along its normal from one scan to the other, m: the 95th percentile
+// over the points of `to` of their distance from the tangent plane at the nearest point of `from`.
 double LargestMove(const ScannedPoints& from, const ScannedPoints& to);
 
-// The noise of a scanned point along the normal, m: the median over at most ten of the frames,
-// evenly chosen. 0 without frames.
+// The noise of a scanned point along the normal, m: the median over at most ten evenly chosen
+// frames; 0 without frames.
 double EstimateScanNoise(const ScanFrames& scans, const std::vector<int>& frames);
 
 }  // namespace lacuna

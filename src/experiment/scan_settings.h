@@ -1,4 +1,4 @@
-// The parts of a YAML file that say how scans are cleaned and compared with a model.
+// Reads the parts of a YAML file that say how scans are cleaned and compared with a model.
 #ifndef LACUNA_EXPERIMENT_SCAN_SETTINGS_H_
 #define LACUNA_EXPERIMENT_SCAN_SETTINGS_H_
 
@@ -18,22 +18,23 @@ SurfaceOptions ReadSurface(const Config& config);
 // How the scans of a prediction study are compared with its model.
 struct ScanSettings {
   FilterOptions filter;
-  SurfaceOptions surface;  // of a reference shape that is a scan
-  // Into which the model's surface is divided; each makes one measurement a frame. More: finer
-  // detail, each less certain, and a slower fit.
+  SurfaceOptions surface;  // for a reference shape that is itself a scan
+  // The number of patches into which the model's surface is divided; each gives one measurement per
+  // frame. More: finer detail with less certainty each, and a slower fit.
   int patches = 150;
-  // Of each frame that are used, chosen evenly by chance. More: slower, less noise.
+  // The number of points used in each frame, drawn uniformly at random. More: slower, less noise.
   int points = 5000;
-  // Scanned points farther than this from the predicted surface are somebody else's, in parts of
-  // the object's size. Larger: a worse start is forgiven, more foreign points are taken in.
+  // Scanned points farther than this from the predicted surface do not belong to the object, as a
+  // fraction of the object's size. Larger: worse starts are tolerated, more foreign points are
+  // used.
   double reach = 0.1;
-  double noise = 0;  // m, of a scanned point along the normal; 0: estimated from the scans
-  // m, how well the model's undeformed surface is known: a patch's error that stays the same in all
-  // frames is the shape's as far as this allows. Larger: only changes of the shape count.
+  double noise = 0;  // m, σ of a scanned point along the normal; 0: estimated from the scans
+  // m, σ of the model's undeformed surface: up to this size, an error of a patch that is the same
+  // in all frames is attributed to the shape. Larger: only changes of the shape count.
   double shape_deviation = 5e-4;
 };
 
-// `scan: {…}`; absent: the defaults.
+// Reads `scan: {…}`; without it the settings are the defaults.
 ScanSettings ReadScanSettings(const Config& config);
 
 }  // namespace lacuna

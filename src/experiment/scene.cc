@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/interrupt.h"
+#include "effects/gravity.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
 #include "scan/scan_writer.h"
@@ -184,13 +185,11 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder) {
   CHECK(motion.IsUsable() && scene.scanner.has_value());
-  ScannedObject object;
-  object.name = scene.name;
+  RecordedObject object;
   object.density = scene.density;
   for (const SceneGrip& grip : scene.grips)
     if (IsHeld(grip)) object.fixed.push_back(grip.region);
-  for (const auto& effect : scene.effects)
-    if (effect->Card().type == "gravity") object.gravity = effect->Parameters();
+  object.gravity = GravityOf(scene.effects);
   for (const SceneLoad& load : scene.loads) {
     if (!load.measured) continue;
     MeasuredForce force{load.region.name, load.region, {}, {}, {}};
@@ -201,11 +200,10 @@ void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
       force.forces.col(k) = load.profile.At(force.times[k]) * load.force;
     object.forces.push_back(force);
   }
-  std::vector<TriMesh> surfaces;
+  VirtualScan scan{{}, motion.times, PlaceCameras(scene.scanner->ring), scene.scanner->options};
   for (const Eigen::Matrix3Xd& nodes : motion.positions)
-    surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
-  WriteScan(folder, object, surfaces, motion.times, PlaceCameras(scene.scanner->ring),
-            scene.scanner->options, ScanOutput::kPoints);
+    scan.surfaces.push_back(BoundaryAt(motion.body->boundary, nodes));
+  WriteScan(folder, scene.name, object, scan, WritePointFrames);
 }
 
 }  // namespace lacuna

@@ -1,8 +1,8 @@
-// A synthetic scene: a soft bar that is held, loaded, moved or dropped, and the scanner that looks.
+// A synthetic scene: a soft bar that is held, loaded, moved or dropped, and a virtual scanner.
 //
-// It exists to make recordings whose truth is known. So that a reconstruction never explains data
-// with the code path that made them, a scene takes a finer mesh, higher elements and shorter steps,
-// and what leaves it is an ordinary recording; the truth lies in a folder of its own.
+// Scenes make recordings whose truth is known. A reconstruction must not explain data with the code
+// path that made them: a scene uses a finer mesh, elements of higher order and shorter steps, its
+// result is an ordinary recording, and the truth lies in a folder of its own.
 #ifndef LACUNA_EXPERIMENT_SCENE_H_
 #define LACUNA_EXPERIMENT_SCENE_H_
 
@@ -24,9 +24,9 @@ struct BarShape {
   Eigen::Vector3d size = Eigen::Vector3d(0.1, 0.03, 0.03);  // m
   double edge_radius = 0.004;                               // m
   double edge_length = 0.006;  // of the surface triangles, m; smaller: finer and slower
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // it is turned about its centre
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // of its rotation about its centre
   double angle = 0;                                 // rad
-  // Of all its points at the start, m/s; √(2gh) downwards at the end of a fall of h.
+  // The velocity of all points at the start, m/s: √(2gh) downwards after a fall from height h.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
 
@@ -35,10 +35,11 @@ struct SceneLoad {
   Region region;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in total
   Profile profile;
-  bool measured = false;  // the recording tells it, as if there had been a load cell
+  bool measured = false;  // whether the recording contains it, as if measured by a load cell
 };
 
-// Nodes held, or moved as a rigid body: turned about an axis and shifted, both times the profile.
+// Nodes that are held, or moved as a rigid body: a rotation about an axis and a translation, both
+// multiplied by the profile.
 struct SceneGrip {
   Region region;
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m
@@ -59,8 +60,8 @@ struct Scene {
   StepOptions step;
   double frame_rate = 30;   // 1/s
   int frames = 1;           // the first one at time 0
-  int steps_per_frame = 4;  // larger: more exact in time
-  // What the scanner sees; nothing: the simulation only.
+  int steps_per_frame = 4;  // larger: more accurate in time, slower
+  // Absent: the scene is simulated but not recorded.
   struct Scanner {
     CameraRing ring;
     ScannerOptions options;
@@ -68,7 +69,7 @@ struct Scene {
   std::optional<Scanner> scanner;
 };
 
-// Throws InputError. Refuses unknown keys.
+// Throws InputError, also for unknown keys.
 Scene ReadScene(const Config& config);
 
 struct SceneMotion {
@@ -83,10 +84,12 @@ struct SceneMotion {
   bool IsUsable() const { return status == Status::kFinished; }
 };
 
+// A mesh or a step that fails is told by the status. Throws Interrupted.
 SceneMotion SimulateScene(const Scene& scene, Progress* progress);
 
-// Writes what the scanner sees as a recording into `folder`, with the true surfaces in its truth/
-// (scan/scan_writer.h). A region that moves is not told: the recording knows only what is held.
+// Writes what the scanner sees as a recording into `folder`, and the true surfaces into its
+// subfolder truth (scan/scan_writer.h). The recording names the regions that are held but not those
+// that move. Throws InputError when it cannot be written.
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder);
 

@@ -54,7 +54,7 @@ class RowSum {
     sum_[column] += weight;
   }
   // The row, over `count`, in the order of its columns.
-  void Flush(double count, LinearRows* rows) {
+  void Flush(double count, ObservationMatrix* rows) {
     std::sort(touched_.begin(), touched_.end());
     for (const int column : touched_) {
       rows->column.push_back(column);
@@ -117,7 +117,7 @@ Observed SurfaceObserver::Observe(int frame, const Eigen::VectorXd& position) co
   observed.normal = patches_.normal;
   observed.measured =
       Eigen::Matrix3Xd::Constant(3, patches, std::numeric_limits<double>::quiet_NaN());
-  LinearRows rows;
+  ObservationMatrix rows;
   RowSum sum(position.size());
   for (int c = 0; c < patches; ++c) {
     std::vector<int> points;
@@ -146,7 +146,7 @@ Observed SurfaceObserver::Observe(int frame, const Eigen::VectorXd& position) co
     observed.measured.col(c) = place / count;
     observed.normal.col(c) = normal.normalized();
   }
-  observed.rows = std::make_shared<const LinearRows>(std::move(rows));
+  observed.rows = std::make_shared<const ObservationMatrix>(std::move(rows));
   return observed;
 }
 

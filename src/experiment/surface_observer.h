@@ -1,4 +1,4 @@
-// Scans: the distance of the scanned points from the model's surface, patch by patch.
+// Compares scans with a model by the distance of scanned points from its surface, patch by patch.
 #ifndef LACUNA_EXPERIMENT_SURFACE_OBSERVER_H_
 #define LACUNA_EXPERIMENT_SURFACE_OBSERVER_H_
 
@@ -12,17 +12,17 @@
 
 namespace lacuna {
 
-// Each scanned point p_j goes with the nearest place x_j = Σ_a N_a(ξ_j) x_a of the model's surface,
-// which is curved where the mesh is quadratic, and with the patch that place belongs to. The row of
+// Each scanned point p_j corresponds to the nearest place x_j = Σ_a N_a(ξ_j) x_a of the model's
+// surface, which is curved where the mesh is quadratic, and to the patch of that place. The row of
 // a patch is the mean over its points of
 //   n_j · (x_j − p_j),  n_j the surface's outward normal at x_j,
 // linear in the nodes' positions while ξ_j and n_j are kept (point-to-plane: Chen & Medioni, Image
-// and Vision Computing 10, 1992). Motion of the surface within itself does not show, so that
-// correspondences, which scans do not have, are not made up.
+// and Vision Computing 10, 1992). Motion of the surface within itself leaves the row unchanged, as
+// scans contain no information about it.
 //
-// Left out are points farther away than the reach, points whose own normal turns more than 60° from
-// the surface's, and points that disagree with the median of their patch by four times its spread
-// (and the noise). A patch with fewer than three points left is not seen.
+// Points are left out that are farther away than the reach, whose own normal is more than 60° from
+// that of the surface, or that differ from the median of their patch by more than four times its
+// spread (and the noise). A patch with fewer than three remaining points is not seen.
 class SurfaceObserver : public Observer {
  public:
   SurfaceObserver(std::shared_ptr<const ScanFrames> scans, std::shared_ptr<const Body> body,
@@ -38,7 +38,7 @@ class SurfaceObserver : public Observer {
   std::shared_ptr<const Body> body_;
   SurfacePatches patches_;
   double reach_ = 0;
-  double depth_ = 0;  // m, of the scanned surface below the model's: half a sheet's thickness
+  double depth_ = 0;  // m, of the scanned surface below the model's: half the thickness of a sheet
 };
 
 }  // namespace lacuna

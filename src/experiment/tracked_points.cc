@@ -46,7 +46,7 @@ void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
                     recording->file.string(), frames.front()));
   const std::vector<int> spread = EvenlySpread(places, seen, kMostPoints);
   std::set<int> chosen(spread.begin(), spread.end());
-  for (RecordedGrip& grip : recording->grips) {
+  for (RecordedGrip& grip : recording->object.grips) {
     if (grip.motion != GripMotion::kFollowsScan) continue;
     if (std::holds_alternative<NodeRegion>(grip.region.shape))
       throw InputError(
@@ -66,7 +66,7 @@ void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
     }
   }
   const std::vector<int> rows(chosen.begin(), chosen.end());
-  recording->marker_places = places(Eigen::all, rows);
+  recording->markers.places = places(Eigen::all, rows);
   for (const int row : rows) recording->markers.names.push_back(fmt::format("p{}", row));
   recording->markers.positions.assign(
       recording->times.size(),
@@ -75,7 +75,7 @@ void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
   for (const int frame : frames)
     recording->markers.positions[frame] =
         frame == frames.front()
-            ? recording->marker_places
+            ? recording->markers.places
             : Eigen::Matrix3Xd(PointsByRow(LoadFrame(*recording, frame))(Eigen::all, rows));
 }
 

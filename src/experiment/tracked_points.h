@@ -1,5 +1,5 @@
-// Points that are tracked, row by row, through the frames of a recording (image correlation), seen
-// as markers: of each it is known which point of the object it is, along the surface too.
+// Converts tracked points, as image correlation gives them, into markers. A tracked point is the
+// same material point in all frames, so that its motion along the surface is known too.
 #ifndef LACUNA_EXPERIMENT_TRACKED_POINTS_H_
 #define LACUNA_EXPERIMENT_TRACKED_POINTS_H_
 
@@ -9,11 +9,11 @@
 
 namespace lacuna {
 
-// Fills the recording's markers ("p0", "p1", … by row) and their places, which are where the first
-// of `frames` shows them: there the object must be undeformed. Points that it does not show are
-// left out; of more than some hundreds, as many are used, evenly spread. What is gripped and
-// follows the scan follows the points that lie in its region. Throws InputError (file named) where
-// a region shows none, and what LoadFrame does.
+// Fills in the recording's markers ("p0", "p1", … by row) and their places, which are their
+// positions in the first of `frames`, where the object must be undeformed. Points that this frame
+// does not show are left out; of more than some hundred points an evenly spread subset is used. A
+// grip that follows the scan then follows the points in its region. Throws InputError, naming the
+// file, where a region shows no point, and whatever LoadFrame throws.
 void SeeAsMarkers(const std::vector<int>& frames, Recording* recording);
 
 }  // namespace lacuna

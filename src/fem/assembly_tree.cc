@@ -8,18 +8,19 @@
 namespace lacuna {
 namespace {
 
-// Subtrees dearer than this part of the whole are cut further, so that threads share evenly.
+// Subtrees with more than this fraction of the total cost are divided, to balance the threads.
 constexpr double kLargestSubtree = 1.0 / 12;
 
-// A child is merged into its parent when the explicit zeros that this stores stay below a part of
-// the merged columns that shrinks with their number: dense kernels are poor at few columns.
+// A child is merged into its parent if the fraction of explicit zeros that the merged supernode
+// stores stays below a limit. The limit decreases with the number of columns, because dense kernels
+// are inefficient for few columns.
 struct MergeRule {
   int columns;  // nodes, at most
   double zeros;
 };
 constexpr MergeRule kMergeRules[] = {{4, 1.0}, {12, 0.5}, {24, 0.2}, {64, 0.1}, {1 << 30, 0.04}};
 
-// Neighbours of the k-th eliminated node, as places in the order.
+// Adjacency lists of the free nodes, all as places in the elimination order.
 struct Graph {
   std::vector<int> begin, neighbour;
 };
@@ -37,7 +38,7 @@ Graph FreeGraph(const BlockPattern& pattern, const EliminationOrder& order) {
   return graph;
 }
 
-// parent[j]: the first row below the diagonal of column j of the factor (Liu 1986).
+// parent[j] is the first row below the diagonal of column j of the factor (Liu 1986).
 std::vector<int> EliminationTree(const Graph& graph) {
   const int n = static_cast<int>(graph.begin.size()) - 1;
   std::vector<int> parent(n, -1), ancestor(n, -1);
@@ -92,8 +93,8 @@ EliminationOrder Permuted(const EliminationOrder& order, const std::vector<int>&
   return permuted;
 }
 
-// Rows below the diagonal in each column of the factor: row i has an entry in the columns on the
-// paths of the elimination tree from its neighbours up to i.
+// The number of rows below the diagonal in each column of the factor. Row i has an entry in the
+// columns on the paths of the elimination tree from its neighbours up to i.
 std::vector<int> ColumnCounts(const Graph& graph, const std::vector<int>& parent) {
   const int n = static_cast<int>(parent.size());
   std::vector<int> count(n, 0), visited_for(n, -1);
@@ -134,7 +135,7 @@ bool WorthMerging(double columns, double stored, double nonzero) {
   return false;
 }
 
-// Fundamental supernodes, then merged bottom-up (Ashcraft & Grimes 1989).
+// Finds the fundamental supernodes and merges them bottom-up (Ashcraft & Grimes 1989).
 Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>& count) {
   const int n = static_cast<int>(parent.size());
   Partition partition;
@@ -189,7 +190,7 @@ Partition FindSupernodes(const std::vector<int>& parent, const std::vector<int>&
   return partition;
 }
 
-// Update rows of each supernode: the later neighbours of its columns and of its children's rows.
+// The update rows of a supernode: later neighbours of its columns, and update rows of its children.
 void FindRows(const Graph& graph, AssemblyTree* tree) {
   const int supernodes = tree->SupernodeCount();
   std::vector<int> seen_by(tree->order.FreeNodes(), -1);
@@ -242,7 +243,7 @@ AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrde
   const std::vector<int> column_parent = EliminationTree(graph);
   const Partition partition = FindSupernodes(column_parent, ColumnCounts(graph, column_parent));
 
-  // Merging has scattered the columns of a supernode: bring them together again.
+  // After merging, the columns of a supernode are no longer consecutive; reorder them.
   const std::vector<int> supernode_order = Postorder(partition.parent);
   const int supernodes = static_cast<int>(supernode_order.size());
   std::vector<int> number(supernodes);
@@ -273,7 +274,7 @@ TreeCut CutTree(const AssemblyTree& tree, const std::vector<double>& cost) {
   const int supernodes = tree.SupernodeCount();
   CHECK_EQ(cost.size(), static_cast<size_t>(supernodes));
   std::vector<double> below = cost;
-  std::vector<int> first(supernodes);  // of the subtree
+  std::vector<int> first(supernodes);  // first supernode of the subtree below s
   double total = 0;
   for (int s = 0; s < supernodes; ++s) {
     first[s] = tree.children[s].empty() ? s : first[tree.children[s].front()];

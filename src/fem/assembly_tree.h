@@ -1,10 +1,11 @@
-// Which columns of a sparse Cholesky factor are eliminated together, and what they pass on.
+// The supernodal elimination tree of a sparse Cholesky factorisation by the multifrontal method.
 //
-// The multifrontal method (Duff & Reid 1983; Liu, SIAM Review 34, 1992) gathers columns of like
-// structure into supernodes. Supernode s owns `Columns(s)` consecutive nodes; its front is a dense
-// matrix over these and the later nodes that they touch, the update rows. What it eliminates is
-// passed on to the front of its parent. The tree of supernodes, and all places in memory, depend on
-// the mesh alone.
+// The method (Duff & Reid 1983; Liu, SIAM Review 34, 1992) groups columns of similar structure into
+// supernodes. Supernode s eliminates Columns(s) consecutive nodes. Its front is a dense matrix over
+// these nodes and the later nodes coupled to them, the update rows; after the elimination, the
+// Schur complement of the update rows is added to the front of the parent. The tree depends on the
+// pattern of the matrix and the elimination order only. All counts and places are in nodes, i.e. in
+// blocks of three rows.
 #ifndef LACUNA_FEM_ASSEMBLY_TREE_H_
 #define LACUNA_FEM_ASSEMBLY_TREE_H_
 
@@ -16,23 +17,23 @@
 
 namespace lacuna {
 
-// Consecutive update rows of a child that are consecutive in the front of its parent, in nodes.
+// A run of update rows of a child that is also consecutive in the front of its parent.
 struct RowRun {
-  int from = 0;  // place among the child's update rows
-  int to = 0;    // place in the parent's front
-  int length = 0;
+  int from = 0;    // first place among the update rows of the child
+  int to = 0;      // first place in the front of the parent
+  int length = 0;  // number of rows
 };
 
 struct AssemblyTree {
-  EliminationOrder order;  // the given one, postordered: all of a subtree's nodes are consecutive
+  EliminationOrder order;  // postordered, so that the nodes of each subtree are consecutive
 
-  // Supernodes are numbered so that children come before parents.
-  std::vector<int> column_begin;  // supernodes + 1: first column (a place in `order`)
-  std::vector<int> row_begin;     // supernodes + 1: into `row`
-  std::vector<int> row;           // update rows (places in `order`), ascending
-  std::vector<int> parent;        // −1: a root
+  // Supernodes are numbered with children before parents.
+  std::vector<int> column_begin;  // supernodes + 1: first column, a place in `order`
+  std::vector<int> row_begin;     // supernodes + 1: first entry in `row`
+  std::vector<int> row;           // update rows, places in `order`, ascending
+  std::vector<int> parent;        // −1 for a root
   std::vector<std::vector<int>> children;
-  std::vector<std::vector<RowRun>> runs;  // from each supernode into its parent's front
+  std::vector<std::vector<RowRun>> runs;  // from each supernode into the front of its parent
 
   int SupernodeCount() const { return static_cast<int>(parent.size()); }
   int Columns(int s) const { return column_begin[s + 1] - column_begin[s]; }
@@ -40,20 +41,21 @@ struct AssemblyTree {
   int FrontRows(int s) const { return Columns(s) + UpdateRows(s); }
 };
 
+// Builds the tree for the free nodes of a pattern. `order` must contain each free node once.
 AssemblyTree MakeAssemblyTree(const BlockPattern& pattern, const EliminationOrder& order);
 
-// A cut through the tree for two and more threads: subtrees that can be eliminated at the same
-// time, each by one thread, and the supernodes above them, one after another. It depends on the
-// tree alone, so that the number of threads has no influence on any sum.
+// A cut through the tree for parallel elimination: independent subtrees, each eliminated by one
+// thread, and the supernodes above them, eliminated one after another. The cut does not depend on
+// the number of threads, so neither does the order of any summation.
 struct TreeCut {
   struct Subtree {
-    int begin = 0, end = 0;  // consecutive supernodes; the last one is the subtree's root
+    int begin = 0, end = 0;  // consecutive supernodes, of which the last one is the root
   };
-  std::vector<Subtree> subtrees;  // the dearest first
+  std::vector<Subtree> subtrees;  // in descending order of cost
   std::vector<int> top;           // children before parents
 };
 
-// `cost[s]`: work at supernode s.
+// Cuts the tree; `cost[s]` is the work at supernode s in any unit.
 TreeCut CutTree(const AssemblyTree& tree, const std::vector<double>& cost);
 
 }  // namespace lacuna

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRowsPerBlock = 1024;
 
-// elements_of[begin[i]…begin[i+1]): the elements that node i belongs to, ascending.
+// elements[begin[i] … begin[i + 1]) are the elements of node i, ascending.
 struct NodeElements {
   std::vector<int> begin, elements;
 };
@@ -73,7 +73,7 @@ void BlockMatrix::SetZero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
 Eigen::MatrixXd BlockMatrix::operator*(const Eigen::MatrixXd& x) const {
   CHECK_EQ(x.rows(), 3 * pattern_->nodes);
-  // Row by row, so that one block meets all columns at once.
+  // Row-major storage, so that each block is applied to all columns at once.
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Rows of_nodes = x;
   Rows product(x.rows(), x.cols());

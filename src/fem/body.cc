@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "fem/element_kinematics.h"
 #include "geometry/shape_functions.h"
 
 namespace lacuna {
@@ -44,7 +43,7 @@ void Integrate(Body* body) {
   body->weight.resize(body->PointCount());
   body->shape_gradient.resize(nodes, 3 * body->PointCount());
 
-  // ∂N/∂ξ along the edges that leave corner 0 (the four coordinates sum to 1).
+  // Barycentric coordinates sum to 1, so derivatives are taken along the three edges from corner 0.
   const Eigen::Matrix<double, 4, 3> along_edges{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   std::vector<Eigen::MatrixX3d> reference(points);
   std::vector<Eigen::VectorXd> shape(points);
@@ -74,9 +73,10 @@ void Integrate(Body* body) {
   }
 }
 
-// Hinton, Rock & Zienkiewicz 1976: the diagonal of the consistent mass, scaled to the element's
-// mass. For a straight-sided quadratic tetrahedron it is 1/36 at corners and 4/27 at midpoints
-// (row sums would be negative at the corners); for the linear one a quarter each.
+// The lumping of Hinton, Rock & Zienkiewicz 1976: the diagonal of the consistent mass matrix,
+// scaled to the mass of the element. For a straight-sided quadratic tetrahedron the shares are 1/36
+// at the corners and 4/27 at the midpoints (row sums would be negative at the corners), for the
+// linear one a quarter per corner.
 Eigen::VectorXd LumpedMass(const Body& body) {
   const TetMesh& mesh = body.mesh;
   const double corner_share = mesh.Order() == 1 ? 1.0 / 4 : 1.0 / 36;
@@ -91,18 +91,6 @@ Eigen::VectorXd LumpedMass(const Body& body) {
     }
   }
   return mass;
-}
-
-template <int kNodes>
-int FirstInverted(const Body& body, const Eigen::VectorXd& position) {
-  for (int e = 0; e < body.ElementCount(); ++e) {
-    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, e, position);
-    for (int q = e * body.points_per_element; q < (e + 1) * body.points_per_element; ++q) {
-      const Eigen::Matrix3d F = FieldGradient<kNodes>(x, ShapeGradient<kNodes>(body, q));
-      if (!(F.determinant() > 0)) return body.given_element[e];
-    }
-  }
-  return -1;
 }
 
 }  // namespace
@@ -132,11 +120,6 @@ Eigen::VectorXd NodeBoundaryAreas(const Body& body) {
   Eigen::VectorXd node_areas = Eigen::VectorXd::Zero(body.NodeCount());
   node_areas(body.boundary.node) = areas;
   return node_areas;
-}
-
-int FindInvertedElement(const Body& body, const Eigen::VectorXd& position) {
-  return WithNodesPerElement(
-      body, [&](auto nodes) { return FirstInverted<decltype(nodes)::value>(body, position); });
 }
 
 }  // namespace lacuna

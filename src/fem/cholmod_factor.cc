@@ -12,8 +12,8 @@
 namespace lacuna {
 namespace {
 
-// Where the entries of the lower triangle, in elimination order and compressed columns, are taken
-// from in the values of a block matrix.
+// The lower triangle in elimination order, in compressed columns. `source` is the place of each
+// entry among the values of the block matrix.
 struct LowerTriangle {
   std::vector<int> begin, row, source;
 };
@@ -34,7 +34,7 @@ LowerTriangle LowerTriangleOf(const BlockPattern& pattern, const EliminationOrde
       for (const auto& [i, k] : blocks) {
         for (int r = i == j ? c : 0; r < 3; ++r) {
           lower.row.push_back(3 * i + r);
-          // Row `node` of the matrix holds the transpose of the column's block.
+          // The block of column j is the transpose of a block in row `node`.
           lower.source.push_back(9 * k + 3 * r + c);
         }
       }
@@ -107,7 +107,7 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
   const SerialOpenMp serial;
   cholmod_factorize(&self.matrix, self.factor, &self.common);
   CHECK_GE(self.common.status, CHOLMOD_OK) << "CHOLMOD could not factorise (out of memory?)";
-  // A matrix with a NaN gets through without complaint, but has no condition number.
+  // CHOLMOD factorises a matrix with NaN without an error; the condition number reveals it.
   return self.common.status == CHOLMOD_OK && self.factor->minor == self.factor->n &&
          (self.matrix.nrow == 0 || cholmod_rcond(self.factor, &self.common) > 0);
 }
@@ -116,7 +116,7 @@ void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::Mat
   Implementation& self = *implementation_;
   CHECK_EQ(static_cast<size_t>(B.rows()), self.matrix.nrow);
   X->resize(B.rows(), B.cols());
-  if (B.size() == 0) return;  // CHOLMOD refuses it
+  if (B.size() == 0) return;  // CHOLMOD rejects an empty matrix
   cholmod_dense right = {};
   right.nrow = self.matrix.nrow;
   right.d = B.outerStride();

@@ -1,5 +1,9 @@
-// CHOLMOD's supernodal Cholesky factor A = L Lᵀ of the free part of a block matrix, in double
-// precision.
+// A sparse Cholesky factorisation A = L Lᵀ in double precision, by the supernodal method of
+// CHOLMOD.
+//
+// A is the part of a block matrix that belongs to the free nodes, in a given elimination order.
+// Only one triangle of A is read, so A is taken to be symmetric. Not thread-safe: one object per
+// thread.
 #ifndef LACUNA_FEM_CHOLMOD_FACTOR_H_
 #define LACUNA_FEM_CHOLMOD_FACTOR_H_
 
@@ -13,20 +17,22 @@ namespace lacuna {
 
 class CholmodFactor {
  public:
-  // Symbolic analysis for all matrices of one pattern. Both arguments are read here only.
+  // Performs the symbolic analysis for all matrices of a pattern. No reference is kept.
   CholmodFactor(const BlockPattern& pattern, const EliminationOrder& order);
   ~CholmodFactor();
   CholmodFactor(CholmodFactor&&) noexcept;
   CholmodFactor& operator=(CholmodFactor&&) noexcept;
 
-  // False when the matrix is not positive definite on the free nodes; there is no factor then.
+  // Computes the numeric factor. Returns false, and leaves no usable factor, if the matrix is not
+  // positive definite on the free nodes or contains NaN.
   bool Factorise(const BlockMatrix& matrix);
 
-  // Solves L Lᵀ X = B for any number of columns; rows are 3·(free nodes), in the elimination order.
+  // Solves L Lᵀ X = B for any number of columns. B and X have 3·(free nodes) rows in elimination
+  // order. Needs a usable factor.
   void Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X);
 
-  double flops() const;    // of one numeric factorisation
-  double entries() const;  // stored in L
+  double flops() const;    // floating-point operations of a numeric factorisation
+  double entries() const;  // entries stored in L
 
  private:
   struct Implementation;

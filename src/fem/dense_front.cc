@@ -15,14 +15,14 @@ namespace {
 
 // Rounding errors of a pivot are at most some thousand times 6e-8.
 constexpr float kCertainlyNegative = -1e-3f;
-constexpr int kEliminationBlock = 192;   // columns eliminated before the rest is updated
-constexpr int kTile = 256;               // columns of an update that one thread does at a time
-constexpr int kSubstitutionBlock = 128;  // the same in a substitution by several threads
-constexpr int kRowsPerTask = 1024;       // of a forward substitution
-// Columns that one pass over a vector deals with; all blocks above are multiples of it.
+constexpr int kEliminationBlock = 192;   // columns that are eliminated between two updates
+constexpr int kTile = 256;               // columns of an update per task
+constexpr int kSubstitutionBlock = 128;  // columns per block of a parallel substitution
+constexpr int kRowsPerTask = 1024;       // rows of a forward substitution per task
+// Columns that are processed in one pass over a vector; all blocks above are multiples of it.
 constexpr int kGroup = 8;
 
-// update ← update − rows · rowsᵀ (lower triangle), rows: n × k.
+// update ← update − rows · rowsᵀ in the lower triangle, where `rows` is n × k.
 void SubtractOuterProduct(int n, int k, const float* rows, int rows_stride, float* update,
                           int update_stride) {
   ParallelBlocks(n, kTile, [&](int64_t begin, int64_t end) {
@@ -36,8 +36,8 @@ void SubtractOuterProduct(int n, int k, const float* rows, int rows_stride, floa
   });
 }
 
-// y ← y − Σ_c columns(:, c) · factor[c] over a group of up to kGroup columns. Where there are
-// fewer, the last one stands in for the missing ones, with a factor of 0.
+// y ← y − Σ_c columns(:, c) · factor[c] over a group of up to kGroup columns. In a smaller group,
+// the last column takes the place of the missing ones with a factor of 0.
 LACUNA_FOR_EACH_INSTRUCTION_SET
 void SubtractColumns(int rows, int width, const float* columns, int stride, const float* factor,
                      float* y) {
@@ -53,7 +53,7 @@ void SubtractColumns(int rows, int width, const float* columns, int stride, cons
   }
 }
 
-// sum[c] = columns(:, c) · y over a group of columns; the last one again stands in.
+// sum[c] = columns(:, c) · y for a group of columns, filled up in the same way.
 LACUNA_FOR_EACH_INSTRUCTION_SET
 void DotColumns(int rows, int width, const float* columns, int stride, const float* y, float* sum) {
   const float* c[kGroup];
@@ -84,7 +84,7 @@ void InvertGroup(int width, float* group, int stride) {
     at(j, j) = 1 / at(j, j);
     for (int i = 0; i < j; ++i) at(i, j) = 0;
     for (int i = j + 1; i < width; ++i) {
-      // Column j of the inverse above row i is known, row i of the triangle is still there.
+      // The inverse is complete above row i of column j; row i still holds the triangle.
       float sum = 0;
       for (int k = j; k < i; ++k) sum += at(i, k) * at(k, j);
       at(i, j) = -sum / at(i, i);
@@ -92,7 +92,7 @@ void InvertGroup(int width, float* group, int stride) {
   }
 }
 
-// y ← G y and y ← Gᵀ y, G the inverse that a group holds.
+// y ← G y and y ← Gᵀ y, where G is the inverse stored in a group.
 void MultiplyByGroup(int width, const float* group, int stride, float* y) {
   float product[kGroup] = {};
   for (int j = 0; j < width; ++j) {
@@ -111,7 +111,7 @@ void MultiplyByTransposedGroup(int width, const float* group, int stride, float*
   }
 }
 
-// Substitutes columns [begin, end) and updates y up to row `end`.
+// Substitutes the columns [begin, end) and updates y up to row `end`.
 void ForwardWithinBlock(int m, int begin, int end, const float* panel, float* y) {
   for (int j = begin; j < end; j += kGroup) {
     const int width = std::min(kGroup, end - j), below = j + width;
@@ -132,7 +132,7 @@ void BackwardWithinBlock(int m, int begin, int end, const float* panel, float* y
   }
 }
 
-// Columns substituted before the rest is updated: all of a front that is not for several threads.
+// Columns that are substituted between two updates; all columns of a front for a single thread.
 int ColumnsPerBlock(int m, int p) { return m > kRowsPerTask ? kSubstitutionBlock : p; }
 
 }  // namespace
@@ -143,7 +143,7 @@ Pivots EliminateColumns(int m, int p, float* panel, float* update) {
     float* diagonal = panel + begin + static_cast<int64_t>(begin) * m;
     int info = 0;
     spotrf_("L", &width, diagonal, &m, &info);
-    // LAPACK stops with the pivot that failed in its place.
+    // LAPACK leaves the pivot at which it stopped in its place.
     for (int j = 0; j < (info > 0 ? info : width); ++j) {
       const float pivot = diagonal[j + static_cast<int64_t>(j) * m];
       if (pivot < kCertainlyNegative) return Pivots::kNegative;
@@ -156,7 +156,7 @@ Pivots EliminateColumns(int m, int p, float* panel, float* update) {
                   static_cast<int>(last - first), width, 1, diagonal, m, diagonal + width + first,
                   m);
     });
-    // The columns of the panel that are still to be eliminated, with all their rows.
+    // Update the remaining columns of the panel over all of their rows.
     ParallelBlocks(p - end, kTile, [&](int64_t first, int64_t last) {
       const float* rows = diagonal + width + first;
       cblas_sgemm(CblasColMajor, CblasNoTrans, CblasTrans, m - end - static_cast<int>(first),

@@ -1,29 +1,30 @@
-// Dense kernels on one front of a multifrontal Cholesky factorisation, in single precision.
+// Dense kernels for one front of a multifrontal Cholesky factorisation, in single precision.
 //
-// A front of m rows and p columns to be eliminated is a column-major m × p panel and the lower
-// triangle of an (m−p) × (m−p) update matrix. Large fronts are cut into tiles for several threads;
-// the tiles depend on the front's size alone, so results do not depend on the number of threads.
+// A front with m rows, of which the first p are eliminated, consists of a column-major m × p panel
+// and the lower triangle of an (m − p) × (m − p) update matrix. Large fronts are processed in tiles
+// by several threads. The tiles depend on the size of the front only, and so do the results.
 #ifndef LACUNA_FEM_DENSE_FRONT_H_
 #define LACUNA_FEM_DENSE_FRONT_H_
 
 namespace lacuna {
 
-// What the pivots of a factorisation say about its matrix, whose entries are at most of order one.
+// The verdict of the pivots on a matrix whose entries are at most of order one.
 enum class Pivots {
   kPositive,
-  kInDoubt,   // one was not positive, but rounding may have made it so (or it is not a number)
-  kNegative,  // one was more negative than rounding can explain: the matrix is not definite
+  kInDoubt,   // a pivot is not positive, possibly because of rounding, or it is not finite
+  kNegative,  // a pivot is more negative than rounding can explain: the matrix is not definite
 };
 
-// panel ← [L₁₁; L₂₁] with L₁₁ L₁₁ᵀ = its upper part, update ← update − L₂₁ L₂₁ᵀ. Blocks of a few
-// columns on the diagonal of L₁₁ are stored inverted. Stops at the first pivot that is not
-// positive.
+// Eliminates p columns: panel ← [L₁₁; L₂₁], where L₁₁ L₁₁ᵀ is the upper p × p part of the panel,
+// and update ← update − L₂₁ L₂₁ᵀ. Diagonal blocks of a few columns of L₁₁ are stored as their
+// inverses. Stops at the first pivot that is not positive and leaves panel and update in an
+// undefined state.
 Pivots EliminateColumns(int m, int p, float* panel, float* update);
 
-// y ← [z; y₂ − L₂₁ z] with z = L₁₁⁻¹ y₁; y of length m.
+// Forward substitution on a vector y = [y₁; y₂] of length m: y ← [z; y₂ − L₂₁ z] with z = L₁₁⁻¹ y₁.
 void ForwardSubstitute(int m, int p, const float* panel, float* y);
 
-// y₁ ← L₁₁⁻ᵀ (y₁ − L₂₁ᵀ y₂).
+// Backward substitution: y₁ ← L₁₁⁻ᵀ (y₁ − L₂₁ᵀ y₂).
 void BackwardSubstitute(int m, int p, const float* panel, float* y);
 
 }  // namespace lacuna

@@ -1,7 +1,52 @@
-// A physical effect: a law that puts forces on a body. Everything the model can do, and everything
-// it may lack, is one of these; the time integrator, the fit and the diagnosis see nothing else.
+// The interface of a physical effect, a law that exerts forces on a body.
 //
-// A new effect is one file in src/effects, one line in the catalogue, one test, one YAML entry.
+// An effect gives nodal forces f(x, v, a, t; p, z) of the positions x, velocities v, accelerations
+// a, the time t, its parameters p and its internal variables z. The motion of a body with lumped
+// masses M obeys M a = Σ f + external forces (step_equation.h). The time integrator, the fits and
+// the diagnosis know effects through this interface only. A new effect consists of one file in
+// src/effects, one line in the catalogue, one test and one entry in a YAML file.
+//
+// Shapes and units. Nodal vectors have 3·nodes entries, node-major (x₀ y₀ z₀ x₁ …); tangents are
+// block matrices on the pattern of the body. All quantities are in SI units.
+//
+// Output. The functions named Add… add to what the output holds and must not overwrite it, because
+// the caller sums over effects. The caller provides outputs of the right size.
+//
+// Ownership. A Kinematics and everything it refers to are valid during the call only. An effect
+// owns its parameters and does not change; WithParameters makes another one. Internal variables
+// belong to the caller, so that one effect can serve several simulations at the same time.
+//
+// Threads. A simulation calls its effects one after another from a single thread. Effects are
+// shared by simulations on different threads, so const functions may run concurrently and must not
+// change the effect, not even mutable members. Inside a call an effect may use ForEachElement
+// (element_schedule.h), whose results do not depend on the number of threads; sums in an arbitrary
+// order are not allowed, because results must be reproducible bit by bit.
+//
+// Failures. An effect does not throw at a configuration that it cannot evaluate; it adds NaN or
+// infinity. Newton's method then shortens its step, and the time step fails with a message if that
+// does not help. NaN is never a valid force. On the card, a NaN default marks a parameter that the
+// user must give, and a NaN null value an effect that cannot be switched off by this parameter.
+// Outputs of the wrong size and parameter numbers out of range are programming errors (CHECK).
+//
+// Example: a uniform lift f_i = a m_i e_z with the acceleration a (m/s²) as its only parameter
+// (tests/fem/effect_test.cc).
+//   class Lift final : public CloneableEffect<Lift> {
+//    public:
+//     const EffectCard& Card() const override { return LiftCard(); }
+//     Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, a_); }
+//     void SetParameters(const Eigen::VectorXd& values) { a_ = values[0]; }  // of a new copy
+//     void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+//       force->reshaped(3, at.body.NodeCount()).row(2) += a_ * at.body.node_mass.transpose();
+//     }
+//     void AddTangents(const Kinematics&, const TangentWeights&, bool,
+//                      BlockMatrix*) const override {}
+//     void AddParameterDerivative(const Kinematics& at, int,
+//                                 Eigen::VectorXd* f) const override {
+//       f->reshaped(3, at.body.NodeCount()).row(2) += at.body.node_mass.transpose();
+//     }
+//    private:
+//     double a_ = 0;
+//   };
 #ifndef LACUNA_FEM_EFFECT_H_
 #define LACUNA_FEM_EFFECT_H_
 
@@ -15,64 +60,67 @@
 
 namespace lacuna {
 
-// What an effect may look at. Vectors have length 3·nodes, node-major, SI.
+// The state of the body at which an effect is evaluated: the end of a time step.
 struct Kinematics {
   const Body& body;
   const Eigen::VectorXd& position;      // m
   const Eigen::VectorXd& velocity;      // m/s
-  const Eigen::VectorXd& acceleration;  // m/s², for effects that add inertia; 0 in statics
+  const Eigen::VectorXd& acceleration;  // m/s²; 0 in statics
   double time = 0;                      // s
-  double time_step = 0;                 // s; 0: statics
-  // Internal variables of this effect at the start of the step (StateSize() long), e.g. viscous
-  // strains; empty for an effect without memory.
+  double time_step = 0;                 // s; 0 in statics
+  // Internal variables of this effect at the start of the step, StateSize() entries, e.g. viscous
+  // strains. Empty for an effect without memory.
   const Eigen::VectorXd& state;
 };
 
-// How much of each of an effect's derivatives is asked for.
+// Factors of the derivatives of the force in a tangent. Their units make all three terms N/m.
 struct TangentWeights {
-  double position = 0;      // of ∂f/∂x, N/m
-  double velocity = 0;      // of ∂f/∂v, N s/m
-  double acceleration = 0;  // of ∂f/∂a, kg
+  double position = 0;      // factor of ∂f/∂x (N/m), dimensionless
+  double velocity = 0;      // factor of ∂f/∂v (N s/m), 1/s
+  double acceleration = 0;  // factor of ∂f/∂a (kg), 1/s²
 };
 
 class Effect {
  public:
   virtual ~Effect() = default;
 
+  // Name, equation, parameters and look-alikes of the effect. Lives as long as the program.
   virtual const EffectCard& Card() const = 0;
 
-  // Values in the order of the card's parameters, SI.
+  // The values of the parameters in the order of the card, SI.
   virtual Eigen::VectorXd Parameters() const = 0;
-  // A copy of the effect with other values. Effects do not change: models that are fitted, refitted
-  // and predicted side by side share them. What an effect has derived from the rest shape of its
-  // body is shared by its copies as long as it does not depend on what changes
-  // (cloneable_effect.h).
+  // A copy of the effect with other values (cloneable_effect.h). What an effect has derived from
+  // the rest shape of its body is shared by its copies where it does not depend on what changes.
   virtual std::shared_ptr<const Effect> WithParameters(const Eigen::VectorXd& values) const = 0;
 
-  // Adds the effect's nodal forces, N.
+  // Adds the nodal forces f, N.
   virtual void AddForce(const Kinematics& at, Eigen::VectorXd* force) const = 0;
 
-  // Adds the weighted sum of ∂f/∂x, ∂f/∂v and ∂f/∂a; of a matrix that is not symmetric, the
-  // symmetric part. For an effect whose exact tangent is indefinite, `convexify` asks for a
-  // symmetric negative semi-definite stand-in (for weights ≥ 0).
+  // Adds the weighted sum of ∂f/∂x, ∂f/∂v and ∂f/∂a, N/m, or its symmetric part if it is not
+  // symmetric. With `convexify`, an indefinite tangent is replaced by a symmetric approximation
+  // that is negative semi-definite for weights ≥ 0, as Newton's method needs far from the solution.
   virtual void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                            BlockMatrix* tangent) const = 0;
 
-  // Adds the skew-symmetric part that AddTangents leaves out. Returns whether there may be any.
+  // Adds the skew-symmetric part that AddTangents omits. Returns false if the tangent of this
+  // effect is always symmetric.
   virtual bool AddSkewTangents(const Kinematics& /*at*/, const TangentWeights& /*weights*/,
                                BlockMatrix* /*tangent*/) const {
     return false;
   }
 
-  // Adds ∂f/∂(parameter), N per unit of the parameter; never asked for a setting.
+  // Adds ∂f/∂p at fixed x, v, a and z for the parameter of this number, N per unit of the
+  // parameter. Not called for parameters that the card marks as settings.
   virtual void AddParameterDerivative(const Kinematics& at, int parameter,
                                       Eigen::VectorXd* derivative) const = 0;
 
-  // Stored energy E with f = −∂E/∂x, J; nothing where the force has no potential.
+  // The potential E with f = −∂E/∂x, J, up to a constant; no value if the force has no potential.
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
 
-  // Memory: its length for a body, its value at rest, and its value at the end of a step, with
-  // `parameters` in place of the effect's own, as its derivatives by them are differences.
+  // Internal variables z: their number for a body, their values at rest, and their values at the
+  // end of the step that leads to `at`. InitialState and AdvanceState overwrite their output. The
+  // end of the step is evaluated with `parameters` in place of the effect's own, because
+  // derivatives with respect to them are taken by differences.
   virtual Eigen::Index StateSize(const Body&) const { return 0; }
   virtual void InitialState(const Body&, Eigen::VectorXd* /*state*/) const {}
   virtual void AdvanceState(const Kinematics&, const Eigen::VectorXd& /*parameters*/,

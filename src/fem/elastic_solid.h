@@ -1,17 +1,20 @@
-// A hyperelastic isotropic material law as an effect, from its energy density alone.
+// An effect made from a hyperelastic isotropic material law.
 //
-// A `Law` is a small value type, made from Lamé constants, in which ψ and the first Piola–Kirchhoff
-// stress P = ∂ψ/∂F are *linear*; forces, stiffness and energy follow as in point_integrals.h:
-//   static const EffectCard& Card();            parameters: young_modulus, poisson_ratio
+// The law gives the energy density ψ(F) of the deformation gradient F and its derivatives; nodal
+// forces, stiffness and energy follow by quadrature (point_integrals.h). A `Law` is a small value
+// type made from the Lamé constants λ and μ:
+//   static const EffectCard& Card();            parameters young_modulus (Pa) and poisson_ratio
 //   explicit Law(const LameConstants&);
 //   double EnergyDensity(const Matrix3d& F) const;                 ψ, J/m³
 //   Eigen::Matrix3d Stress(const Matrix3d& F) const;               P, Pa
-//   <tangent> Tangent(const Matrix3d& F, bool convexify) const;    ∂P/∂F, Pa: a StressTangent, or a
-//                                type of its own for which AddStiffness(tangent, …) is overloaded
-// A law that needs the rotation R nearest to F has EnergyDensity(F, R), Stress(F, R) and
-// Tangent(F, R, convexify) instead: rotations are cheaper when they are found for many points at a
-// time. Because of the linearity ∂P/∂E and ∂P/∂ν are the stresses of the law with ∂(λ, μ)/∂E and
-// ∂(λ, μ)/∂ν in place of (λ, μ).
+//   <tangent> Tangent(const Matrix3d& F, bool convexify) const;    ∂P/∂F, Pa
+// where P = ∂ψ/∂F is the first Piola–Kirchhoff stress. The tangent is a StressTangent or a type for
+// which AddStiffness(tangent, …) is overloaded; with `convexify` it must be positive semi-definite.
+// A law that needs the rotation R nearest to F declares EnergyDensity(F, R), Stress(F, R) and
+// Tangent(F, R, convexify) instead, because computing rotations for many points at once is faster.
+//
+// ψ and P must be linear in (λ, μ). Then ∂P/∂E and ∂P/∂ν are the stresses of a law with ∂(λ, μ)/∂E
+// and ∂(λ, μ)/∂ν in place of (λ, μ).
 #ifndef LACUNA_FEM_ELASTIC_SOLID_H_
 #define LACUNA_FEM_ELASTIC_SOLID_H_
 
@@ -28,12 +31,13 @@
 
 namespace lacuna {
 
+// Whether a law takes the rotation nearest to F as a second argument.
 template <typename Law>
 concept NeedsRotation = requires(const Law& law, const Eigen::Matrix3d& F) {
   law.Stress(F, F);
 };
 
-// What a law is evaluated for at a batch of points.
+// The arguments of a law at a batch of points; rotations are computed only if the law needs them.
 template <typename Law, int kNodes>
 class BatchOfPoints {
  public:
@@ -73,10 +77,13 @@ class BatchOfPoints {
   Eigen::Matrix3d rotation_[NeedsRotation<Law> ? DeformationGradients<kNodes>::kMost : 1];
 };
 
+// The material law as an effect without memory: f_a = −Σ_q w_q P g_a, E = Σ_q w_q ψ. It does not
+// depend on velocities and accelerations. A law that cannot be evaluated at a deformation gradient,
+// for example because an element is inverted, gives values that are not finite.
 template <typename Law>
 class ElasticSolid final : public CloneableEffect<ElasticSolid<Law>> {
  public:
-  // `parameters`: Young's modulus in Pa, Poisson's ratio.
+  // `parameters` holds Young's modulus in Pa and Poisson's ratio.
   explicit ElasticSolid(const Eigen::VectorXd& parameters) { SetParameters(parameters); }
 
   const EffectCard& Card() const override { return Law::Card(); }

@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-// The bits of x, each followed by two zeros.
+// Spreads the lowest 21 bits of x, each followed by two zeros.
 uint64_t SpreadBits(uint64_t x) {
   x &= 0x1fffff;
   x = (x | x << 32) & 0x1f00000000ffff;
@@ -20,8 +20,8 @@ uint64_t SpreadBits(uint64_t x) {
   return x;
 }
 
-// The lowest colour that no neighbouring chunk has. A node remembers 64 colours; a chunk that finds
-// all of them taken gets a colour of its own.
+// Assigns to each chunk the lowest colour that no neighbouring chunk has. Only 64 colours are
+// tracked per node; a chunk for which all of them are taken gets a colour of its own.
 std::vector<int> ColourChunks(const TetMesh& mesh) {
   constexpr int kSize = ElementSchedule::kElementsPerChunk;
   const int elements = static_cast<int>(mesh.TetCount());

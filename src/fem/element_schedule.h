@@ -1,10 +1,11 @@
-// The order in which the elements of a mesh are visited when they add into shared arrays.
+// The order in which the elements of a mesh are visited when they add to shared arrays.
 //
-// Elements, sorted along a space-filling curve, are cut into chunks of consecutive ones; chunks
-// that share no node get the same colour. Colours run one after another, the chunks of a colour at
-// the same time, the elements of a chunk one after another. So two threads never touch the same
-// node, an element may add straight into nodal vectors and matrix blocks, and each node meets its
-// elements in the same order for any number of threads: results are bit-identical.
+// Elements are sorted along a space-filling curve and divided into chunks of consecutive elements.
+// Chunks of the same colour share no node. Colours are processed one after another, the chunks of a
+// colour in parallel, and the elements of a chunk one after another. Hence no two threads access
+// the same node at the same time, elements may add directly to nodal vectors and matrix blocks, and
+// each node receives its contributions in the same order for any number of threads, which makes
+// results identical bit by bit.
 #ifndef LACUNA_FEM_ELEMENT_SCHEDULE_H_
 #define LACUNA_FEM_ELEMENT_SCHEDULE_H_
 
@@ -20,11 +21,11 @@
 namespace lacuna {
 
 struct ElementSchedule {
-  int elements = 0;
-  std::vector<int> chunk;         // chunk numbers, sorted by colour
-  std::vector<int> colour_begin;  // colours + 1, positions in `chunk`
-  // Where block (a, b) of element e lies in the matrix: block[(e·n + a)·n + b], n nodes per
-  // element.
+  int elements = 0;               // number of elements
+  std::vector<int> chunk;         // numbers of the chunks, sorted by colour
+  std::vector<int> colour_begin;  // colours + 1: first position in `chunk`
+  // Position in the block matrix of block (a, b) of element e, at block[(e·n + a)·n + b] with n
+  // nodes per element.
   std::vector<int> block;
 
   static constexpr int kElementsPerChunk = 128;
@@ -35,15 +36,17 @@ struct ElementSchedule {
   int ChunkEnd(int c) const { return std::min(elements, (c + 1) * kElementsPerChunk); }
 };
 
-// The element numbers sorted along the Morton curve of their centroids. Neighbours in space become
-// neighbours in memory: assembly is twice as fast as in the order that a mesh generator leaves.
+// The numbers of the elements, sorted along the Morton curve through their centroids. Elements that
+// are close in space become close in memory, which makes assembly twice as fast as in the order of
+// a mesh generator.
 std::vector<int> ElementsAlongCurve(const TetMesh& mesh);
 
-// For elements in the order of `mesh`.
+// The schedule for the elements in the order of `mesh`. The pattern must be that of the same mesh
+// (CHECK).
 ElementSchedule MakeElementSchedule(const TetMesh& mesh, const BlockPattern& pattern);
 
-// Calls visit(begin, end) for batches of consecutive elements that together are all, as described
-// above.
+// Calls visit(begin, end) for batches of at most kElementsPerBatch consecutive elements, in the
+// order described above, until all elements have been visited. Calls run on several threads.
 template <typename Visit>
 void ForEachBatch(const ElementSchedule& schedule, const Visit& visit) {
   for (int colour = 0; colour < schedule.ColourCount(); ++colour) {
@@ -58,7 +61,7 @@ void ForEachBatch(const ElementSchedule& schedule, const Visit& visit) {
   }
 }
 
-// Calls visit(element) for each element, as described above.
+// Calls visit(element) for each element in the order described above, on several threads.
 template <typename Visit>
 void ForEachElement(const ElementSchedule& schedule, const Visit& visit) {
   ForEachBatch(schedule, [&](int begin, int end) {
@@ -66,7 +69,8 @@ void ForEachElement(const ElementSchedule& schedule, const Visit& visit) {
   });
 }
 
-// The sum of value(element) over all elements, independent of the number of threads.
+// The sum of value(element) over all elements. Its rounding does not depend on the number of
+// threads.
 template <typename Value>
 double SumOverElements(const ElementSchedule& schedule, const Value& value) {
   std::vector<double> partial(schedule.ChunkCount(), 0.0);

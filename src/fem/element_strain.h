@@ -1,4 +1,7 @@
-// The strain of an element as a whole, for tables and pictures.
+// The mean strain of an element, for tables and figures.
+//
+// The strain is Green–Lagrange's E = ½ (FᵀF − I), and its rate is Ė = sym(Fᵀ Ḟ), both in Kelvin's
+// notation (green_lagrange_strain.h).
 #ifndef LACUNA_FEM_ELEMENT_STRAIN_H_
 #define LACUNA_FEM_ELEMENT_STRAIN_H_
 
@@ -9,16 +12,17 @@
 
 namespace lacuna {
 
-// Means over the element's quadrature points, by their volume: E = ½ (FᵀF − I) and
-// Ė = sym(Fᵀ Ḟ), 1/s, with the nodes at `position` and moving with `velocity` (3n).
 struct ElementStrain {
-  KelvinVector strain = KelvinVector::Zero();
-  KelvinVector rate = KelvinVector::Zero();
+  KelvinVector strain = KelvinVector::Zero();  // E
+  KelvinVector rate = KelvinVector::Zero();    // Ė, 1/s
 };
+
+// Averages strain and rate over the quadrature points of an element, weighted by volume, for nodes
+// at `position` (3n, node-major, m) that move with `velocity` (3n, m/s).
 ElementStrain MeanStrain(const Body& body, int element, const Eigen::VectorXd& position,
                          const Eigen::VectorXd& velocity);
 
-// The largest magnitude among the principal values.
+// The largest absolute principal value of a symmetric tensor.
 double LargestPrincipal(const KelvinVector& tensor);
 
 }  // namespace lacuna

@@ -33,7 +33,7 @@ EliminationOrder NestedDissection(const BlockPattern& pattern, const std::vector
     idx_t options[METIS_NOPTIONS];
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
-    // METIS catches signals and draws random numbers for the whole process.
+    // METIS installs signal handlers and uses the random numbers of the process.
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
     const int status = METIS_NodeND(&count, begin.data(), neighbour.data(), nullptr, options,

@@ -1,4 +1,6 @@
-// The order in which the free nodes of a body are eliminated from its matrix.
+// The order in which the free nodes of a body are eliminated in a Cholesky factorisation.
+//
+// It determines the fill-in of the factor, and with it time and memory.
 #ifndef LACUNA_FEM_ELIMINATION_ORDER_H_
 #define LACUNA_FEM_ELIMINATION_ORDER_H_
 
@@ -9,15 +11,16 @@
 namespace lacuna {
 
 struct EliminationOrder {
-  std::vector<int> node;   // node[k]: the k-th free node to be eliminated
-  std::vector<int> place;  // place[node[k]] = k; −1 for a fixed node
+  std::vector<int> node;   // node[k] is eliminated as the k-th free node
+  std::vector<int> place;  // n: place[node[k]] = k, and −1 for a fixed node
 
   int FreeNodes() const { return static_cast<int>(node.size()); }
 };
 
-// Nested dissection by METIS of the graph of free nodes (nine times fewer edges than that of the
-// degrees of freedom, and it keeps the three of a node together). The same input gives the same
-// order on every run. `fixed`: one flag per node.
+// Orders the free nodes by nested dissection with METIS. The graph of nodes has nine times fewer
+// edges than that of the degrees of freedom, and the three degrees of freedom of a node stay
+// together. `fixed` holds one flag per node. The order is the same on every run. Thread-safe: calls
+// of METIS are serialised.
 EliminationOrder NestedDissection(const BlockPattern& pattern, const std::vector<char>& fixed);
 
 }  // namespace lacuna

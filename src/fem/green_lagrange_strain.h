@@ -1,8 +1,9 @@
-// The Green–Lagrange strain and symmetric tensors as vectors.
+// The Green–Lagrange strain, and symmetric tensors in Kelvin's notation.
 //
-// E = ½ (FᵀF − I) does not see rotations, is a polynomial of F, and works with the second
-// Piola–Kirchhoff stress: power per rest volume S : Ė, P = F S (Bonet & Wood, Nonlinear Continuum
-// Mechanics for Finite Element Analysis).
+// The strain E = ½ (FᵀF − I) is invariant under rotations and a polynomial of the deformation
+// gradient F. It is conjugate to the second Piola–Kirchhoff stress S: the power per volume of the
+// reference configuration is S : Ė, and the first Piola–Kirchhoff stress is P = F S (Bonet & Wood,
+// Nonlinear Continuum Mechanics for Finite Element Analysis).
 #ifndef LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_
 #define LACUNA_FEM_GREEN_LAGRANGE_STRAIN_H_
 
@@ -14,11 +15,12 @@
 
 namespace lacuna {
 
-// A symmetric tensor A as (A₁₁, A₂₂, A₃₃, √2 A₂₃, √2 A₁₃, √2 A₁₂), Kelvin's notation: A : B is the
-// dot product, and fourth-order tensors become matrices with their own eigenvalues.
+// Kelvin's notation of a symmetric tensor A: (A₁₁, A₂₂, A₃₃, √2 A₂₃, √2 A₁₃, √2 A₁₂). A : B becomes
+// the dot product, and fourth-order tensors become matrices with the same eigenvalues.
 using KelvinVector = Eigen::Matrix<double, 6, 1>;
 using KelvinMatrix = Eigen::Matrix<double, 6, 6>;
 
+// Converts a symmetric tensor; only its upper triangle is read.
 inline KelvinVector ToKelvin(const Eigen::Matrix3d& A) {
   KelvinVector vector;
   vector << A(0, 0), A(1, 1), A(2, 2), M_SQRT2 * A(1, 2), M_SQRT2 * A(0, 2), M_SQRT2 * A(0, 1);
@@ -32,28 +34,30 @@ inline Eigen::Matrix3d FromKelvin(const KelvinVector& vector) {
                          {shear[1], shear[0], vector[2]}};
 }
 
-// tr A = KelvinIdentity() · A.
+// The unit tensor; tr A = KelvinIdentity() · A.
 inline KelvinVector KelvinIdentity() { return (KelvinVector() << 1, 1, 1, 0, 0, 0).finished(); }
 
+// The deviatoric part A − ⅓ (tr A) I.
 inline KelvinVector Deviator(KelvinVector vector) {
   vector.head<3>().array() -= vector.head<3>().mean();
   return vector;
 }
 
-// Hooke's law, S = 2μ E + λ (tr E) I; the unit of the constants.
+// The elasticity matrix of Hooke's law, S = 2μ E + λ (tr E) I, in the unit of the constants.
 inline KelvinMatrix IsotropicModuli(const LameConstants& constants) {
   KelvinMatrix moduli = constants.lambda * KelvinIdentity() * KelvinIdentity().transpose();
   moduli.diagonal().array() += 2 * constants.mu;
   return moduli;
 }
 
+// E = ½ (FᵀF − I).
 inline KelvinVector GreenLagrangeStrain(const Eigen::Matrix3d& F) {
   KelvinVector strain = 0.5 * ToKelvin(F.transpose() * F);
   strain.head<3>().array() -= 0.5;
   return strain;
 }
 
-// ∂E/∂F, with F as a column-major vector.
+// ∂E/∂F (6 × 9), with F as a column-major vector.
 inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
   Eigen::Matrix<double, 6, 9> derivative = Eigen::Matrix<double, 6, 9>::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -66,11 +70,11 @@ inline Eigen::Matrix<double, 6, 9> StrainDerivative(const Eigen::Matrix3d& F) {
   return derivative;
 }
 
-// ∂P/∂F of P = F S(E) with ∂S/∂E = `moduli`.
+// ∂P/∂F for P = F S(E), with S = `stress` and ∂S/∂E = `moduli` in the same unit, e.g. Pa.
 inline StressTangent TangentOfSecondStress(const Eigen::Matrix3d& F, const KelvinVector& stress,
                                            const KelvinMatrix& moduli) {
-  const Eigen::Matrix<double, 6, 9> by_gradient = StrainDerivative(F);
-  StressTangent tangent = by_gradient.transpose() * moduli * by_gradient;
+  const Eigen::Matrix<double, 6, 9> strain_derivative = StrainDerivative(F);
+  StressTangent tangent = strain_derivative.transpose() * moduli * strain_derivative;
   const Eigen::Matrix3d S = FromKelvin(stress);
   for (int j = 0; j < 3; ++j) {
     for (int l = 0; l < 3; ++l) {

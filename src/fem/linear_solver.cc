@@ -19,19 +19,21 @@ namespace {
 
 using Status = LinearSolveSummary::Status;
 
-// What things cost, counted in operations of a dense kernel: a factorisation is bound by them and
-// by the handling of its fronts, an iteration by the bytes it reads. (Fitted to meshes of 10 000 to
-// 200 000 tetrahedra on one core; the best moment of renewal depends on them but weakly.)
+// The cost model, in operations of a dense kernel. A factorisation is limited by these operations
+// and by the assembly of its fronts, an iteration by the bytes that it reads. The constants were
+// fitted to meshes of 10 000 to 200 000 tetrahedra on one core; the best time for a renewal depends
+// on them only weakly.
 constexpr double kOperationsPerFactorEntry = 200;
 constexpr double kOperationsPerByte = 4;
 
 constexpr int kMaxIterations = 1000;
-// A product pᵀ A p below −kRounding ‖p‖ ‖A p‖ is negative beyond doubt.
+// A product pᵀ A p below −kRounding ‖p‖ ‖A p‖ is certainly negative.
 constexpr double kRounding = 1e-12;
-// Iterations that a new factor would need, and those after which the rate of convergence shows.
+// Iterations expected with a new factor, and iterations after which the rate of convergence is
+// known.
 constexpr int kIterationsWhenNew = 3;
 constexpr int kIterationsToJudge = 4;
-// Earlier solutions whose combination the iteration starts from.
+// Number of earlier solutions from whose combination the iteration starts.
 constexpr int kRememberedSolutions = 3;
 
 }  // namespace
@@ -41,24 +43,24 @@ struct LinearSolver::Implementation {
   LinearSolverOptions options;
   EliminationOrder order;
 
-  // The factor at hand: single precision where that will do, else double.
+  // The current factor, in single precision unless that fails.
   enum class Kept { kNone, kSingle, kDouble } kept = Kept::kNone;
   std::optional<SupernodalFactor> single_factor;
   std::optional<CholmodFactor> double_factor;
   bool single_precision_fails = false;
-  std::vector<Eigen::Matrix3d> factor_rotations;  // when the factor was made; empty: not told
+  std::vector<Eigen::Matrix3d> factor_rotations;  // at the factorisation; empty: not given
 
   int factorisations = 0;
   double factorisation_cost = 0, iteration_cost = 0;
-  double spent = 0;  // since the factor was made, its own cost included
-  int solves = 0;    // with the present factor
+  double spent = 0;  // cost since the factorisation, including its own
+  int solves = 0;    // with the current factor
 
-  std::vector<Eigen::Matrix3d> turn;  // since the factor was made; empty: none
+  std::vector<Eigen::Matrix3d> rotation;  // since the factorisation, per node; empty: none
   Eigen::VectorXf single_reduced;
   Eigen::VectorXd double_reduced;
   Eigen::MatrixXd double_solution;  // one column
   Eigen::VectorXd residual, direction, product, preconditioned;
-  std::deque<Eigen::VectorXd> earlier_solutions;  // the latest first
+  std::deque<Eigen::VectorXd> earlier_solutions;  // latest first
 
   Implementation(std::shared_ptr<const BlockPattern> block_pattern, const std::vector<char>& fixed,
                  const LinearSolverOptions& solver_options)
@@ -75,7 +77,7 @@ struct LinearSolver::Implementation {
   void ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
   void MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
   void ZeroFixed(Eigen::VectorXd* v) const;
-  void SetTurn(const std::vector<Eigen::Matrix3d>* rotations);
+  void SetRotation(const std::vector<Eigen::Matrix3d>* rotations);
 
   enum class Outcome { kConverged, kIndefinite, kTooManyIterations, kBrokenDown };
   Outcome Iterate(const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
@@ -87,7 +89,7 @@ struct LinearSolver::Implementation {
                            const std::vector<Eigen::Matrix3d>* rotations);
 };
 
-// Makes `kept` a factor of A, or none where A is not positive definite.
+// Computes the factor of A; `kept` becomes kNone if A is not positive definite.
 bool LinearSolver::Implementation::FactoriseInDouble(const BlockMatrix& A) {
   if (!double_factor) double_factor.emplace(*pattern, order);
   kept = double_factor->Factorise(A) ? Kept::kDouble : Kept::kNone;
@@ -109,7 +111,7 @@ bool LinearSolver::Implementation::Factorise(const BlockMatrix& A) {
     iteration_cost = kOperationsPerByte * 2 * sizeof(float) * single_factor->entries();
   }
   if (pivots == Pivots::kInDoubt && FactoriseInDouble(A)) {
-    // A matrix that is definite in double precision only tells of the next ones of this mesh.
+    // The next matrices of this mesh are expected to need double precision as well.
     single_precision_fails = true;
   }
   iteration_cost += kOperationsPerByte * 9 * sizeof(double) * pattern->BlockCount();
@@ -119,12 +121,12 @@ bool LinearSolver::Implementation::Factorise(const BlockMatrix& A) {
 
 // z = M⁻¹ r on the free nodes, 0 on the fixed ones.
 void LinearSolver::Implementation::ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z) {
-  const auto turned_back = [&](int node) -> Eigen::Vector3d {
-    if (turn.empty()) return r.segment<3>(3 * node);
-    return turn[node].transpose() * r.segment<3>(3 * node);
+  const auto rotated_back = [&](int node) -> Eigen::Vector3d {
+    if (rotation.empty()) return r.segment<3>(3 * node);
+    return rotation[node].transpose() * r.segment<3>(3 * node);
   };
-  const auto turn_forth = [&](int node, const Eigen::Vector3d& value) {
-    z->segment<3>(3 * node) = turn.empty() ? value : Eigen::Vector3d(turn[node] * value);
+  const auto rotate_forward = [&](int node, const Eigen::Vector3d& value) {
+    z->segment<3>(3 * node) = rotation.empty() ? value : Eigen::Vector3d(rotation[node] * value);
   };
   z->setZero(r.size());
   if (kept == Kept::kSingle) {
@@ -133,20 +135,20 @@ void LinearSolver::Implementation::ApplyFactor(const Eigen::VectorXd& r, Eigen::
     const double norm = r.norm();
     single_reduced.resize(3 * free_nodes);
     for (int k = 0; k < free_nodes; ++k) {
-      single_reduced.segment<3>(3 * k) = (turned_back(nodes[k]) / norm).cast<float>();
+      single_reduced.segment<3>(3 * k) = (rotated_back(nodes[k]) / norm).cast<float>();
     }
     single_factor->Solve(single_reduced, &single_reduced);
     for (int k = 0; k < free_nodes; ++k) {
-      turn_forth(nodes[k], norm * single_reduced.segment<3>(3 * k).cast<double>());
+      rotate_forward(nodes[k], norm * single_reduced.segment<3>(3 * k).cast<double>());
     }
   } else {
     double_reduced.resize(3 * order.FreeNodes());
     for (int k = 0; k < order.FreeNodes(); ++k) {
-      double_reduced.segment<3>(3 * k) = turned_back(order.node[k]);
+      double_reduced.segment<3>(3 * k) = rotated_back(order.node[k]);
     }
     double_factor->Solve(double_reduced, &double_solution);
     for (int k = 0; k < order.FreeNodes(); ++k) {
-      turn_forth(order.node[k], double_solution.col(0).segment<3>(3 * k));
+      rotate_forward(order.node[k], double_solution.col(0).segment<3>(3 * k));
     }
   }
 }
@@ -163,18 +165,18 @@ void LinearSolver::Implementation::ZeroFixed(Eigen::VectorXd* v) const {
   }
 }
 
-void LinearSolver::Implementation::SetTurn(const std::vector<Eigen::Matrix3d>* rotations) {
-  turn.clear();
+void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d>* rotations) {
+  rotation.clear();
   if (rotations == nullptr || factor_rotations.empty()) return;
-  turn.resize(rotations->size());
-  for (size_t i = 0; i < turn.size(); ++i) {
-    turn[i] = (*rotations)[i] * factor_rotations[i].transpose();
+  rotation.resize(rotations->size());
+  for (size_t i = 0; i < rotation.size(); ++i) {
+    rotation[i] = (*rotations)[i] * factor_rotations[i].transpose();
   }
 }
 
-// Starts at the combination of earlier solutions whose error is smallest in the energy norm, and
-// leaves its residual in `residual` (Fischer 1998). Motion is smooth, so that one or two digits are
-// won for the price of a few products with A.
+// Starts from the combination of earlier solutions with the smallest error in the energy norm
+// (Fischer 1998) and stores its residual in `residual`. Since motion is smooth, this gains one or
+// two digits for a few products with A.
 void LinearSolver::Implementation::StartFromEarlierSolutions(const BlockMatrix& A,
                                                              Eigen::VectorXd* x) {
   const int count = static_cast<int>(earlier_solutions.size());
@@ -199,18 +201,18 @@ void LinearSolver::Implementation::StartFromEarlierSolutions(const BlockMatrix& 
   for (int k = 0; k < count; ++k) *x += weight[k] * earlier_solutions[k];
 }
 
-// Whether a new factor would be through before the iteration is, at its rate so far.
+// Whether a new factorisation would be cheaper than finishing the iteration at its rate so far.
 bool LinearSolver::Implementation::RenewalPays(int iterations, double first_residual,
                                                double present_residual, double target) const {
   if (iterations < kIterationsToJudge) return false;
-  const double digits_won = std::log(first_residual / present_residual);
+  const double digits_gained = std::log(first_residual / present_residual);
   const double digits_missing = std::log(present_residual / target);
-  const double iterations_missing = digits_missing * iterations / std::max(digits_won, 1e-3);
+  const double iterations_missing = digits_missing * iterations / std::max(digits_gained, 1e-3);
   return iterations_missing * iteration_cost >
          factorisation_cost + kIterationsWhenNew * iteration_cost;
 }
 
-// Preconditioned conjugate gradients from the present *x, whose residual is in `residual`.
+// Preconditioned conjugate gradients from the current *x, whose residual is in `residual`.
 LinearSolver::Implementation::Outcome LinearSolver::Implementation::Iterate(
     const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
     LinearSolveSummary* summary) {
@@ -262,18 +264,18 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
   StartFromEarlierSolutions(A, x);
   Outcome outcome = Outcome::kTooManyIterations;
   if (options.method == LinearSolverOptions::Method::kKeptFactor && kept != Kept::kNone) {
-    SetTurn(rotations);
+    SetRotation(rotations);
     const double average = spent / std::max(solves, 1);
     const double before = spent;
     outcome = Iterate(A, b_norm, /*may_renew=*/true, x, &summary);
     ++solves;
-    // From here on keeping the factor would raise the average cost of a solve.
+    // From now on, keeping the factor would increase the average cost of a solve.
     if (spent - before > average) kept = Kept::kNone;
   }
   if (outcome == Outcome::kTooManyIterations || outcome == Outcome::kBrokenDown) {
     summary.factorised = true;
     if (Factorise(A)) {
-      turn.clear();
+      rotation.clear();
       factor_rotations.clear();
       if (rotations != nullptr) factor_rotations = *rotations;
       outcome = Iterate(A, b_norm, /*may_renew=*/false, x, &summary);
@@ -308,7 +310,7 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
 LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern,
                            const std::vector<char>& fixed, const LinearSolverOptions& options)
     : implementation_(std::make_unique<Implementation>(std::move(pattern), fixed, options)) {
-  // OpenBLAS's own threads would make the sums, and so the bits, depend on their number.
+  // With threads of OpenBLAS, the rounding of sums would depend on their number.
   openblas_set_num_threads(1);
 }
 

@@ -1,11 +1,12 @@
-// Solves A x = b for the symmetric matrices of one mesh, again and again.
+// Solves A x = b repeatedly for symmetric matrices on one mesh, as Newton's method needs.
 //
-// Symbolic analysis (METIS nested dissection) is done once per mesh and set of fixed nodes. A
-// numeric Cholesky factor is the dearest thing in a time step, so it is made in single precision
-// and kept: matrices are solved, to the accuracy asked for, by conjugate gradients in double
-// precision preconditioned with the kept factor. It is renewed when a solve has cost more than the
-// average since the factor was made, its making included; cost is counted in operations, so that
-// results are the same on every run and for any number of threads.
+// Symbolic analysis (METIS nested dissection) is performed once per mesh and set of fixed nodes.
+// The numeric Cholesky factorisation is the most expensive part of a time step. It is therefore
+// computed in single precision and kept for the following matrices: these are solved to the
+// requested accuracy by conjugate gradients (CG) in double precision, preconditioned with the kept
+// factor. The factor is renewed when a solve costs more than the average solve since the
+// factorisation, including the cost of the factorisation itself. Costs are counted in operations
+// rather than measured, so that results are the same on every run and for any number of threads.
 #ifndef LACUNA_FEM_LINEAR_SOLVER_H_
 #define LACUNA_FEM_LINEAR_SOLVER_H_
 
@@ -21,10 +22,10 @@ namespace lacuna {
 struct LinearSolverOptions {
   enum class Method {
     kKeptFactor,  // CG preconditioned by a kept Cholesky factor
-    kDirect,      // factorise every matrix anew
+    kDirect,      // a factorisation for every matrix
   };
   Method method = Method::kKeptFactor;
-  double relative_tolerance = 1e-9;  // ‖b − A x‖ ≤ tolerance·‖b‖; smaller: more CG iterations
+  double relative_tolerance = 1e-9;  // ‖b − A x‖ ≤ tolerance·‖b‖; smaller: more iterations
 };
 
 struct LinearSolveSummary {
@@ -32,31 +33,33 @@ struct LinearSolveSummary {
   Status status = Status::kNotRun;
   std::string message;
   int iterations = 0;            // of CG
-  bool factorised = false;       // a numeric factorisation was needed
-  double relative_residual = 0;  // ‖b − A x‖ / ‖b‖ reached
+  bool factorised = false;       // whether a numeric factorisation was needed
+  double relative_residual = 0;  // the achieved ‖b − A x‖ / ‖b‖
   bool IsUsable() const { return status == Status::kSolved; }
 };
 
+// Not thread-safe: one solver per simulation.
 class LinearSolver {
  public:
-  // `fixed[i]`: node i is prescribed; its rows and columns are left out and x is 0 there.
+  // `fixed[i]` marks node i as prescribed: its rows and columns are left out and x is 0 there.
   LinearSolver(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed,
                const LinearSolverOptions& options);
   ~LinearSolver();
   LinearSolver(LinearSolver&&) noexcept;
   LinearSolver& operator=(LinearSolver&&) noexcept;
 
-  // Solves A x = b (length 3·nodes). `A` must be positive definite on the free nodes; if it is not
-  // the summary says so and x is left at 0. (Conjugate gradients notice where they meet it: a
-  // solution found without meeting a direction of negative curvature is reported as solved.)
+  // Solves A x = b (vectors of length 3·nodes, node-major). If `A` is not positive definite on the
+  // free nodes, the status of the summary is kNotPositiveDefinite and x is 0. An indefinite matrix
+  // is noticed only if conjugate gradients encounter a direction of negative curvature.
   //
-  // `node_rotations` (one per node, optional): how the body has turned about each node since a
-  // configuration that is the same for all solves. A kept factor is then turned along, which keeps
-  // it good when the matrix has changed mostly by rotation: A ≈ Q A₀ Qᵀ, Q = R R₀ᵀ node by node.
+  // `node_rotations` (optional, one per node) are the rotations R of the body at its nodes relative
+  // to any configuration that is the same for all solves. The kept factor of A₀ is then rotated
+  // with the body, A ≈ Q A₀ Qᵀ with Q = R R₀ᵀ at each node, which keeps it a good preconditioner
+  // when the matrix has changed mainly by rotation.
   LinearSolveSummary Solve(const BlockMatrix& A, const Eigen::VectorXd& b, Eigen::VectorXd* x,
                            const std::vector<Eigen::Matrix3d>* node_rotations = nullptr);
 
-  // Tells the solver that the next matrix has little to do with the last one.
+  // Discards the kept factor, for a next matrix that differs much from the last one.
   void DropFactor();
 
   int factorisations() const;  // numeric factorisations so far

@@ -1,30 +1,29 @@
-// A branch of stress that remembers past strains, parallel to the elasticity of a body, as an
-// effect: from its law at one point.
+// An effect made from a material law with memory, acting in parallel to the elasticity of a body.
 //
 //   f_a = −Σ_q w_q P_q g_a(q),    P = F S,    S = m s(E; z, h),
-// with the modulus m in Pa (the size of the effect), the Green–Lagrange strain E at the end of a
-// step of length h and the internal variables z of the point at its start. The stress is that of an
-// incremental potential,
-//   s = ∂w(E; z, h)/∂E,    w convex in E,
-// as the variational updates of M. Ortiz and L. Stainier, CMAME 171, 1999, have it: the algorithmic
-// tangent is symmetric, and Newton's line search has an energy to descend. That "energy" is stored
-// plus dissipated, up to a constant of the step.
+// with the modulus m (Pa), which is the size of the effect, the Green–Lagrange strain E at the end
+// of a time step of length h, and the internal variables z of the point at the start of the step.
+// The stress derives from an incremental potential that is convex in E,
+//   s = ∂w(E; z, h)/∂E,
+// as in the variational updates of M. Ortiz and L. Stainier, CMAME 171, 1999. The algorithmic
+// tangent is therefore symmetric, and the line search of Newton's method can descend on the
+// potential. m w is the stored plus the dissipated energy density, up to a constant in each step.
 //
-// Why Green–Lagrange: E and z refer to the material, so that the force follows any rotation; the
-// power is exactly S : Ė at any strain, so that a law that dissipates in (s, E) does so in the
-// body; and no polar decomposition, logarithm or inverse of F can fail in a crushed or inverted
-// element. What the measure is known for, a stiffness that fades under compression (P = F S with
-// F → 0), is weaker in a branch beside a law that does resist. With w convex, only the geometric
-// part δF S of the tangent, under pressure, can make it indefinite; the definite stand-in leaves
-// out its negative modes.
+// Choice of the strain measure. E and z refer to the reference configuration, so that the force
+// follows any rotation. The power is exactly S : Ė at any strain, so that a law that dissipates in
+// (s, E) also does so in the body. No polar decomposition, logarithm or inverse of F is needed that
+// could fail in a crushed or inverted element. The known weakness of the measure, a stiffness that
+// vanishes under strong compression (P = F S with F → 0), matters less beside an elastic law that
+// resists it. Since w is convex, only the geometric part δF S of the tangent can make it
+// indefinite, under pressure; `convexify` removes the negative modes.
 //
-// z never depends on m, so that a branch of size zero has the memory that one of any size would.
+// z does not depend on m, so that sensitivities to m exist also for a branch with m = 0.
 //
-// A `Law` is a small value type, all of it for m = 1:
+// A `Law` is a small value type that describes the branch for m = 1:
 //   static const EffectCard& Card();                the first parameter is m
 //   static constexpr int kStateSize;                numbers per point; 0 at rest
-//   Law(const VectorXd& parameters, double time_step);            in the order of the card; h = 0:
-//                                                                 statics
+//   Law(const VectorXd& parameters, double time_step);            in the order of the card; h in s,
+//                                                                 0 in statics
 //   double Potential(const KelvinVector& E, const State& z) const;                 w
 //   KelvinVector Stress(E, z) const;                                               s
 //   KelvinMatrix Moduli(E, z) const;                                               ∂s/∂E
@@ -47,6 +46,10 @@
 
 namespace lacuna {
 
+// The branch as an effect. Its internal variables are those of all quadrature points one after
+// another, kStateSize per point, and are 0 at rest. Energy() is the incremental potential of the
+// current step, not the stored energy. Strains enter at the end of the step only, so there is no
+// ∂f/∂v.
 template <typename Law>
 class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
  public:
@@ -116,13 +119,14 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
  private:
   using State = Eigen::Matrix<double, Law::kStateSize, 1>;
 
-  double Modulus() const { return parameters_[0]; }
+  double Modulus() const { return parameters_[0]; }  // m, Pa
 
+  // The internal variables of quadrature point q.
   static State StateOf(const Eigen::VectorXd& states, int q) {
     return states.template segment<Law::kStateSize>(Eigen::Index{Law::kStateSize} * q);
   }
 
-  // Calls visit(q, F) for the quadrature points of an element.
+  // Calls visit(q, F) for each quadrature point q of an element, with its deformation gradient F.
   template <int kNodes, typename Visit>
   static void ForEachPoint(const Kinematics& at, int element, const Visit& visit) {
     const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
@@ -132,7 +136,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     }
   }
 
-  // Adds −Σ w F S g_a with S = stress(strain, state).
+  // Adds the nodal forces −Σ w F S g_a with S = stress(strain, state).
   template <typename Stress>
   void AddNodalStress(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) const {
     CHECK_EQ(at.state.size(), StateSize(at.body));
@@ -176,6 +180,7 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
     });
   }
 
+  // The tangent with its negative eigenvalues replaced by zero.
   static StressTangent PositivePart(const StressTangent& tangent) {
     const Eigen::SelfAdjointEigenSolver<StressTangent> modes(tangent);
     return modes.eigenvectors() * modes.eigenvalues().cwiseMax(0).asDiagonal() *

@@ -1,4 +1,6 @@
-// A body, the effects that act on it and the grips that hold it: all that a simulation needs.
+// A model: a body, the effects that act on it and the grips that prescribe the motion of nodes.
+//
+// It contains all that a simulation needs besides the initial state and the options of the solver.
 #ifndef LACUNA_FEM_MODEL_H_
 #define LACUNA_FEM_MODEL_H_
 
@@ -12,23 +14,25 @@
 
 namespace lacuna {
 
-// Nodes whose motion is prescribed: clamped where they rest, or moved with a measured grip.
+// Nodes with a prescribed motion: clamped at their places in the rest shape, or moved.
 struct Grip {
   Eigen::VectorXi nodes;
-  // Positions of these nodes at a time (3 × nodes.size(), m). Empty: held at rest.
+  // The positions of these nodes (3 × nodes.size(), m) as a function of time (s). Empty: clamped.
+  // It is called from the thread of the simulation.
   std::function<Eigen::Matrix3Xd(double time)> motion;
 };
 
 // Effects do not change, so that models share them.
 using EffectList = std::vector<std::shared_ptr<const Effect>>;
 
+// Copies are cheap: they share the body and the effects.
 struct Model {
   std::shared_ptr<const Body> body;
   EffectList effects;
   std::vector<Grip> grips;
 };
 
-// n: 1 at nodes that a grip holds.
+// One flag per node: 1 where a grip prescribes the motion.
 std::vector<char> GrippedNodes(const Model& model);
 
 }  // namespace lacuna

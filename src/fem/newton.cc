@@ -13,12 +13,12 @@
 namespace lacuna {
 namespace {
 
-// A point of the iteration with what has been evaluated there.
+// An iterate with the quantities that have been evaluated at it.
 struct Iterate {
   Eigen::VectorXd position;
-  Eigen::VectorXd residual;         // r − applied, 0 at fixed nodes
+  Eigen::VectorXd residual;         // r − applied force, 0 at fixed nodes
   double force_scale = 0;           // N
-  std::optional<double> potential;  // J; NaN where there is none; evaluated when first needed
+  std::optional<double> potential;  // J; NaN if there is none; evaluated on demand
 };
 
 class Newton {
@@ -77,8 +77,8 @@ class Newton {
 
   void AssembleTangent(const Iterate& at) {
     problem_.equation.Tangent(at.position, convexify_, &tangent_);
-    // Positions are known to ε |x|, so forces to about ε |x| times the stiffest spring. Of all the
-    // places visited the tamest counts.
+    // Positions are rounded to ε |x|, and therefore forces to about ε |x| times the largest
+    // stiffness. The smallest of these bounds over all iterates is used.
     double stiffest = 0;
     for (const int k : tangent_.pattern().diagonal) {
       stiffest = std::max(stiffest, tangent_.Block(k).diagonal().maxCoeff());
@@ -88,8 +88,8 @@ class Newton {
                                         std::sqrt(static_cast<double>(at.position.size())));
   }
 
-  // Solves tangent · step = right-hand side with the exact tangent or, if that is not definite,
-  // with its stand-in. `right(tangent)` makes the right-hand side.
+  // Solves tangent · step = right() with the exact tangent or, if that is not positive definite,
+  // with its convexified approximation. right() may use the assembled tangent.
   template <typename RightHandSide>
   bool SolveLinearised(const Iterate& at, const RightHandSide& right, Eigen::VectorXd* step) {
     LinearSolveSummary solved;
@@ -98,9 +98,9 @@ class Newton {
       AssembleTangent(at);
       const Eigen::VectorXd b = right();
       solved = solver_.Solve(tangent_, b, step, &rotations_);
-      const bool goes_down = solved.IsUsable() && step->allFinite() && step->dot(b) >= 0;
-      has_tangent_ = goes_down && !convexify_;
-      if (goes_down) return true;
+      const bool is_descent = solved.IsUsable() && step->allFinite() && step->dot(b) >= 0;
+      has_tangent_ = is_descent && !convexify_;
+      if (is_descent) return true;
       if (convexify_) break;
       convexify_ = true;
     }
@@ -109,17 +109,18 @@ class Newton {
     return false;
   }
 
-  // Near the solution the tangent of an earlier iterate does nearly as well, and assembling a new
-  // one costs more than a step (the chord method). False, with `at` as it was, where it does not.
+  // Tries a step with the tangent of an earlier iterate (the chord method). Near the solution this
+  // is nearly as effective as a new tangent, whose assembly costs more than a step. Returns false
+  // and leaves `at` unchanged if the residual does not decrease enough.
   bool FollowChord(Iterate* at) {
-    constexpr double kGoesOn = 0.2;  // of the residual
+    constexpr double kSufficientRatio = 0.2;  // of the new residual to the old one
     if (!has_tangent_ || convexify_) return false;
     has_tangent_ = false;
     Eigen::VectorXd step;
     const LinearSolveSummary solved = solver_.Solve(tangent_, -at->residual, &step, &rotations_);
     if (!solved.IsUsable() || !step.allFinite()) return false;
     Iterate next = Evaluate(at->position + step);
-    if (!(next.residual.norm() / at->residual.norm() <= kGoesOn)) return false;
+    if (!(next.residual.norm() / at->residual.norm() <= kSufficientRatio)) return false;
     has_tangent_ = true;
     *at = std::move(next);
     return true;
@@ -161,10 +162,11 @@ class Newton {
     return true;
   }
 
-  // One iteration. Nearly incompressible and turning bodies lie at the bottom of a narrow curved
-  // valley of the potential: a full step along its tangent climbs the wall, and the next falls back
-  // far ahead, where a line search would creep along the bottom. So a climb is forgiven when the
-  // step after it ends below where it began (the watchdog technique, Chamberlain et al. 1982).
+  // Performs one iteration. The potential of a nearly incompressible or rotating body has a narrow
+  // curved valley. A full step along its tangent leads up the side of the valley, and the next full
+  // step leads back to its bottom far ahead, whereas a line search would make little progress. An
+  // increase is therefore accepted if the following full step ends below the start (the watchdog
+  // technique, Chamberlain et al. 1982).
   bool Advance(Iterate* at) {
     if (FollowChord(at)) return true;
     Eigen::VectorXd step;
@@ -188,8 +190,9 @@ class Newton {
     return SearchLine(at, step, full);
   }
 
-  // Takes another full step from `full`, where the potential is above that of `start`, to
-  // `beyond_`; true if it is below there. `work`: of the residual from start to full.
+  // Takes another full step from `full`, where the potential exceeds that of `start`, to `beyond_`,
+  // and returns whether the potential there is below that of `start`. `work` is the work of the
+  // residual from `start` to `full`.
   bool ReturnsBelow(Iterate* start, double slope, double work, const Iterate& full) {
     if (!full.residual.allFinite() || summary_.iterations >= problem_.max_iterations) return false;
     ++summary_.iterations;
@@ -202,24 +205,24 @@ class Newton {
     return Falls(start, &beyond_, slope, work + Work(full, beyond_, step));
   }
 
-  // The work of the residual along a step, by the trapezoidal rule, J: to second order the change
-  // of the potential, and its stand-in where there is none.
+  // The work of the residual along a step by the trapezoidal rule, J. It equals the change of the
+  // potential to second order and replaces it if there is no potential.
   static double Work(const Iterate& from, const Iterate& to, const Eigen::VectorXd& step) {
     return 0.5 * (from.residual.dot(step) + to.residual.dot(step));
   }
 
-  // Sufficient decrease (Armijo 1966) of the potential from one iterate to another.
-  // `expected`: its change to first order, J.
+  // Whether the potential decreases sufficiently (Armijo 1966) from one iterate to another.
+  // `expected` is its change to first order, J.
   bool Falls(Iterate* from, Iterate* to, double expected, double work) const {
     constexpr double kSufficient = 1e-4;
-    // A residual that drops this much, along a step of a definite tangent, needs no other witness.
+    // A decrease of the residual by this factor, along a step of a definite tangent, is sufficient.
     constexpr double kPlainlyBetter = 0.1;
     if (!to->residual.allFinite()) return false;
     const double ratio = to->residual.norm() / from->residual.norm();
     if (ratio <= kPlainlyBetter) return true;
     const double before = Potential(from);
     const double after = Potential(to);
-    // Below the rounding of the potential's own value its change says nothing.
+    // A change below the rounding error of the potential is meaningless.
     const double digits = 1e-11 * (std::abs(before) + std::abs(after));
     if (std::isnan(after - before) || std::abs(expected) <= digits) {
       return work <= kSufficient * expected || ratio < 0.5;
@@ -227,14 +230,14 @@ class Newton {
     return after - before <= kSufficient * expected;
   }
 
-  // Shortens a step whose full length, to `full`, is too far.
+  // Shortens a step whose full length, which leads to `full`, does not decrease the potential.
   bool SearchLine(Iterate* at, const Eigen::VectorXd& step, const Iterate& full) {
     constexpr int kMaxTrials = 30;
     const double slope = at->residual.dot(step);
     double length = 1;
     double slope_there = full.residual.dot(step);
     for (int k = 0; k < kMaxTrials; ++k) {
-      // The zero of the slope by the secant rule, kept within sensible bounds.
+      // The zero of the slope by the secant rule, limited to a safe range.
       length *= slope_there > 0 ? std::clamp(slope / (slope - slope_there), 0.1, 0.7) : 0.5;
       Iterate trial = Evaluate(at->position + length * step);
       slope_there = trial.residual.dot(step);
@@ -247,12 +250,12 @@ class Newton {
       convexify_ = true;
       return true;
     }
-    // So near the solution that rounding hides the way down.
+    // Close to the solution, rounding errors can hide the descent.
     if (at->residual.norm() <= 100 * rounding_) {
       rounding_ = at->residual.norm();
       return true;
     }
-    Fail(NewtonSummary::Status::kNoConvergence, "no way down along Newton's direction");
+    Fail(NewtonSummary::Status::kNoConvergence, "no descent along the Newton direction");
     return false;
   }
 
@@ -279,10 +282,10 @@ class Newton {
   NewtonSummary summary_;
   bool convexify_ = false;
   bool may_climb_ = true;
-  bool has_tangent_ = false;                // `tangent_` is the exact one of an earlier iterate
-  std::vector<Eigen::Matrix3d> rotations_;  // of the nodes there
+  bool has_tangent_ = false;                // `tangent_` is exact for an earlier iterate
+  std::vector<Eigen::Matrix3d> rotations_;  // of the nodes at that iterate
   Iterate beyond_;
-  // N: residuals below this are rounding errors; known once there is a tangent
+  // Residuals below this norm, N, are rounding errors. Infinite until a tangent has been assembled.
   double rounding_ = std::numeric_limits<double>::infinity();
 };
 

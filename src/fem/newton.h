@@ -1,4 +1,9 @@
-// Newton's method for the positions at the end of a step.
+// Newton's method for the positions at the end of a time step.
+//
+// Solves r(x) = applied force at the free nodes, where r is the residual of the equation of motion
+// (step_equation.h). The tangent is exact, or a positive definite approximation where the exact one
+// is indefinite. Steps are globalised by a line search on the potential of r, or on the work of r
+// along the step if r has no potential.
 #ifndef LACUNA_FEM_NEWTON_H_
 #define LACUNA_FEM_NEWTON_H_
 
@@ -11,12 +16,12 @@
 
 namespace lacuna {
 
-// r(x) = applied, at the nodes that are not fixed.
+// The references must outlive the solution.
 struct NewtonProblem {
   const StepEquation& equation;
   const Eigen::VectorXd& applied_force;  // 3n, N
-  const std::vector<char>& fixed;        // n
-  double relative_tolerance = 0;         // of ‖r − applied‖ to the forces at work
+  const std::vector<char>& fixed;        // n flags
+  double relative_tolerance = 0;         // of ‖r − applied‖, relative to the acting forces
   int max_iterations = 0;
 };
 
@@ -25,13 +30,13 @@ struct NewtonSummary {
   Status status = Status::kNotRun;
   std::string message;
   int iterations = 0;
-  double residual = 0;  // ‖r − applied‖∞ at the free nodes, N
+  double residual = 0;  // ‖r − applied‖∞ over the free nodes, N
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
-// Starts at `*position` and moves the fixed nodes to their places in `target` with the first,
-// linearised, iteration, so that their neighbours follow. `tangent` is the matrix to work in. On
-// failure `*position` is where the iteration ended.
+// Starts at `*position` (3n, m). The first, linearised iteration moves the fixed nodes to their
+// places in `target` (3n, m), so that their neighbours follow. `tangent` is used as working memory.
+// On failure the summary says why, and `*position` is the last iterate.
 NewtonSummary SolveByNewton(const NewtonProblem& problem, const Eigen::VectorXd& target,
                             LinearSolver* solver, BlockMatrix* tangent, Eigen::VectorXd* position);
 

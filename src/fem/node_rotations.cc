@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kNodesPerTask = 512;
 
-// Σ w F over the quadrature points of the elements of each node. (Only its direction counts for
-// the nearest rotation, so it need not be divided by the volume.)
+// Adds Σ w F over the quadrature points of the elements of each node. The nearest rotation does not
+// depend on a positive factor, so the sum is not divided by the volume.
 template <int kNodes>
 void AddDeformationGradients(const Body& body, const Eigen::VectorXd& position,
                              std::vector<Eigen::Matrix3d>* sums) {

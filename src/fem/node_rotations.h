@@ -1,4 +1,6 @@
-// How much a deformed body has turned about each of its nodes.
+// The rotation of a deformed body at each of its nodes.
+//
+// Used to rotate a preconditioner along with the body (linear_solver.h).
 #ifndef LACUNA_FEM_NODE_ROTATIONS_H_
 #define LACUNA_FEM_NODE_ROTATIONS_H_
 
@@ -9,8 +11,9 @@
 
 namespace lacuna {
 
-// The rotation nearest to the deformation gradient averaged, by volume, over the elements of each
-// node. `position`: 3n, node-major.
+// Returns for each node the rotation nearest to the mean deformation gradient of its elements,
+// weighted by volume, with the nodes at `position` (3n, node-major, m). It is a rotation for
+// inverted elements too (polar_decomposition.h).
 std::vector<Eigen::Matrix3d> NodeRotations(const Body& body, const Eigen::VectorXd& position);
 
 }  // namespace lacuna

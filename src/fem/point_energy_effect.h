@@ -1,17 +1,18 @@
-// An effect that is an additional elastic energy density at each material point, of the body's
-// rest shape and of time besides the deformation gradient F.
+// An effect made from an additional elastic energy density at each material point.
 //
-// A `Law` is a value type, made from the values of its card's parameters, in their order, SI:
+// The energy density ψ(F, X, t) depends on the deformation gradient F, and may depend on the
+// position X in the rest shape and on time. The law has no memory and no rate dependence, so it
+// acts in statics as in dynamics. Forces, stiffness and energy follow by quadrature
+// (point_integrals.h). A `Law` is a value type, made from the values of the parameters in the order
+// of its card, SI:
 //   static const EffectCard& Card();
 //   explicit Law(const Eigen::VectorXd& parameters);
 //   double EnergyDensity(const Matrix3d& F, const MaterialPoint& at) const;             ψ, J/m³
 //   Matrix3d Stress(const Matrix3d& F, const MaterialPoint& at) const;                  ∂ψ/∂F, Pa
 //   StressTangent Tangent(const Matrix3d& F, const MaterialPoint& at, bool convexify) const;
-//                  ∂²ψ/∂F², Pa; with `convexify` a positive semi-definite stand-in
+//                  ∂²ψ/∂F², Pa; with `convexify` a positive semi-definite approximation
 //   Matrix3d StressDerivative(const Matrix3d& F, const MaterialPoint& at, int parameter) const;
-//                  of the stress by a parameter that is no setting
-// Forces, stiffness and energy follow as in point_integrals.h. The law has no memory, and so acts
-// the same in statics.
+//                  ∂(∂ψ/∂F)/∂p for a parameter p that is not a setting
 #ifndef LACUNA_FEM_POINT_ENERGY_EFFECT_H_
 #define LACUNA_FEM_POINT_ENERGY_EFFECT_H_
 
@@ -25,12 +26,13 @@
 
 namespace lacuna {
 
+// The arguments of a law besides F.
 struct MaterialPoint {
-  Eigen::Vector3d position;  // in the rest shape, m
+  Eigen::Vector3d position;  // X in the rest shape, m
   double time = 0;           // s
 };
 
-// What a law is evaluated for at a batch of points.
+// The arguments of a law at a batch of points.
 template <int kNodes>
 class MaterialPoints {
  public:
@@ -46,6 +48,8 @@ class MaterialPoints {
   DeformationGradients<kNodes> deformation_;
 };
 
+// The law as an effect: f_a = −Σ_q w_q (∂ψ/∂F) g_a, E = Σ_q w_q ψ. Parameters that its card marks
+// as settings have no derivative (CHECK).
 template <typename Law>
 class PointEnergyEffect final : public CloneableEffect<PointEnergyEffect<Law>> {
  public:

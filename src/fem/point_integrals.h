@@ -1,13 +1,14 @@
-// Nodal forces, stiffness matrix and energy of a body from the stress P, its tangent ∂P/∂F and the
-// energy density ψ at the quadrature points:
+// Nodal forces, stiffness matrix and energy of a body by quadrature, from the first Piola–Kirchhoff
+// stress P, its tangent ∂P/∂F and the energy density ψ at the quadrature points:
 //   f_a = −Σ_q w_q P_q g_a(q),    ∂f_a/∂x_b = −Σ_q w_q K_ab(q),    E = Σ_q w_q ψ_q
 // with quadrature weights w_q and shape gradients g_a of the body (Bonet & Wood, Nonlinear
 // Continuum Mechanics for Finite Element Analysis); K_ab as in stress_tangent.h.
 //
-// A law that is evaluated faster for many points at a time gets a batch of them: Points<kNodes> is
-// made as Points<kNodes>(at, begin, end) for the points of elements [begin, end), at most
-// ElementSchedule::kElementsPerBatch, and the functions given here are called as
-// function(points, k) for the k-th of these points.
+// Laws are evaluated for batches of points, since some are faster for many points at once. For the
+// elements [begin, end), at most ElementSchedule::kElementsPerBatch, an object Points<kNodes>(at,
+// begin, end) is constructed, and a function passed to these templates is called as
+// function(points, k) for the k-th point of the batch. The calls run on several threads; the
+// results do not depend on their number.
 #ifndef LACUNA_FEM_POINT_INTEGRALS_H_
 #define LACUNA_FEM_POINT_INTEGRALS_H_
 
@@ -19,7 +20,7 @@
 
 namespace lacuna {
 
-// The deformation gradients F of a batch.
+// The deformation gradients F at the points of a batch.
 template <int kNodes>
 struct DeformationGradients {
   DeformationGradients(const Kinematics& at, int begin, int end) {
@@ -32,12 +33,13 @@ struct DeformationGradients {
     }
   }
 
+  // The largest number of points in a batch.
   static constexpr int kMost = ElementSchedule::kElementsPerBatch * QuadraturePoints<kNodes>();
   int points = 0;
   Eigen::Matrix3d gradient[kMost];
 };
 
-// force += f.
+// Adds the nodal forces f_a to `force` (3n, N); stress(points, k) returns P in Pa.
 template <template <int> class Points, typename Stress>
 void AddNodalForces(const Kinematics& at, const Stress& stress, Eigen::VectorXd* force) {
   WithNodesPerElement(at.body, [&](auto nodes) {
@@ -58,8 +60,8 @@ void AddNodalForces(const Kinematics& at, const Stress& stress, Eigen::VectorXd*
   });
 }
 
-// tangent += weight · ∂f/∂x. The function gives a StressTangent, or a type of its own for which
-// AddStiffness(tangent, …) is overloaded.
+// Adds weight · ∂f/∂x to `tangent`. tangent_of(points, k) returns ∂P/∂F in Pa as a StressTangent,
+// or as a type for which AddStiffness(tangent, …) is overloaded.
 template <template <int> class Points, typename TangentOf>
 void AddStiffnessMatrix(const Kinematics& at, double weight, const TangentOf& tangent_of,
                         BlockMatrix* tangent) {
@@ -82,7 +84,7 @@ void AddStiffnessMatrix(const Kinematics& at, double weight, const TangentOf& ta
   });
 }
 
-// E, J.
+// The energy E in J; density(points, k) returns ψ in J/m³.
 template <template <int> class Points, typename Density>
 double TotalEnergy(const Kinematics& at, const Density& density) {
   return WithNodesPerElement(at.body, [&](auto nodes) {

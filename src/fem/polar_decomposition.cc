@@ -10,11 +10,11 @@
 namespace lacuna {
 namespace {
 
-// Convergence is quadratic: after a squared change of this size the error is at rounding.
+// Convergence is quadratic: after a squared change of this size only rounding errors remain.
 constexpr double kConvergedChange = 1e-17;
 
-// Whether F is so far from a singular or inverted matrix that Newton's iteration is fast and
-// accurate.
+// Whether F is sufficiently far from singular or inverted matrices for Newton's iteration to be
+// fast and accurate.
 bool IsRegular(const Eigen::Matrix3d& F) {
   constexpr double kSmallestDeterminant = 1e-3;  // for a matrix of norm 1
   const double size = F.squaredNorm();
@@ -31,7 +31,7 @@ bool NewtonRotation(const Eigen::Matrix3d& F, Eigen::Matrix3d* rotation) {
     Eigen::Matrix3d next = 0.5 * (X + cofactor / determinant);
     const double change = (next - X).squaredNorm();
     if (change > 0.1) {
-      // Far away, the scale that balances X and its inverse saves iterations.
+      // Far from convergence, a scale that balances X and its inverse saves iterations.
       const double scale =
           std::sqrt(std::sqrt(cofactor.squaredNorm() / X.squaredNorm()) / determinant);
       next = 0.5 * (scale * X + cofactor / (scale * determinant));
@@ -47,15 +47,15 @@ bool NewtonRotation(const Eigen::Matrix3d& F, Eigen::Matrix3d* rotation) {
   return false;
 }
 
-// Matrices side by side, one to a lane: entry k (column-major) of matrix i is entry[k][i].
+// Several matrices in vector lanes: entry k (column-major) of matrix i is entry[k][i].
 struct MatrixLanes {
   static constexpr int kLanes = 16;
   double entry[9][kLanes];
-  double change[kLanes];  // squared, of the last step
+  double change[kLanes];  // squared norm of the last change
   bool in_use[kLanes];
 };
 
-// One step of Newton's iteration, unscaled, in all lanes.
+// Performs one unscaled step of Newton's iteration in all lanes.
 LACUNA_FOR_EACH_INSTRUCTION_SET
 void StepTowardsRotations(MatrixLanes* lanes) {
   auto& x = lanes->entry;
@@ -104,14 +104,14 @@ Eigen::Matrix3d PolarRotation(const Eigen::Matrix3d& F) {
 }
 
 void ReplaceByRotations(int count, Eigen::Matrix3d* matrices) {
-  // Enough, without scaling, for stretches from 1/8 to 8.
+  // Sufficient without scaling for stretches between 1/8 and 8.
   constexpr int kMaxSteps = 9;
   MatrixLanes lanes;
   for (int begin = 0; begin < count; begin += MatrixLanes::kLanes) {
     Eigen::Matrix3d* group = matrices + begin;
     const int width = std::min(MatrixLanes::kLanes, count - begin);
     for (int i = 0; i < MatrixLanes::kLanes; ++i) {
-      // What is not for the lanes leaves the identity in its own.
+      // Unused lanes and matrices that are not regular hold the identity.
       lanes.in_use[i] = i < width && IsRegular(group[i]);
       for (int k = 0; k < 9; ++k) {
         lanes.entry[k][i] = lanes.in_use[i] ? group[i].data()[k] : k % 4 == 0;

@@ -17,7 +17,7 @@ PredictionSummary Stopped(PredictionSummary summary, const std::string& why) {
   return summary;
 }
 
-// To better than the steps: it does not matter from where it was sought.
+// Tighter than the tolerance of a step, so that the start of the search has no influence.
 constexpr double kHoldTolerance = 0.01;
 
 StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHistory* history) {
@@ -33,8 +33,8 @@ StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHisto
   return stepper->Equilibrium(options.held_force, history, kHoldTolerance);
 }
 
-constexpr double kFirstStep = 0.1;
-// By how much longer than asked for a quasi-static step may be, in parts of it.
+constexpr double kFirstStep = 0.1;  // length of the first step relative to the others
+// Relative excess over the requested length that a quasi-static step may have by rounding.
 constexpr double kRounding = 1e-9;
 
 }  // namespace
@@ -77,15 +77,16 @@ PredictionSummary Predict(
 
   const size_t wanted = times.size();
   size_t next = 0;
-  const auto visit_next = [&](const Knot<Eigen::VectorXd>& state, const Knot<Eigen::MatrixXd>& by) {
+  const auto visit_next = [&](const Knot<Eigen::VectorXd>& state,
+                              const Knot<Eigen::MatrixXd>& jacobian) {
     visit(static_cast<int>(next),
-          {times[next], state.position, state.velocity, by.position, by.velocity});
+          {times[next], state.position, state.velocity, jacobian.position, jacobian.velocity});
     ++next;
     summary.states = static_cast<int>(next);
   };
   Knot<Eigen::VectorXd> state{history.position, history.velocity};
-  Knot<Eigen::MatrixXd> by{linear.position(), linear.velocity()};
-  while (next < wanted && times[next] <= options.start_time) visit_next(state, by);
+  Knot<Eigen::MatrixXd> jacobian{linear.position(), linear.velocity()};
+  while (next < wanted && times[next] <= options.start_time) visit_next(state, jacobian);
 
   while (next < wanted) {
     ThrowIfInterrupted();
@@ -99,13 +100,14 @@ PredictionSummary Predict(
     history.time = end;
     ++summary.steps;
     const Knot<Eigen::VectorXd> now{history.position, history.velocity};
-    const Knot<Eigen::MatrixXd> now_by{linear.position(), linear.velocity()};
+    const Knot<Eigen::MatrixXd> jacobian_now{linear.position(), linear.velocity()};
     while (next < wanted && times[next] <= history.time) {
       const double t = 1 - (history.time - times[next]) / length;
-      visit_next(Interpolate(state, now, length, t), Interpolate(by, now_by, length, t));
+      visit_next(Interpolate(state, now, length, t),
+                 Interpolate(jacobian, jacobian_now, length, t));
     }
     state = now;
-    by = now_by;
+    jacobian = jacobian_now;
   }
   summary.status = PredictionSummary::Status::kReached;
   return summary;

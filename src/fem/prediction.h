@@ -1,4 +1,7 @@
-// Predicts a motion: everything is simulated from its start, nothing follows a measurement.
+// The prediction of a motion: a simulation from an equilibrium, without reference to measurements.
+//
+// The motion and its sensitivities (tangent_linear.h) are computed step by step and interpolated at
+// the requested times. Nodal vectors are 3n, node-major.
 #ifndef LACUNA_FEM_PREDICTION_H_
 #define LACUNA_FEM_PREDICTION_H_
 
@@ -12,53 +15,56 @@
 
 namespace lacuna {
 
-// A prediction's next step after `steps_before`, from `time`, s; `wanted`: the next of the times
-// asked for, after it. The first step, of implicit Euler, is a tenth of the others: letting go is a
-// shock, and what that step gets wrong of it goes with the square of its length. Quasi-static steps
-// are as even as they can be and end at the times asked for: between two equilibria nothing tells a
-// velocity.
+// The next step of a prediction.
 struct PredictionStep {
   double length = 0, end = 0;  // s
 };
+
+// The step after `steps_before` others, from `time` (s), where `wanted` is the next requested time
+// after it. The first step, of implicit Euler, is a tenth as long as the others: releasing a body
+// is a shock, and the error of this step is proportional to the square of its length. Quasi-static
+// steps end at the requested times and are of equal length in between, because velocities between
+// two equilibria, and hence interpolation, are not defined.
 PredictionStep NextStep(TimeScheme scheme, double time_step, int steps_before, double time,
                         double wanted);
 
 struct PredictionOptions {
-  // The body is in equilibrium until then, under its effects, its grips where they are then, and
-  // `held_force`; from then on it moves without `held_force`.
+  // Until this time the body is in equilibrium under its effects, its grips at their positions at
+  // this time, and `held_force`. After it the body moves without `held_force`.
   double start_time = 0;            // s
   Eigen::VectorXd held_force = {};  // 3n, N; empty: none
-  // 3n, m: where the equilibrium is sought, near it a tenth of the work; empty, or where it is not
-  // found from there: from the rest shape.
+  // 3n, m: start of the search for the equilibrium; a close one saves nine tenths of the work. If
+  // it is empty or the search fails, the search starts from the rest shape.
   Eigen::VectorXd held_guess = {};
-  double time_step = 0.005;  // s, at most; smaller: slower, more accurate (OrderOf)
+  double time_step = 0.005;  // s, upper limit; a smaller one is slower and more accurate (OrderOf)
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
 };
 
-// The motion at one of the times asked for. Sensitivities are 3n × perturbations, empty without
-// any. Refers to vectors that live during the visit only.
+// The motion at a requested time. The Jacobians with respect to the perturbations are 3n ×
+// perturbations, in m and m/s per unit of each. All references are valid during the visit only.
 struct PredictedState {
   double time = 0;  // s
   const Eigen::VectorXd& position;
   const Eigen::VectorXd& velocity;
-  const Eigen::MatrixXd& position_by;
-  const Eigen::MatrixXd& velocity_by;
+  const Eigen::MatrixXd& position_jacobian;
+  const Eigen::MatrixXd& velocity_jacobian;
 };
 
 struct PredictionSummary {
   enum class Status { kNotRun, kReached, kStopped };
   Status status = Status::kNotRun;
-  std::string message;  // why it stopped, and when
+  std::string message;  // why and when it stopped
   int steps = 0;
-  int states = 0;        // visited, of those asked for
-  Eigen::VectorXd held;  // 3n, m: the equilibrium
+  int states = 0;        // number of requested times that were visited
+  Eigen::VectorXd held;  // 3n, m: the initial equilibrium
   bool IsUsable() const { return status == Status::kReached; }
 };
 
-// Visits the motion at `times` (s, ascending), between the ends of steps by cubic Hermite
-// interpolation, whose error is of higher order than the step's. A step that fails ends the
-// prediction; the states visited before are good. Quasi-static: the body is in equilibrium
-// throughout, and its velocity is the step's mean. Throws Interrupted.
+// Predicts the motion and calls `visit` at each of `times` (s, ascending, CHECKed) from the calling
+// thread. Between the ends of steps the motion is interpolated by cubic Hermite polynomials, whose
+// error is of higher order than that of the step. A step that fails ends the prediction with
+// kStopped; states that have been visited before are valid. In a quasi-static prediction the body
+// is always in equilibrium, and velocities are mean values over the step. Throws Interrupted.
 PredictionSummary Predict(const Model& model, const PredictionOptions& options,
                           const std::vector<double>& times,
                           const std::vector<Perturbation>& perturbations,

@@ -22,7 +22,7 @@ Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes) {
     const auto face = boundary.faces.col(f);
     const Eigen::Index first = f * per_face;
     if (all_chosen(face)) {
-      // ∫ N_a dA: the corners of a straight-sided quadratic face have none.
+      // ∫ N_a dA vanishes at the corners of a straight-sided quadratic face.
       share(face.tail<3>()).array() += areas.segment(first, per_face).sum();
       continue;
     }
@@ -43,11 +43,11 @@ PrescribedForce::PrescribedForce(Eigen::VectorXd share,
 const EffectCard& PrescribedForce::Card() const {
   static const EffectCard card{
       .type = "prescribed_force",
-      .title = "Known outer force",
+      .title = "Known external force",
       .equation = "f_i = gain · share_i · F(t)",
       .citation = "the recording's own measurement",
       .parameters = {{.name = "gain",
-                      .meaning = "true force per measured force",
+                      .meaning = "true force divided by the measured force",
                       .dimension = kDimensionless,
                       .bounds = kAnyValue,
                       .null_value = 0,
@@ -56,9 +56,9 @@ const EffectCard& PrescribedForce::Card() const {
                       .default_value = 1,
                       .log_scale = false}},
       .residual_when_missing =
-          "the model does not answer when the load changes; the unexplained force lies where the "
+          "the model does not respond when the load changes; the unexplained force lies where the "
           "load acts and has its size and direction",
-      .separating_experiment = "unload: what stays is not the load",
+      .separating_experiment = "remove the load: an error that remains has another cause",
       .look_alikes = {},
       .conserves_momentum = false,
       .conserves_angular_momentum = false};

@@ -1,4 +1,5 @@
-// A known outer force: a dead weight, a load cell's reading, the load of a synthetic scene.
+// A known external load with a fixed distribution over the boundary: a dead weight, the reading of
+// a load cell, or the load of a synthetic scene.
 #ifndef LACUNA_FEM_PRESCRIBED_FORCE_H_
 #define LACUNA_FEM_PRESCRIBED_FORCE_H_
 
@@ -9,16 +10,18 @@
 
 namespace lacuna {
 
-// Share of each node (n, sum 1) in a force that acts evenly on the boundary between `nodes`: the
-// work-equivalent one, ∝ ∫ N_a dA, on faces whose nodes are all chosen (of quadratic ones on the
-// midpoints alone), a third of a triangle each on what else they span; where they span none, in
-// proportion to the boundary area around them. CHECKs that there is any.
+// The share of each node (n, sum 1) in a uniform traction on the part of the boundary that `nodes`
+// span. On faces of which all nodes are listed the shares are work-equivalent, ∝ ∫ N_a dA (0 at the
+// corners of a quadratic face). On other triangles that the nodes span each corner receives a third
+// of the area. If the nodes span no triangle, the shares are proportional to the boundary area of
+// each node. CHECKs that this area is positive.
 Eigen::VectorXd BoundaryShares(const Body& body, const Eigen::VectorXi& nodes);
 
-// f_i = gain · share_i · F(t), in fixed directions. The gain is 1 for a gauge that tells the truth.
+// f_i = gain · share_i · F(t), with a direction that does not follow the body. The parameter
+// `gain`, true force per measured force, is 1 for a correct force sensor.
 class PrescribedForce final : public CloneableEffect<PrescribedForce> {
  public:
-  // `share`: n; `force`: F(t), N.
+  // `share` has n entries; `force` is F(t) in N for a time in s, and may be called from any thread.
   PrescribedForce(Eigen::VectorXd share, std::function<Eigen::Vector3d(double time)> force);
 
   const EffectCard& Card() const override;

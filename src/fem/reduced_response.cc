@@ -14,9 +14,11 @@
 namespace lacuna {
 namespace {
 
-// Of the largest eigenvalue of the shapes' Gram matrix: below it a shape is rounding of others.
+// Shapes whose eigenvalue of the Gram matrix is below this fraction of the largest one are linear
+// combinations of the others up to rounding.
 constexpr double kDependent = 1e-11;
 
+// M times the columns.
 Eigen::MatrixXd Massed(const Body& body, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd product = columns;
   for (Eigen::Index i = 0; i < body.node_mass.size(); ++i)
@@ -24,6 +26,7 @@ Eigen::MatrixXd Massed(const Body& body, const Eigen::MatrixXd& columns) {
   return product;
 }
 
+// Tangents of the effects at states of a trajectory, and solutions with them.
 class TangentsAlong {
  public:
   TangentsAlong(const Model& model, double time_step)
@@ -33,15 +36,15 @@ class TangentsAlong {
         factor_(*model.body->pattern, order_),
         matrix_(model.body->pattern) {}
 
-  // −(weighted ∂f) at the state, times the columns.
+  // The negative weighted derivative of the effects at a state, times the columns.
   Eigen::MatrixXd Apply(const TrajectoryState& state, const TangentWeights& weights,
                         const Eigen::MatrixXd& columns) {
     Assemble(state, weights, false);
     return matrix_ * columns;
   }
 
-  // K⁻¹ right on the free nodes; where K is not definite, with its stand-in. Nothing where that
-  // fails too.
+  // [K⁻¹ right, K⁻¹ M K⁻¹ right] on the free nodes, with the convexified K if K is not definite. No
+  // value if that fails too.
   std::optional<Eigen::MatrixXd> Compliance(const TrajectoryState& state,
                                             const Eigen::MatrixXd& right, const Body& body) {
     bool factorised = false;
@@ -85,7 +88,7 @@ class TangentsAlong {
   BlockMatrix matrix_;
 };
 
-// The shapes that matter most of the columns, each column counting alike; orthonormal in M.
+// The principal shapes of the normalised columns, orthonormal with respect to M.
 Eigen::MatrixXd PrincipalShapes(const Body& body, Eigen::MatrixXd columns, int most) {
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     const double norm = std::sqrt(columns.col(k).dot(Massed(body, columns.col(k)).col(0)));

@@ -1,16 +1,17 @@
-// How a trajectory answers to small forces over all of its time, in few shapes: the tangent-linear
-// model (tangent_linear.h) projected onto a basis Φ, δx = Φ q,
+// A reduced-order model of the linear response of a trajectory to small forces.
+//
+// The tangent-linear model (tangent_linear.h) is projected onto a basis Φ of few shapes, δx = Φ q:
 //   Φᵀ(M + A)Φ q̈ + ΦᵀCΦ q̇ + ΦᵀKΦ q = Φᵀ δf,
-// with K = −∂f/∂x, C = −∂f/∂v, A = −∂f/∂a of the effects at given states of the trajectory, linear
-// in time between them. Hundreds of force histories then cost less than the trajectory itself.
+// with K = −∂f/∂x, C = −∂f/∂v and A = −∂f/∂a of the effects at given states of the trajectory, and
+// linear interpolation in time between them. The response to hundreds of force histories then costs
+// less than the trajectory itself.
 //
-// Φ spans K⁻¹F and K⁻¹MK⁻¹F for the given force shapes F at a few of the states: the first two
+// Φ spans K⁻¹F and K⁻¹MK⁻¹F for given force shapes F at some of the states, i.e. the first two
 // moments of the response about frequency 0 (Su & Craig, Journal of Guidance, Control, and Dynamics
-// 14, 1991), so that slow forces are answered to exactly there.
+// 14, 1991), so that the response to slow forces is exact at these states.
 //
-// The memory of effects is taken as it is along the trajectory: that a change of the motion changes
-// it too is left out, and a relaxing effect answers to a change with its stiffness over one
-// `time_step`.
+// Internal variables of effects are those of the trajectory. Their change with the motion is
+// neglected, so that a relaxing effect responds with its stiffness over one `time_step`.
 #ifndef LACUNA_FEM_REDUCED_RESPONSE_H_
 #define LACUNA_FEM_REDUCED_RESPONSE_H_
 
@@ -24,38 +25,39 @@
 
 namespace lacuna {
 
-// A state that a trajectory went through.
+// A state of the trajectory.
 struct TrajectoryState {
   double time = 0;                            // s
-  Eigen::VectorXd position, velocity;         // 3n
-  std::vector<Eigen::VectorXd> effect_state;  // one for each of the model's effects
+  Eigen::VectorXd position, velocity;         // 3n, m and m/s
+  std::vector<Eigen::VectorXd> effect_state;  // internal variables of each effect of the model
 };
 
 struct ReducedResponseOptions {
   TimeScheme scheme = TimeScheme::kTwoStep;
-  double time_step = 0.005;  // s; steps are those of a prediction (NextStep)
-  int most_shapes = 40;      // in Φ; more: finer, slower by the square
-  int basis_states = 6;      // of the trajectory, evenly spread, that Φ is made at
+  double time_step = 0.005;  // s; steps as in a prediction (NextStep)
+  int most_shapes = 40;      // upper limit for Φ; the cost grows with its square
+  int basis_states = 6;      // number of evenly spaced states from which Φ is made
 };
 
-// Forces on a trajectory, in the columns of Φᵀ F's k shapes: `amplitude(time)` is k × columns, in
-// units of each shape.
+// Amplitudes of the k force shapes as a function of time (s): a k × columns matrix, with one column
+// per force history.
 using ForceHistories = std::function<Eigen::MatrixXd(double time)>;
 
 class ReducedResponse {
  public:
-  // `states`: ascending times, the first at rest. `shapes`: 3n × k, N. The first state is the
-  // equilibrium that the motion starts from. CHECKs that there are states and that the model has
-  // inertia.
+  // `states` are in temporal order; the first one is the equilibrium from which the motion starts,
+  // and there must be at least one (CHECK). `shapes` holds the force shapes F (3n × k, N). If the
+  // stiffness is not definite at any of the states, the result is not usable.
   ReducedResponse(const Model& model, const std::vector<TrajectoryState>& states,
                   const Eigen::MatrixXd& shapes, const ReducedResponseOptions& options = {});
 
   bool IsUsable() const { return message_.empty(); }
-  const std::string& message() const { return message_; }  // why not
+  const std::string& message() const { return message_; }  // why it is not usable
   const Eigen::MatrixXd& basis() const { return basis_; }  // 3n × r, ΦᵀMΦ = I
 
-  // Visits q and q̇ (r × columns) at `times` (ascending). Until the first state's time the body is
-  // in equilibrium with `held` (k × columns), the amplitudes there; from then on the histories act.
+  // Visits q and q̇ (r × columns) at `times` (s, ascending). Until the time of the first state the
+  // body is in equilibrium with the constant amplitudes `held` (k × columns); after it the
+  // histories act. CHECKs that the response is usable.
   void Respond(const Eigen::MatrixXd& held, const ForceHistories& histories,
                const std::vector<double>& times,
                const std::function<void(int index, const Eigen::MatrixXd& position,

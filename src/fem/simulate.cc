@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "fem/inverted_element.h"
 #include "fem/newton.h"
 
 namespace lacuna {
@@ -27,7 +28,7 @@ std::vector<char> FixedNodes(const Model& model) {
   return fixed;
 }
 
-// `position` with the gripped nodes where their grips put them at `time`.
+// Returns `position` with the gripped nodes at the positions that their grips prescribe at `time`.
 Eigen::VectorXd Gripped(const Model& model, double time, Eigen::VectorXd position) {
   for (const Grip& grip : model.grips) {
     Eigen::Matrix3Xd places(3, grip.nodes.size());
@@ -76,14 +77,15 @@ struct Stepper::Implementation {
     return SolveByNewton(problem, target, &solver, &tangent, position);
   }
 
-  // From the start, where an applied force r(start) would keep the balance, to the wanted state:
-  // that force is withdrawn, and the grips are moved, a fraction at a time.
+  // Continuation from the start, which an applied force r(start) holds in balance, to the wanted
+  // state: that force is removed and the grips are moved in fractions.
   NewtonSummary SolveByIncrements(const StepEquation& equation, const Eigen::VectorXd& force,
                                   const Eigen::VectorXd& target, double tolerance, int* increments,
                                   Eigen::VectorXd* position) {
     constexpr double kSmallestIncrement = 1.0 / 512;
-    // Newton's iterations in all, in those that one solution may take: what is found at all is
-    // found with far fewer, and a fit that tries what has no equilibrium would spend its time here.
+    // Limits the total number of iterations, as a multiple of those of one solution. Continuations
+    // that succeed need far fewer; without the limit, a fit that tries parameters without an
+    // equilibrium would spend most of its time here.
     constexpr int kMostSolutions = 4;
     const Eigen::VectorXd start = *position;
     Eigen::VectorXd imbalance;
@@ -134,7 +136,7 @@ struct Stepper::Implementation {
       return result;
     }
     const int factorisations_before = solver.factorisations();
-    // From where the body would be without what is to come in this step.
+    // Start from the position that constant acceleration would lead to.
     Eigen::VectorXd position = history->position;
     if (equation.has_inertia()) {
       position += time_step * history->velocity;

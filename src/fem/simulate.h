@@ -1,4 +1,8 @@
-// Newton's method for one step, and a trajectory of steps.
+// Time steps and static equilibria of a model.
+//
+// Each step solves the equation of motion at its end (step_equation.h) by Newton's method
+// (newton.h). A step or equilibrium that is not reached directly is approached in increments of the
+// load together with the motion of the grips.
 #ifndef LACUNA_FEM_SIMULATE_H_
 #define LACUNA_FEM_SIMULATE_H_
 
@@ -15,50 +19,46 @@ namespace lacuna {
 
 struct StepOptions {
   TimeScheme scheme = TimeScheme::kBdf2;
-  int max_iterations = 50;  // of Newton's method; more: slower to give up
-  // ‖r‖ over the free nodes, relative to the forces at work (the sum of the norms of inertia, each
-  // effect and the external force); smaller: more iterations, one or two where they are quadratic.
+  int max_iterations = 50;  // of Newton's method; a larger value delays giving up
+  // ‖r‖ over the free nodes relative to the acting forces, the sum of the norms of inertia, of each
+  // effect and of the external force. A smaller value costs one or two more iterations.
   double relative_tolerance = 1e-8;
   LinearSolverOptions linear = {};
-  // A step that ends with an inverted element is not usable. Switch off for linear elasticity,
-  // whose small-strain law does not know inversion.
+  // Rejects a step that ends with an inverted element. Switch off for linear elasticity, whose
+  // small-strain law has no notion of inversion.
   bool refuse_inverted = true;
 };
 
 struct StepSummary {
   enum class Status { kNotRun, kConverged, kNoConvergence, kInvertedElement, kLinearSolverFailed };
   Status status = Status::kNotRun;
-  std::string message;  // names step, node or element
-  int iterations = 0;
+  std::string message;  // why the step failed, with time and node or element
+  int iterations = 0;   // of Newton's method
   int factorisations = 0;
-  int load_increments = 0;  // 0: reached at once
+  int load_increments = 0;  // 0: reached directly
   double residual = 0;      // ‖r‖∞ over the free nodes, N
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
-// Takes steps of one model. Keeps what can be kept between them: pattern, symbolic analysis,
-// factor.
-//
-// Newton's method with the exact tangent, or its definite stand-in where that one is indefinite,
-// and a line search on the potential of r where there is one, else on the work of r along the step
-// (the same thing to second order). A step or equilibrium that is not reached at once is approached
-// by increments of load and grip motion together. A solution with an inverted element is no
-// success.
+// Takes steps of one model and keeps the pattern, the symbolic analysis and the factor between
+// them. Keeps a copy of the model, which shares body and effects. Not thread-safe: one stepper per
+// simulation.
 class Stepper {
  public:
-  // Nodes in two grips are refused (InputError), as are node numbers that the mesh does not have.
+  // Throws InputError if a node belongs to two grips or does not exist in the mesh.
   Stepper(const Model& model, const StepOptions& options);
   ~Stepper();
   Stepper(Stepper&&) noexcept;
   Stepper& operator=(Stepper&&) noexcept;
 
-  // Advances `history` by one step of `time_step` under the effects and an additional nodal force
-  // (3n, N; empty: none). On failure `history` is left as it was.
+  // Advances `history` by one step of length `time_step` (s, > 0) under the effects and an external
+  // nodal force (3n, node-major, N; empty: none). On failure the summary says why and `history` is
+  // unchanged.
   StepSummary Step(double time_step, const Eigen::VectorXd& external_force, MotionHistory* history);
 
-  // The static equilibrium under the effects and the grips at `history->time`, from the positions
-  // in `history`. On success velocities are 0 and there is no previous step. `tighter`: the
-  // tolerance, in parts of that of a step.
+  // Finds the static equilibrium under the effects, the grips and the external force at
+  // `history->time`, starting from the positions in `history`. On success velocities are 0 and
+  // there is no previous step. `tighter` multiplies the tolerance of a step.
   StepSummary Equilibrium(const Eigen::VectorXd& external_force, MotionHistory* history,
                           double tighter = 1);
 

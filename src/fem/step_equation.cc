@@ -74,7 +74,7 @@ Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
 void StepEquation::Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
                             double* force_scale) const {
   const EndOfStep end = End(position);
-  // M a; 0 in statics.
+  // M a, which is 0 in statics.
   *residual =
       (end.acceleration.reshaped(3, model_.body->NodeCount()) * model_.body->node_mass.asDiagonal())
           .reshaped();

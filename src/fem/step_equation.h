@@ -1,12 +1,12 @@
-// The equation of motion of one time step, as a function of the unknown positions alone.
+// The equation of motion of one time step as a function of the unknown positions.
 //
-// An integrator (time_scheme.h) writes velocity and acceleration at the end of the step as
-// v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states,
-// so that a step is the root of
-//   r(x) = M a(x) − Σ f_effect(x, v(x), t)          and          ∂r/∂x = γ² M − Σ (∂f/∂x + γ
-//   ∂f/∂v).
-// r(x) is also the force that would have to act from outside for x to be the motion: what the
-// force fit estimates and what the diagnosis reads.
+// An integrator (time_scheme.h) expresses velocity and acceleration at the end of the step as
+// v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states. A step is
+// then the root of
+//   r(x) = M a(x) − Σ f(x, v(x), a(x), t),    ∂r/∂x = γ² M − Σ (∂f/∂x + γ ∂f/∂v + γ² ∂f/∂a),
+// summed over the effects, with lumped masses M. r(x) is also the external load that would be
+// needed for x to be the motion; the force fit and the diagnosis use it in this sense. Nodal
+// vectors are 3n, node-major.
 #ifndef LACUNA_FEM_STEP_EQUATION_H_
 #define LACUNA_FEM_STEP_EQUATION_H_
 
@@ -18,46 +18,51 @@
 
 namespace lacuna {
 
-// The motion up to now. `previous_*` is one step earlier, empty before the second step.
+// The motion up to the current time. `previous_…` is one step earlier, empty before the second
+// step.
 struct MotionHistory {
   double time = 0;                     // s
-  Eigen::VectorXd position, velocity;  // 3n
-  Eigen::VectorXd acceleration;        // 3n; empty before the first step
+  Eigen::VectorXd position, velocity;  // 3n, m and m/s
+  Eigen::VectorXd acceleration;        // 3n, m/s²; empty before the first step
   Eigen::VectorXd previous_position, previous_velocity, previous_acceleration;
-  double previous_time_step = 0;              // s; 0: as long as the next one
-  std::vector<Eigen::VectorXd> effect_state;  // one per effect of the model
+  double previous_time_step = 0;              // s; 0: of the same length as the next step
+  std::vector<Eigen::VectorXd> effect_state;  // internal variables of each effect of the model
 };
-// At rest in the rest shape, at time 0.
+
+// The history of a body at rest in its rest shape at time 0.
 MotionHistory RestHistory(const Model& model);
 
+// Immutable. The model and the history must outlive the equation, and the position vector an
+// EndOfStep.
 class StepEquation {
  public:
-  // The motion that the end of the step at `position` means. Refers to that vector.
+  // The state at the end of the step for given positions. Refers to the position vector.
   struct EndOfStep {
     const Eigen::VectorXd& position;
     Eigen::VectorXd velocity, acceleration;
   };
-  // `time_step` > 0, or 0 for statics. The model and the history must outlive the equation.
+  // `time_step` > 0 in s, or 0 in statics. CHECKs that the history fits the model.
   StepEquation(const Model& model, const MotionHistory& history, TimeScheme scheme,
                double time_step);
 
   Eigen::VectorXd Velocity(const Eigen::VectorXd& position) const;
-  // r(x), N, at all nodes (at gripped nodes: the reaction of the grip with a minus sign removed,
-  // i.e. the force the grip exerts). `force_scale`, where asked for, becomes the sum of the
-  // Euclidean norms of the terms of r, N: what "small" is to be measured by.
+  // r(x) at all nodes, N; at gripped nodes it is the force that the grip exerts on the body.
+  // `force_scale`, if given, receives the sum of the Euclidean norms of the terms of r, N, relative
+  // to which the size of r is to be judged.
   void Residual(const Eigen::VectorXd& position, Eigen::VectorXd* residual,
                 double* force_scale = nullptr) const;
-  // The symmetric part of ∂r/∂x, N/m, at all nodes (overwrites `tangent`).
+  // Overwrites `tangent` with the symmetric part of ∂r/∂x at all nodes, N/m, or with a positive
+  // definite approximation of it if `convexify` is set.
   void Tangent(const Eigen::VectorXd& position, bool convexify, BlockMatrix* tangent) const;
-  // Its skew-symmetric part; false: there is none.
+  // Overwrites `tangent` with the skew-symmetric part; returns false if it is zero.
   bool SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tangent) const;
-  // ∂r/∂(parameter k of effect j), N per unit (overwrites `derivative`).
+  // Overwrites `derivative` with ∂r/∂p for a parameter p of an effect, N per unit of the parameter.
   void ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
                            Eigen::VectorXd* derivative) const;
-  // Inertial plus stored energy whose gradient r is, where all effects have one; used by the line
-  // search. NaN otherwise.
+  // The potential whose gradient is r, J: inertial terms plus the potentials of the effects. NaN if
+  // an effect has no potential.
   double Potential(const Eigen::VectorXd& position) const;
-  // The history after the step ended at `position`.
+  // The history after the step has ended at `position`; advances the internal variables.
   MotionHistory Advance(const Eigen::VectorXd& position) const;
 
   const Body& body() const { return *model_.body; }
@@ -68,7 +73,7 @@ class StepEquation {
   const SchemeWeights& weights() const { return weights_; }
 
   EndOfStep End(const Eigen::VectorXd& position) const;
-  // What an effect of the model sees there.
+  // The arguments of an effect of the model at the end of the step.
   Kinematics At(const EndOfStep& end, size_t effect) const;
 
  private:

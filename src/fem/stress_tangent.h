@@ -1,7 +1,7 @@
-// Derivatives of the first Piola–Kirchhoff stress and the stiffness blocks made from them.
+// Derivatives of the first Piola–Kirchhoff stress, and the stiffness blocks that follow from them.
 //
-// A tangent C maps a change of the deformation gradient to a change of stress, δP = C : δF. Nodes a
-// and b of an element with shape gradients g_a, g_b are coupled by the 3 × 3 block
+// A tangent C maps a change of the deformation gradient to a change of the stress, δP = C : δF.
+// Nodes a and b of an element, with shape gradients g_a and g_b, are coupled by the 3 × 3 block
 //   K_ab = ∂(P g_a)/∂x_b,      (K_ab)_ik = Σ_jl C_ijkl (g_a)_j (g_b)_l.
 #ifndef LACUNA_FEM_STRESS_TANGENT_H_
 #define LACUNA_FEM_STRESS_TANGENT_H_
@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-// C as a matrix between column-major vectors: entry (i + 3j, k + 3l) is ∂P_ij/∂F_kl.
+// C as a 9 × 9 matrix over column-major vectors: entry (i + 3j, k + 3l) is ∂P_ij/∂F_kl.
 using StressTangent = Eigen::Matrix<double, 9, 9>;
 
 // The stiffness blocks of an element's node pairs a ≤ b, in the order (0,0) (0,1) … (0,n−1) (1,1) …
@@ -25,7 +25,7 @@ struct ElementStiffness {
   }
 };
 
-// K += scale · K_ab, for all pairs.
+// Adds scale · K_ab to the stiffness for all pairs of nodes of an element.
 template <int kNodes>
 void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNodes, 3>& gradient,
                   double scale, ElementStiffness<kNodes>* stiffness) {
@@ -52,7 +52,7 @@ void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNod
   }
 }
 
-// tangent += scale · ∂²(det F)/∂F².
+// Adds scale · ∂²(det F)/∂F² to the tangent.
 inline void AddCofactorDerivative(const Eigen::Matrix3d& F, double scale, StressTangent* tangent) {
   // block += c [v]×
   const auto add_cross = [](double c, const auto& v, auto block) {
@@ -73,25 +73,27 @@ inline void AddCofactorDerivative(const Eigen::Matrix3d& F, double scale, Stress
 }
 
 // The tangent of an isotropic law in the axes of the principal stretches s (Smith, de Goes & Kim
-// 2019, "Analytic eigensystems for isotropic distortion energies"), ψ_i = ∂ψ/∂s_i. Entry k of
-// `twist` and `flip` belongs to the pair (i, j) of the two other axes:
+// 2019, "Analytic eigensystems for isotropic distortion energies"). With ψ_i = ∂ψ/∂s_i, and entry k
+// of `twist` and `flip` for the pair (i, j) of the two other axes:
 //   stretch_ij = ∂²ψ/∂s_i∂s_j,   twist = (ψ_i + ψ_j)/(s_i + s_j),   flip = (ψ_i − ψ_j)/(s_i − s_j).
 struct PrincipalTangent {
   Eigen::Matrix3d stretch;
   Eigen::Vector3d twist, flip;
 
   static PrincipalTangent Zero();
-  // Adds that of c/2 F:F, with every value c.
+  // Adds the tangent of the energy density ½ c F : F, all of whose principal values are c.
   void AddIsotropic(double c);
-  // Adds what comes of a dependence on J = s₀s₁s₂: ∂ψ/∂J and ∂²ψ/∂J² at fixed F:F.
+  // Adds the tangent of a dependence on J = s₀ s₁ s₂, with the derivatives slope = ∂ψ/∂J and
+  // curvature = ∂²ψ/∂J² at fixed F : F.
   void AddVolumetric(const Eigen::Vector3d& s, double slope, double curvature);
 };
 
-// The tangent with these principal values, negative eigenvalues replaced by zero.
+// The tangent with these principal values after its negative eigenvalues have been replaced by
+// zero.
 StressTangent ProjectedTangent(const SignedSvd& axes, const PrincipalTangent& principal);
 
-// True when the symmetric tangent has no negative eigenvalue (up to rounding), by its Cholesky
-// factorisation.
+// Whether the symmetric tangent has no negative eigenvalue up to rounding, by a Cholesky
+// factorisation. False for a tangent with NaN.
 bool IsPositiveSemidefinite(const StressTangent& tangent);
 
 }  // namespace lacuna

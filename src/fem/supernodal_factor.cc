@@ -10,9 +10,9 @@
 namespace lacuna {
 namespace {
 
-constexpr int kNodesPerTask = 256;  // columns of a child, in nodes, that one thread adds at a time
+constexpr int kNodesPerTask = 256;  // columns of a child, in nodes, that are added per task
 
-// Floating-point operations that eliminate p of a front's m columns.
+// Floating-point operations of the elimination of p out of m columns of a front.
 double EliminationFlops(double m, double p) {
   const double u = m - p;
   return p * p * p / 3 + p * p * u + p * u * u;
@@ -27,7 +27,7 @@ SupernodalFactor::SupernodalFactor(const BlockPattern& pattern, const Eliminatio
   for (int s = 0; s < supernodes; ++s) {
     const double m = 3.0 * tree_.FrontRows(s), p = 3.0 * tree_.Columns(s);
     flops_ += EliminationFlops(m, p);
-    // Small fronts are slower per operation than large ones: their memory traffic counts too.
+    // Memory traffic makes small fronts slower per operation than large ones.
     cost[s] = EliminationFlops(m, p) + 50 * m * m;
   }
   cut_ = CutTree(tree_, cost);
@@ -53,9 +53,10 @@ SupernodalFactor::SupernodalFactor(const BlockPattern& pattern, const Eliminatio
   PlaceInMemory();
 }
 
-// The update matrices of a postordered tree are needed again in the order of a stack, one for the
-// even and one for the odd levels: when a front is assembled its children are on top of one stack,
-// and what it passes on goes on top of the other. Each subtree of the cut has its own two.
+// In a postordered tree, update matrices are used in the order of stacks, one for the even and one
+// for the odd levels: when a front is assembled, the updates of its children are on top of one
+// stack, and its own update is pushed onto the other. Each subtree of the cut has two stacks of its
+// own.
 void SupernodalFactor::PlaceInMemory() {
   const int supernodes = tree_.SupernodeCount();
   std::vector<int> level(supernodes, 0);
@@ -130,7 +131,7 @@ void SupernodalFactor::AssembleFront(int s, const BlockMatrix& matrix) {
   std::fill(update, update + u * u, 0.0f);
   for (int64_t k = entry_begin_[s]; k < entry_begin_[s + 1]; ++k) {
     const Entry& entry = entries_[k];
-    // The block of the transposed place: row `column` of the matrix is stored.
+    // The matrix stores the transposed block, in row `column`.
     const Eigen::Matrix3f block = (scale_ * matrix.Block(entry.block).transpose()).cast<float>();
     Eigen::Map<Eigen::Matrix3f, 0, Eigen::OuterStride<>>(
         panel + 3 * entry.row + 3 * entry.column * m, Eigen::OuterStride<>(m)) = block;
@@ -148,7 +149,7 @@ void SupernodalFactor::AssembleFront(int s, const BlockMatrix& matrix) {
         for (int64_t c = 0; c < 3; ++c) {
           const float* from = source + (3 * node + c) * rows;
           const int64_t column = 3 * place + c;
-          // `to` points at row 0 of the front, which the update matrix does not have.
+          // `to` refers to row 0 of the front; an update matrix begins at row p.
           float* to = column < p ? panel + column * m : update + (column - p) * u - p;
           for (size_t r = first; r < runs.size(); ++r) {
             const int64_t skipped = r == first ? node - runs[r].from : 0;
@@ -176,8 +177,8 @@ Pivots SupernodalFactor::Factorise(const BlockMatrix& matrix) {
   }
   if (!(largest > 0) || !std::isfinite(largest)) return Pivots::kInDoubt;
   scale_ = std::exp2(-std::ilogb(largest));
-  // A front above a failed one is not attempted, any other one is: the verdict must not depend on
-  // which thread failed first.
+  // Fronts above a failed one are skipped and all others are attempted, so that the result does not
+  // depend on which thread failed first.
   std::vector<Pivots> pivots(tree_.SupernodeCount(), Pivots::kPositive);
   VisitUpwards([&](int s) {
     for (const int child : tree_.children[s]) pivots[s] = std::max(pivots[s], pivots[child]);

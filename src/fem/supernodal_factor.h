@@ -1,10 +1,10 @@
-// A sparse Cholesky factor in single precision, made to be a preconditioner.
+// A sparse Cholesky factor in single precision, for use as a preconditioner.
 //
-// A ≈ L Lᵀ by the multifrontal method over an AssemblyTree, with dense kernels from OpenBLAS.
-// Single precision halves the work of the factorisation and the memory that a solve has to read;
-// what it loses, about 1e-7 of the condition number, conjugate gradients win back. Subtrees are
-// eliminated at the same time, large fronts by several threads; results do not depend on their
-// number.
+// Computes A ≈ L Lᵀ by the multifrontal method (assembly_tree.h) with dense kernels of OpenBLAS
+// (dense_front.h). Single precision halves the work of the factorisation and the memory that a
+// solve has to read; conjugate gradients recover the lost accuracy, a relative error of about 1e-7
+// times the condition number. Subtrees are eliminated in parallel and large fronts by several
+// threads; the results do not depend on the number of threads.
 #ifndef LACUNA_FEM_SUPERNODAL_FACTOR_H_
 #define LACUNA_FEM_SUPERNODAL_FACTOR_H_
 
@@ -18,25 +18,26 @@
 
 namespace lacuna {
 
+// Not thread-safe: one object per simulation, because a solve uses internal working memory.
 class SupernodalFactor {
  public:
-  // Symbolic analysis for all matrices of one pattern; `pattern` and `order` are read here only.
+  // Performs the symbolic analysis for all matrices of a pattern. No reference is kept.
   SupernodalFactor(const BlockPattern& pattern, const EliminationOrder& order);
 
-  // Anything but kPositive: there is no factor. kInDoubt means that the matrix may be too
-  // ill-conditioned for single precision.
+  // Computes the numeric factor. There is no usable factor unless the result is kPositive; kInDoubt
+  // means that the matrix may be too ill-conditioned for single precision.
   Pivots Factorise(const BlockMatrix& matrix);
 
-  // x = (L Lᵀ)⁻¹ b for a right-hand side of order one; both in *elimination order*
-  // (`order().node`), of length 3·(free nodes). `b` and `x` may be the same.
+  // x = (L Lᵀ)⁻¹ b for a right-hand side of order one. Both have 3·(free nodes) entries in the
+  // elimination order `order()`, and may be the same vector.
   void Solve(const Eigen::VectorXf& b, Eigen::VectorXf* x);
 
   const EliminationOrder& order() const { return tree_.order; }
-  double flops() const { return flops_; }                                 // of a factorisation
-  double entries() const { return static_cast<double>(factor_.size()); }  // read twice by a solve
+  double flops() const { return flops_; }  // operations of a numeric factorisation
+  double entries() const { return static_cast<double>(factor_.size()); }  // stored in L
 
  private:
-  // A 3 × 3 block of the matrix that is assembled into a front, `row` and `column` in nodes.
+  // A 3 × 3 block of the matrix and its place in a front, in nodes.
   struct Entry {
     int block = 0;
     int row = 0;
@@ -48,7 +49,8 @@ class SupernodalFactor {
   void AssembleFront(int s, const BlockMatrix& matrix);
   void SolveForward(int s, const float* b);
   void SolveBackward(int s, float* x);
-  // Calls visit(s) for each supernode, children first (or parents first), subtrees in parallel.
+  // Call visit(s) for each supernode with children first, or with parents first; subtrees in
+  // parallel.
   template <typename Visit>
   void VisitUpwards(const Visit& visit) const;
   template <typename Visit>
@@ -58,16 +60,16 @@ class SupernodalFactor {
   TreeCut cut_;
   std::vector<Entry> entries_;         // grouped by front
   std::vector<int64_t> entry_begin_;   // supernodes + 1
-  std::vector<int64_t> panel_begin_;   // supernodes + 1: into factor_
-  std::vector<int64_t> update_begin_;  // into updates_
-  std::vector<int64_t> vector_begin_;  // supernodes + 1: into front_vectors_
+  std::vector<int64_t> panel_begin_;   // supernodes + 1: first entry in factor_
+  std::vector<int64_t> update_begin_;  // supernodes: first entry in updates_
+  std::vector<int64_t> vector_begin_;  // supernodes + 1: first entry in front_vectors_
   double flops_ = 0;
-  float scale_ = 1;  // of the matrix, so that its entries are of order one
+  float scale_ = 1;  // factor that makes the entries of the matrix of order one
 
-  // Front s of m rows and p columns: L as an m × p column-major panel (dense_front.h).
+  // L: for each front of m rows and p columns a column-major m × p panel (dense_front.h).
   std::vector<float> factor_;
-  std::vector<float> updates_;        // Schur complements on their way to the parent
-  std::vector<float> front_vectors_;  // right-hand sides on theirs
+  std::vector<float> updates_;        // Schur complements for the fronts of the parents
+  std::vector<float> front_vectors_;  // right-hand sides for the fronts of the parents
 };
 
 }  // namespace lacuna

@@ -14,8 +14,9 @@
 namespace lacuna {
 namespace {
 
-// Memory is followed by differences of this size, in strains: rounding is then 1e-10 of what is
-// differentiated, truncation 1e-6 of its curvature; and forces are linear in most memories.
+// Internal variables are differentiated by differences of this size, in strains. Rounding errors
+// are then 1e-10 of the value and truncation errors 1e-6 of its second derivative; most forces are
+// linear in the internal variables.
 constexpr double kDifference = 1e-6;
 
 Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
@@ -26,11 +27,11 @@ Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd c
   return columns;
 }
 
-// An effect with memory that some perturbation or the model itself has.
+// An effect with memory, of the model or of a perturbation.
 struct Memory {
   std::shared_ptr<const Effect> effect;
-  Eigen::VectorXd value;        // of an effect outside the model
-  Eigen::MatrixXd sensitivity;  // of one inside: dz/dp, state × perturbations
+  Eigen::VectorXd value;        // z of an effect outside the model
+  Eigen::MatrixXd sensitivity;  // dz/dp of an effect of the model, state × perturbations
 };
 
 }  // namespace
@@ -41,14 +42,14 @@ struct TangentLinear::Implementation {
   std::vector<char> fixed;
   EliminationOrder order;
   CholmodFactor factor;
-  BlockMatrix tangent, skew, by_rate;
-  std::vector<Eigen::Index> of_grips;  // perturbations that move gripped nodes
+  BlockMatrix tangent, skew, rate_tangent;
+  std::vector<Eigen::Index> of_grips;  // perturbations of the motion of grips
   double element_size;                 // m
-  // Now and one step earlier.
+  // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
   std::vector<Memory> inside;   // one per effect of the model
-  std::vector<Memory> outside;  // one per perturbation; without effect where it is the model's
+  std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
 
   Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations)
       : model(the_model),
@@ -58,7 +59,7 @@ struct TangentLinear::Implementation {
         factor(*model.body->pattern, order),
         tangent(model.body->pattern),
         skew(model.body->pattern),
-        by_rate(model.body->pattern),
+        rate_tangent(model.body->pattern),
         element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())) {
     const Eigen::Index size = 3 * model.body->NodeCount();
     position = velocity = Eigen::MatrixXd::Zero(size, Count());
@@ -179,22 +180,22 @@ struct TangentLinear::Implementation {
     }
   }
 
-  // right −= (weighted tangents of the model's effects) change; most effects have none but by
-  // position.
+  // Subtracts the weighted tangents of the effects times `change`. Most effects depend on the
+  // position only and contribute nothing.
   void AddTangentForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
                         const TangentWeights& weights, const Eigen::MatrixXd& change,
                         Eigen::MatrixXd* right) {
-    by_rate.SetZero();
+    rate_tangent.SetZero();
     for (size_t j = 0; j < model.effects.size(); ++j) {
       const Kinematics at = equation.At(end, j);
-      model.effects[j]->AddTangents(at, weights, false, &by_rate);
-      model.effects[j]->AddSkewTangents(at, weights, &by_rate);
+      model.effects[j]->AddTangents(at, weights, false, &rate_tangent);
+      model.effects[j]->AddSkewTangents(at, weights, &rate_tangent);
     }
-    const double* values = by_rate.values();
+    const double* values = rate_tangent.values();
     if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
                     [](double value) { return value == 0; }))
       return;
-    *right -= by_rate * change;
+    *right -= rate_tangent * change;
   }
 
   // The sensitivities of the gripped nodes; 0 elsewhere.
@@ -210,7 +211,7 @@ struct TangentLinear::Implementation {
     return columns;
   }
 
-  // s with tangent · s = right at the free nodes, for the nodes that are not fixed.
+  // Solves tangent · s = right at the free nodes with the current factor; s is 0 at fixed nodes.
   Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {
     Eigen::MatrixXd reduced(3 * order.FreeNodes(), right.cols()), solution;
     for (int i = 0; i < order.FreeNodes(); ++i)
@@ -227,20 +228,20 @@ struct TangentLinear::Implementation {
       if (fixed[i]) columns->middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
   }
 
-  // (tangent + skew) · s = right at the free nodes. What is factorised is the tangent, the
-  // symmetric part; where that is not definite, or too far from the sum, its stand-in.
+  // Solves (tangent + skew) · s = right at the free nodes. Factorises the symmetric part or, if
+  // that is not definite or the iteration does not converge, its convexified approximation.
   std::optional<Eigen::MatrixXd> Solve(const StepEquation& equation, const Eigen::VectorXd& at,
                                        bool has_skew, Eigen::MatrixXd right) {
     const bool is_definite = factor.Factorise(tangent);
     if (is_definite && !has_skew) return SolveFree(right);
     ClearFixed(&right);
     if (is_definite) {
-      // What the skew part does hardly changes from one step to the next.
+      // The contribution of the skew part changes little from one step to the next.
       Eigen::MatrixXd expected = position;
       if (previous_position.size() > 0) expected += position - previous_position;
       const auto solution = Iterate(right, right - skew * expected,
-                                    [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* left) {
-                                      *left = skew * (expected - step);
+                                    [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
+                                      *residual = skew * (expected - step);
                                       expected.setZero();
                                     });
       if (solution) return solution;
@@ -248,31 +249,31 @@ struct TangentLinear::Implementation {
     BlockMatrix stand_in(model.body->pattern);
     equation.Tangent(at, /*convexify=*/true, &stand_in);
     if (!factor.Factorise(stand_in)) return std::nullopt;
-    return Iterate(right, right, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* left) {
-      *left -= tangent * step;
-      if (has_skew) *left -= skew * step;
+    return Iterate(right, right, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
+      *residual -= tangent * step;
+      if (has_skew) *residual -= skew * step;
     });
   }
 
-  // Adds up solutions for what is `left`, until that is little beside the right-hand side; `take`
-  // makes of it what a step leaves.
-  template <typename Take>
-  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd left,
-                                         const Take& take) {
+  // Iterative refinement: adds solutions for the residual until it is small relative to the
+  // right-hand side. update(step, &residual) computes the residual after a step.
+  template <typename Update>
+  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd residual,
+                                         const Update& update) {
     constexpr int kMaxIterations = 60;
-    constexpr double kTolerance = 1e-7;  // of each column
+    constexpr double kTolerance = 1e-7;  // of each column, relative
     const Eigen::RowVectorXd wanted = kTolerance * right.colwise().norm();
     Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
-    ClearFixed(&left);
-    double last = left.norm();
+    ClearFixed(&residual);
+    double last = residual.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-      const Eigen::MatrixXd step = SolveFree(left);
+      const Eigen::MatrixXd step = SolveFree(residual);
       solution += step;
-      take(step, &left);
-      ClearFixed(&left);
-      if ((left.colwise().norm().array() <= wanted.array()).all()) return solution;
-      if (!(left.norm() < 2 * last)) break;
-      last = left.norm();
+      update(step, &residual);
+      ClearFixed(&residual);
+      if ((residual.colwise().norm().array() <= wanted.array()).all()) return solution;
+      if (!(residual.norm() < 2 * last)) break;
+      last = residual.norm();
     }
     return std::nullopt;
   }
@@ -315,7 +316,8 @@ struct TangentLinear::Implementation {
     if (!solution) {
       summary.status = TangentLinearSummary::Status::kNotPositiveDefinite;
       summary.message = fmt::format(
-          "at {:.6g} s: the tangent is not definite and its stand-in is too far from it",
+          "at {:.6g} s: the tangent is not positive definite, and the iteration with its "
+          "convexified approximation does not converge",
           equation.end_time());
       return summary;
     }

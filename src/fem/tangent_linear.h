@@ -1,20 +1,20 @@
-// How a trajectory changes, to first order, with what it depends on: the tangent-linear model.
+// The tangent-linear model: first-order sensitivities of a trajectory to the parameters of its
+// model.
 //
-// Differentiating the equation of a step, r(x; x̃, ṽ, z, p) = 0 (step_equation.h; z: the memory of
-// the effects), along a parameter p gives one linear system per step and parameter,
+// Differentiating the equation of a step, r(x; x̃, ṽ, z, p) = 0 (step_equation.h; z are the internal
+// variables of the effects), with respect to a parameter p gives one linear system per step,
 //   (∂r/∂x) s = M (γ² s̃ + γ w̃) − γ ∂f/∂v s̃ − ∂f/∂a (γ² s̃ + γ w̃) + ∂f/∂z ζ + ∂f/∂p,
-// for s = dx/dp, with s̃, w̃ the combinations of earlier sensitivities that x̃, ṽ are of earlier
-// states, and ζ = dz/dp. The matrix is that of Newton's method at the step's end; it is factorised
-// once per step, for all parameters (direct differentiation: Tortorelli & Michaleris, Inverse
-// Problems in Engineering 1, 1994).
+// for s = dx/dp, where s̃ and w̃ combine earlier sensitivities as x̃ and ṽ combine earlier states, and
+// ζ = dz/dp. The matrix is that of Newton's method at the end of the step. It is factorised once
+// per step for all parameters (direct differentiation: Tortorelli & Michaleris, Inverse Problems in
+// Engineering 1, 1994).
 //
-// The parameter may belong to an effect that the model does not have: with the effect at its null
-// value the result is how the motion would answer to a little of it. So all effects of a library
-// are tried along one trajectory.
+// The parameter may belong to an effect that the model does not contain. With this effect at its
+// null value, the result is the response of the motion to a small amount of the effect, so that all
+// effects of a catalogue can be tried along one trajectory.
 //
-// Where a tangent is not symmetric (effect.h), its symmetric part is factorised, and what the
-// skew-symmetric one leaves is solved again until it is little: forces that follow the body, or
-// brake it, answer to a turn in full.
+// If a tangent is not symmetric (effect.h), its symmetric part is factorised and the skew-symmetric
+// part is treated by iterative refinement until its residual is negligible.
 #ifndef LACUNA_FEM_TANGENT_LINEAR_H_
 #define LACUNA_FEM_TANGENT_LINEAR_H_
 
@@ -29,17 +29,17 @@
 
 namespace lacuna {
 
-// One thing that a trajectory depends on; its parts add.
+// A parameter on which a trajectory depends. The contributions of its members are added.
 struct Perturbation {
-  // The force ∂f/∂(parameter) of this effect. If it is none of the model's, it must be at its null
-  // value; its memory then follows the trajectory.
+  // Contributes the force ∂f/∂p of a parameter of this effect. An effect that does not belong to
+  // the model must be at its null value; its internal variables then follow the trajectory.
   std::shared_ptr<const Effect> effect = nullptr;
   int parameter = 0;
-  // d(position)/dp of the gripped nodes at the end of a step (3n; other nodes are not read), where
-  // the grips exert `reaction` on the body (3n, N; other nodes' entries mean nothing). Empty: 0.
+  // d(position)/dp of the gripped nodes at the end of a step (3n, m per unit), given the forces
+  // that the grips exert on the body there (3n, N). Entries of other nodes are not used. Empty: 0.
   std::function<Eigen::VectorXd(double time, const Eigen::VectorXd& reaction)> grip = {};
-  // d(external force)/dp in an equilibrium (3n, N per unit): of what holds the body before it is
-  // let go. Empty: 0.
+  // d(external force)/dp in an equilibrium (3n, N per unit), for the force that holds the body
+  // before it is released. Empty: 0.
   Eigen::VectorXd held_force = {};
 };
 
@@ -50,6 +50,7 @@ struct TangentLinearSummary {
   bool IsUsable() const { return status == Status::kSolved; }
 };
 
+// Not thread-safe: one object per simulation.
 class TangentLinear {
  public:
   // All sensitivities are 0 at first.
@@ -58,12 +59,14 @@ class TangentLinear {
   TangentLinear(TangentLinear&&) noexcept;
   TangentLinear& operator=(TangentLinear&&) noexcept;
 
-  // After the step (or the equilibrium: kQuasiStatic, 0) from `before` to `position` was found. An
-  // equilibrium forgets where it was sought from; what it leaves is a state at rest.
+  // Advances the sensitivities over a step from `before` to `position` (3n, m) that a Stepper has
+  // found; for an equilibrium the scheme is kQuasiStatic and the step length 0, and the place from
+  // which it was searched has no influence. If the tangent cannot be solved, the status is
+  // kNotPositiveDefinite and the sensitivities are those before the step.
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
                                const Eigen::VectorXd& position);
 
-  // dx/dp and dv/dp at the end of the last step (3n × perturbations).
+  // dx/dp and dv/dp at the end of the last step (3n × perturbations, m and m/s per unit).
   const Eigen::MatrixXd& position() const;
   const Eigen::MatrixXd& velocity() const;
 

@@ -5,11 +5,11 @@
 namespace lacuna {
 namespace {
 
-// ρ of the two-step scheme; nearer to 1: a smaller error, and shocks ring longer.
+// ρ of the two-step scheme. A value closer to 1 reduces the error but damps shocks more slowly.
 constexpr double kRadius = 0.6;
 constexpr double kBeta = 2 / ((1 + kRadius) * (3 - kRadius));
 constexpr double kAlpha = 4 * kBeta * (1 + kRadius) - 4;
-// Steps whose lengths differ by less, relatively, are as long as each other.
+// Steps whose lengths differ by less than this fraction count as equally long.
 constexpr double kSameLength = 1e-6;
 
 }  // namespace

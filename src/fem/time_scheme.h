@@ -1,22 +1,23 @@
-// How the end of a step depends on the states before it.
+// The implicit time integrators.
 //
-// Every implicit integrator that Lacuna uses writes velocity and acceleration at the end of the
-// step as v = γ (x − x̃) and a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states,
-// ṽ of velocities and accelerations as x̃ of positions and velocities:
+// Each of them expresses velocity and acceleration at the end of a step as v = γ (x − x̃) and
+// a = γ (v − ṽ), with a rate γ and combinations x̃, ṽ of earlier states. ṽ is made from velocities
+// and accelerations as x̃ is made from positions and velocities. With the step length h:
 //   implicit Euler   γ = 1/h        x̃ = xₙ
 //   BDF2             γ = 3/(2h)     x̃ = (4 xₙ − xₙ₋₁)/3
-//     after a step of another length, h/ω:
+//     after a step of a different length h/ω:
 //                    γ = (1+2ω)/(1+ω)/h    x̃ = ((1+ω)² xₙ − ω² xₙ₋₁)/(1+2ω)
 //   two-step         γ = 1/(β h)    x̃ = −α xₙ + (1+α) xₙ₋₁ + β h (2ρ vₙ + ρ² vₙ₋₁),
 //                    β = 2/((1+ρ)(3−ρ)),  α = 4 β (1+ρ) − 4,  ρ = 0.6
-//     after a step of another length, the trapezoidal rule:
+//     after a step of a different length, the trapezoidal rule:
 //                    γ = 2/h        x̃ = xₙ + ½ h vₙ
 //   quasi-static     no inertia;    v = (x − xₙ)/h for rate-dependent effects, 0 without a step
-// The two-step scheme is the A-stable one of second order whose amplification of what is too fast
-// for the step is −ρ, twice (P. Masarati, M. Lanz, P. Mantegazza, 16th AIDAA Congress, 2001): BDF2
-// for ρ = 0, and near the trapezoidal rule's accuracy for the ρ here, its error 3.4 times less than
-// BDF2's. Schemes of two steps begin with one of implicit Euler, whose error is of second order as
-// one step's is: no acceleration is known before it, loads may begin with it.
+// The two-step scheme is the A-stable scheme of second order with the double root −ρ as its
+// amplification at infinite frequency (P. Masarati, M. Lanz, P. Mantegazza, 16th AIDAA Congress,
+// 2001). It is BDF2 for ρ = 0; for ρ = 0.6 its error is 3.4 times smaller than that of BDF2 and
+// close to that of the trapezoidal rule. Two-step schemes start with one step of implicit Euler,
+// because no acceleration is known before and loads may begin with that step. The error of this
+// single step is of second order too.
 #ifndef LACUNA_FEM_TIME_SCHEME_H_
 #define LACUNA_FEM_TIME_SCHEME_H_
 
@@ -24,18 +25,20 @@ namespace lacuna {
 
 enum class TimeScheme { kQuasiStatic, kImplicitEuler, kBdf2, kTwoStep };
 
-// The power of the step that its error goes with at least; a quasi-static motion has one only where
-// effects depend on rates (to first order) or remember.
+// The order of accuracy: the global error is proportional to this power of the step length. A
+// quasi-static motion has an error of first order if effects depend on rates or have memory, and
+// none otherwise.
 int OrderOf(TimeScheme scheme);
 
+// The weights of earlier states.
 struct SchemeWeights {
   double rate = 0;  // γ, 1/s
   // x̃ = now·xₙ + before·xₙ₋₁ + rate_now·vₙ + rate_before·vₙ₋₁, and ṽ likewise of v and a.
   double now = 1, before = 0;
   double rate_now = 0, rate_before = 0;  // s
 
-  // Of positions and velocities, or of velocities and accelerations; what has no weight is not
-  // read.
+  // x̃ from positions and velocities, or ṽ from velocities and accelerations. Arguments with zero
+  // weight are not read and may be empty.
   template <typename Matrix>
   Matrix Combine(const Matrix& value, const Matrix& previous_value, const Matrix& its_rate,
                  const Matrix& previous_rate) const {
@@ -47,8 +50,8 @@ struct SchemeWeights {
   }
 };
 
-// Of a step of length h > 0, s, after `steps_before` (only 0, 1 and more differ), the last of them
-// of length `last`, s; 0: of length h.
+// The weights of a step of length h (s, > 0) after `steps_before` steps, of which only 0, 1 and
+// more are distinguished. `last` is the length of the previous step, s; 0: h.
 SchemeWeights WeightsOf(TimeScheme scheme, double h, int steps_before, double last = 0);
 
 }  // namespace lacuna

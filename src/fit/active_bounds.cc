@@ -19,33 +19,34 @@ Eigen::VectorXd StepWithin(const QuadraticCost& model, const Eigen::VectorXd& lo
   for (Eigen::Index k = 0; k < count; ++k)
     at_bound[k] =
         (low[k] == 0 && model.gradient[k] >= 0) || (high[k] == 0 && model.gradient[k] <= 0);
-  // Each round meets a bound, or leaves one for less cost. It ends by itself but for rounding.
+  // Each round either reaches a bound or releases one at lower cost, so the loop terminates; the
+  // limit guards against cycles caused by rounding.
   for (Eigen::Index round = 0; round < 10 * (count + 1); ++round) {
     std::vector<Eigen::Index> free;
     for (Eigen::Index k = 0; k < count; ++k)
       if (!at_bound[k]) free.push_back(k);
     Eigen::VectorXd uphill = model.gradient + model.information * step;
-    double part = 1;  // of the way to the best of the free ones, until the first bound
-    Eigen::Index met = -1;
+    double part = 1;  // fraction of the way to the free minimum before the first bound is reached
+    Eigen::Index reached = -1;
     double bound = 0;
     if (!free.empty()) {
-      const Eigen::MatrixXd theirs = model.information(free, free);
+      const Eigen::MatrixXd information = model.information(free, free);
       const Eigen::VectorXd slope = uphill(free);
-      const Eigen::VectorXd way = -theirs.completeOrthogonalDecomposition().solve(slope);
+      const Eigen::VectorXd direction = -information.completeOrthogonalDecomposition().solve(slope);
       for (size_t i = 0; i < free.size(); ++i) {
-        const double to = way[static_cast<Eigen::Index>(i)];
-        const double its_bound = (to > 0 ? high : low)[free[i]];
-        const double room = std::abs(its_bound - step[free[i]]);
+        const double to = direction[static_cast<Eigen::Index>(i)];
+        const double limit = (to > 0 ? high : low)[free[i]];
+        const double room = std::abs(limit - step[free[i]]);
         if (part * std::abs(to) <= room) continue;
         part = room / std::abs(to);
-        met = free[i];
-        bound = its_bound;
+        reached = free[i];
+        bound = limit;
       }
-      step(free) += part * way;
+      step(free) += part * direction;
     }
-    if (met >= 0) {
-      step[met] = bound;
-      at_bound[met] = 1;
+    if (reached >= 0) {
+      step[reached] = bound;
+      at_bound[reached] = 1;
       continue;
     }
     uphill = model.gradient + model.information * step;

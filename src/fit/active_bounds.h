@@ -6,20 +6,20 @@
 
 namespace lacuna {
 
-// ½ ‖r + J δ‖².
+// A quadratic model of a least-squares cost, ½ ‖r + J δ‖², as a function of the step δ.
 struct QuadraticCost {
   double cost = 0;              // ½ ‖r‖²
   Eigen::VectorXd gradient;     // Jᵀ r
   Eigen::MatrixXd information;  // Jᵀ J
 
-  // The part of the cost that a step takes away.
+  // The fraction of the cost that the step removes; 0 if the cost is not positive.
   double GainOf(const Eigen::VectorXd& step) const;
 };
 
-// The step δ of the least cost in low ≤ δ ≤ high, low ≤ 0 ≤ high, by an active set method (Stark &
-// Parker, Comput. Stat. 10, 1995). What J does not see does not move. To cut off what a free step
-// does beyond a bound is not the same: where two parameters do nearly the same, the rest of the
-// step counts on that part.
+// The step of least cost with low ≤ δ ≤ high, where low ≤ 0 ≤ high, by an active-set method (Stark
+// & Parker, Comput. Stat. 10, 1995). Directions in which the information is singular are not moved.
+// Clipping the unconstrained step at the bounds would not give this step: where two parameters have
+// nearly the same effect, one of them compensates for the other beyond its bound.
 Eigen::VectorXd StepWithin(const QuadraticCost& model, const Eigen::VectorXd& low,
                            const Eigen::VectorXd& high);
 

@@ -10,41 +10,43 @@
 #include <utility>
 
 #include "fit/active_bounds.h"
-#include "fit/parameter_scale.h"
 
 namespace lacuna {
 namespace {
 
-// A start that is this near to a bound, or at it, could not move: it is moved inside. One that is a
-// little farther stays, as a typical change may be far more than what the data allow.
+// A start within kAtBound of a bound, in typical changes, cannot move in the unbounded coordinate
+// and is placed kInside of the bound. Starts farther away are kept, because a typical change may be
+// much larger than the uncertainty that the data allow.
 constexpr double kAtBound = 1e-6, kInside = 0.02;
-// Of fits that start near: more, and the start was not.
+// Rounds with Broyden updates of a fit that starts near; if they do not suffice, it was not near.
 constexpr int kSecantRounds = 3;
-// Steps are in typical changes: one that overshoots is shortened at once.
+// Radius of the first trust region, in typical changes. A step that overshoots is shortened at
+// once.
 constexpr double kFirstRadius = 100;
-// So near to its bound, in typical changes, φ(u) turns back, and J by u sees next to nothing of it:
-// a step that leads to the bound gets half the way, one that goes over the turn is refused, until
-// steps are too short for all other parameters. After so many in a row the round ends.
+// Within kAtTurn of its bound, in typical changes, φ(u) reaches its turning point and ∂φ/∂u nearly
+// vanishes: steps towards the bound then cover half of the distance, and steps beyond the turning
+// point are rejected until the trust region is too small for all other parameters. A round ends
+// after kAtTurnSteps consecutive iterations of this kind.
 constexpr double kAtTurn = 0.01;
 constexpr int kAtTurnSteps = 3;
-// Parts of a step within the bounds that are tried.
+// Fractions of a bounded Gauss–Newton step that are tried in turn.
 constexpr double kParts[] = {1, 0.25, 0.06};
 
-// What Ceres works with: u, unbounded, in typical changes of φ. Near a bound φ(u) turns back, so
-// that no step leaves the bounds and none has to be cut short (as in Minuit: James & Roos, Comput.
-// Phys. Commun. 10, 1975). What a turn does to a search, see kAtTurn:
-//   both bounds  φ = middle + half sin((u − middle)/half)
-//   one bound    φ = low − 1 + √((u − low)² + 1)             and likewise from above
-struct Free {
-  double low, high;  // of φ/typical
+// The coordinate in which Ceres works: u, unbounded, in typical changes of φ. At a bound φ(u) has a
+// turning point, so that no step leaves the bounds and none has to be clipped (as in Minuit: James
+// & Roos, Comput. Phys. Commun. 10, 1975):
+//   two bounds   φ = middle + half sin((u − middle)/half)
+//   one bound    φ = low − 1 + √((u − low)² + 1),            and correspondingly from above
+struct UnboundedCoordinate {
+  double low, high;  // bounds of φ/typical
 
-  explicit Free(const CalibratedParameter& parameter)
+  explicit UnboundedCoordinate(const CalibratedParameter& parameter)
       : low(parameter.log_scale && parameter.min <= 0
                 ? -std::numeric_limits<double>::infinity()
                 : ToFree(parameter, parameter.min) / parameter.typical),
         high(ToFree(parameter, parameter.max) / parameter.typical) {}
 
-  // φ/typical, and its derivative by u.
+  // φ/typical and its derivative with respect to u.
   std::pair<double, double> At(double u) const {
     const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
     if (has_low && has_high) {
@@ -63,14 +65,14 @@ struct Free {
     const double near = kAtTurn * std::min(1.0, high - low);
     return scaled - low <= near || high - scaled <= near;
   }
-  // One that is at a bound could not move from there.
+  // A start on a bound is moved inside, because the search could not leave the bound.
   double MovedInside(double scaled) const {
     const double inside = std::min(kInside, 0.5 * (high - low));
     return scaled - low < kAtBound    ? low + inside
            : high - scaled < kAtBound ? high - inside
                                       : scaled;
   }
-  // u of φ/typical.
+  // The inverse: u for a given φ/typical.
   double From(double scaled) const {
     const bool has_low = std::isfinite(low), has_high = std::isfinite(high);
     if (has_low && has_high) {
@@ -98,13 +100,13 @@ class PredictionCost : public ceres::CostFunction {
     const int count = static_cast<int>(parameters_.size());
     Eigen::VectorXd values(count), slopes(count);
     for (int k = 0; k < count; ++k) {
-      const auto [scaled, slope] = Free(parameters_[k]).At(free[k][0]);
+      const auto [scaled, slope] = UnboundedCoordinate(parameters_[k]).At(free[k][0]);
       values[k] = FromFree(parameters_[k], scaled * parameters_[k].typical);
       slopes[k] = slope * parameters_[k].typical * (parameters_[k].log_scale ? values[k] : 1);
     }
     const Prediction& prediction = predictions_.At(values);
     if (!prediction.usable) return false;
-    CHECK_EQ(prediction.residual.size(), num_residuals()) << "the residual changed its length";
+    CHECK_EQ(prediction.residual.size(), num_residuals()) << "the number of residuals has changed";
     Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = prediction.residual;
     if (jacobians == nullptr) return true;
     for (int k = 0; k < count; ++k) {
@@ -122,22 +124,22 @@ class PredictionCost : public ceres::CostFunction {
 
 class PriorCost : public ceres::SizedCostFunction<1, 1> {
  public:
-  // Centre and deviation in φ/typical.
-  PriorCost(const Free& free, double centre, double deviation)
-      : free_(free), centre_(centre), deviation_(deviation) {}
+  // `centre` and `deviation` are those of φ/typical.
+  PriorCost(const UnboundedCoordinate& coordinate, double centre, double deviation)
+      : coordinate_(coordinate), centre_(centre), deviation_(deviation) {}
   bool Evaluate(double const* const* free, double* residuals, double** jacobians) const override {
-    const auto [scaled, slope] = free_.At(free[0][0]);
+    const auto [scaled, slope] = coordinate_.At(free[0][0]);
     residuals[0] = (scaled - centre_) / deviation_;
     if (jacobians != nullptr && jacobians[0] != nullptr) jacobians[0][0] = slope / deviation_;
     return true;
   }
 
  private:
-  Free free_;
+  UnboundedCoordinate coordinate_;
   double centre_, deviation_;
 };
 
-// ½ ‖r‖² plus the priors; infinite where there is no prediction.
+// ½ ‖r‖² plus the priors; infinite if the prediction failed.
 double CostOf(const Prediction& prediction, const std::vector<CalibratedParameter>& parameters,
               const Eigen::VectorXd& values) {
   if (!prediction.usable) return std::numeric_limits<double>::infinity();
@@ -152,7 +154,7 @@ double CostOf(const Prediction& prediction, const std::vector<CalibratedParamete
   return 0.5 * cost;
 }
 
-// ½ ‖r‖² and the priors, to first order in φ/typical.
+// ½ ‖r‖² plus the priors as a quadratic function of φ/typical, from the linearised residual.
 QuadraticCost ModelOf(const Prediction& prediction,
                       const std::vector<CalibratedParameter>& parameters,
                       const Eigen::VectorXd& values) {
@@ -175,10 +177,11 @@ QuadraticCost ModelOf(const Prediction& prediction,
   return model;
 }
 
-// Values that have all but come to a bound, and do no worse at it, are put there.
+// Moves parameters that have nearly reached a bound onto it, unless this raises the cost
+// noticeably.
 void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
                   SecantPredictions* predictions, Eigen::VectorXd* values) {
-  constexpr double kNoWorse = 0.5;  // of a cost whose unit is one standard deviation
+  constexpr double kNoWorse = 0.5;  // the cost of one residual of one standard deviation
   Eigen::VectorXd snapped = *values;
   for (size_t k = 0; k < parameters.size(); ++k) {
     const CalibratedParameter& parameter = parameters[k];
@@ -194,7 +197,7 @@ void SnapToBounds(const std::vector<CalibratedParameter>& parameters,
   if (CostOf(there, parameters, snapped) <= before + kNoWorse) *values = snapped;
 }
 
-// Ends a round that stays where a parameter turns.
+// Ends a round in which a parameter stays at the turning point of its coordinate.
 class UntilAtTurn : public ceres::IterationCallback {
  public:
   explicit UntilAtTurn(std::function<bool()> is_at_turn) : is_at_turn_(std::move(is_at_turn)) {}
@@ -208,8 +211,8 @@ class UntilAtTurn : public ceres::IterationCallback {
   int steps_ = 0;
 };
 
-// The radius of the trust region to go on with: of the last step that was taken, as those that are
-// refused shorten it faster and faster.
+// The trust-region radius for the next round: that of the last accepted step, because each rejected
+// step shrinks the radius faster than the one before.
 double NextRadius(const ceres::Solver::Summary& summary) {
   for (auto step = summary.iterations.rbegin(); step != summary.iterations.rend(); ++step)
     if (step->iteration == 0 || step->step_is_successful)
@@ -217,15 +220,15 @@ double NextRadius(const ceres::Solver::Summary& summary) {
   return kFirstRadius;
 }
 
-// Ceres in rounds, and between them steps that meet bounds. Begins at the starts of the parameters,
-// of which there is one at least.
-class Descent {
+// Runs Ceres in rounds, with bounded Gauss–Newton steps in between. Needs at least one parameter.
+class BoundedDescent {
  public:
-  Descent(const std::vector<CalibratedParameter>& parameters, const CalibrationOptions& options,
-          const Prediction& first, SecantPredictions* predictions)
+  BoundedDescent(const std::vector<CalibratedParameter>& parameters,
+                 const CalibrationOptions& options, const Prediction& first,
+                 SecantPredictions* predictions)
       : parameters_(parameters), options_(options), predictions_(*predictions) {
     for (const CalibratedParameter& parameter : parameters) {
-      const Free bounds(parameter);
+      const UnboundedCoordinate bounds(parameter);
       bounds_.push_back(bounds);
       free_.push_back(
           bounds.From(bounds.MovedInside(ToFree(parameter, parameter.start) / parameter.typical)));
@@ -249,7 +252,7 @@ class Descent {
     solver_.parameter_tolerance = 1e-6;
     solver_.initial_trust_region_radius = kFirstRadius;
     solver_.logging_type = ceres::SILENT;
-    solver_.update_state_every_iteration = true;  // for the callback
+    solver_.update_state_every_iteration = true;  // the callback reads the parameters
     Eigen::VectorXd start(static_cast<Eigen::Index>(parameters.size()));
     for (size_t k = 0; k < parameters.size(); ++k)
       start[static_cast<Eigen::Index>(k)] = parameters[k].start;
@@ -267,7 +270,7 @@ class Descent {
       solver_.max_num_iterations = options_.max_iterations - end.iterations;
       ceres::Solve(solver_, &problem_, &summary);
       predictions_.FollowSecants(false);
-      // None, not even the start, where all are held at their bounds.
+      // Ceres reports no iteration at all if every parameter is held constant at its bound.
       end.iterations += std::max(0, static_cast<int>(summary.iterations.size()) - 1);
       end.usable = summary.termination_type == ceres::CONVERGENCE;
       end.message = end.usable ? "" : summary.message;
@@ -304,7 +307,7 @@ class Descent {
     return values;
   }
 
-  // Of those that Ceres moves.
+  // Whether a parameter that Ceres varies is at a turning point.
   bool IsAtTurn() const {
     const Eigen::VectorXd scaled = Scaled();
     for (size_t k = 0; k < free_.size(); ++k)
@@ -314,10 +317,12 @@ class Descent {
     return false;
   }
 
-  // After a round. Ceres ends with a step that gains little, though it may be short only because
-  // those before it were refused, or because secants had led them astray. A round that gains
-  // nothing where a step promises more is the last: the promise is that of a valley that is not
-  // straight. Where the step meets bounds, or leaves them, it is made here: Ceres could do neither.
+  // Decides after a round whether another one is worthwhile. Ceres stops at a step of little gain,
+  // but that step may be short only because earlier ones were rejected or because Broyden updates
+  // were misleading; hence the gain of a full Gauss–Newton step is examined here. If the round has
+  // gained nothing although such a step predicts a gain, the search ends: the linearisation does
+  // not hold in a curved valley. A step that reaches or leaves bounds is taken here, because Ceres
+  // can do neither.
   bool IsWorthARound() {
     const Eigen::VectorXd scaled = Scaled(), values = Values(scaled);
     const QuadraticCost model = ModelOf(predictions_.ExactAt(values), parameters_, values);
@@ -360,12 +365,12 @@ class Descent {
   const std::vector<CalibratedParameter>& parameters_;
   const CalibrationOptions& options_;
   SecantPredictions& predictions_;
-  std::vector<Free> bounds_;
+  std::vector<UnboundedCoordinate> bounds_;
   std::vector<double> free_;  // u
   std::vector<double*> blocks_;
   ceres::Problem problem_;
   ceres::Solver::Options solver_;
-  double cost_ = 0;  // where it is
+  double cost_ = 0;  // at the current parameters
 };
 
 }  // namespace
@@ -373,7 +378,7 @@ class Descent {
 DescentEnd Descend(const std::vector<CalibratedParameter>& parameters,
                    const CalibrationOptions& options, const Prediction& first, bool is_near,
                    SecantPredictions* predictions) {
-  DescentEnd end = Descent(parameters, options, first, predictions).Run(is_near);
+  DescentEnd end = BoundedDescent(parameters, options, first, predictions).Run(is_near);
   SnapToBounds(parameters, predictions, &end.parameters);
   return end;
 }

@@ -1,5 +1,9 @@
-// The search of a calibration: Ceres in rounds, and between them Gauss–Newton steps that meet
-// bounds.
+// The minimiser of a calibration: least squares with priors and bounds.
+//
+// Ceres minimises ½ ‖r(θ)‖² plus the priors in rounds, over unbounded coordinates in which no step
+// can leave the bounds. Between the rounds, Gauss–Newton steps with an active set
+// (active_bounds.h) put parameters on their bounds or release them, which the unbounded coordinates
+// cannot do.
 #ifndef LACUNA_FIT_BOUNDED_DESCENT_H_
 #define LACUNA_FIT_BOUNDED_DESCENT_H_
 
@@ -7,20 +11,23 @@
 #include <string>
 #include <vector>
 
-#include "fit/calibration.h"
+#include "fit/calibrated_parameter.h"
+#include "fit/calibration_options.h"
+#include "fit/prediction_function.h"
 #include "fit/secant_predictions.h"
 
 namespace lacuna {
 
 struct DescentEnd {
-  Eigen::VectorXd parameters;  // θ, within the bounds
-  bool usable = false;         // it has come to an end; otherwise `message` says what kept it
-  std::string message;
-  int iterations = 0;  // Ceres', of all rounds
+  Eigen::VectorXd parameters;  // θ, SI, within the bounds
+  bool usable = false;         // whether the search has converged
+  std::string message;         // why it has not
+  int iterations = 0;          // of Ceres, summed over all rounds
 };
 
-// The least ½ ‖r‖² and priors, from the parameters' starts, of which there is one at least.
-// `first`: the prediction there, usable. `is_near`: Broyden's secants may stand in for derivatives.
+// Searches from the starts of the parameters, of which there must be at least one. `first` is the
+// prediction at the starts and must be usable. With `is_near`, the first rounds use Broyden's
+// updates in place of exact Jacobians.
 DescentEnd Descend(const std::vector<CalibratedParameter>& parameters,
                    const CalibrationOptions& options, const Prediction& first, bool is_near,
                    SecantPredictions* predictions);

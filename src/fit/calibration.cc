@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "fit/bounded_descent.h"
-#include "fit/parameter_scale.h"
 #include "fit/secant_predictions.h"
 
 namespace lacuna {
@@ -17,15 +16,15 @@ namespace {
 using Verdict = ParameterEstimate::Verdict;
 
 constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
-// A parameter whose typical change moves all residuals together by less than this many standard
-// deviations could not be told from no change.
+// A typical change of a parameter that moves the residual vector by less than this many standard
+// deviations cannot be distinguished from no change.
 constexpr double kNoticeable = 2;
 constexpr double kDead = 1e-6;
-// Errors that last longer could not be told from motion.
+// Errors with a longer memory cannot be distinguished from motion.
 constexpr double kLongestMemory = 0.9;
 
-// Inverse of a positive semi-definite matrix; parameters that reach into its null space become
-// infinite on the diagonal.
+// The inverse of a positive semi-definite matrix. Parameters with a component in its null space get
+// an infinite variance on the diagonal.
 Eigen::MatrixXd GeneralisedCovariance(const Eigen::MatrixXd& information) {
   const Eigen::Index count = information.rows();
   const Eigen::VectorXd scale =
@@ -50,7 +49,7 @@ Eigen::MatrixXd GeneralisedCovariance(const Eigen::MatrixXd& information) {
   return covariance;
 }
 
-// Calibration::memory.
+// The lag-one autocorrelation of the residual (Calibration::memory).
 double MemoryOf(const Prediction& prediction) {
   double product = 0;
   for (size_t row = 0; row < prediction.before.size(); ++row)
@@ -60,7 +59,7 @@ double MemoryOf(const Prediction& prediction) {
   return product > 0 ? std::min(product / prediction.residual.squaredNorm(), kLongestMemory) : 0;
 }
 
-// Jᵀ R J less JᵀJ; a row comes after the one before it.
+// Jᵀ R J − JᵀJ. The row of an earlier frame must precede those of later frames.
 Eigen::MatrixXd AddedByMemory(const Eigen::MatrixXd& J, const std::vector<Eigen::Index>& before,
                               double memory) {
   Eigen::MatrixXd past = Eigen::MatrixXd::Zero(J.rows(), J.cols());  // Σ_{j<i} a^(i−j) J_j
@@ -72,14 +71,14 @@ Eigen::MatrixXd AddedByMemory(const Eigen::MatrixXd& J, const std::vector<Eigen:
   return half + half.transpose();
 }
 
-// H⁻¹ B H⁻¹ = H⁻¹ + H⁻¹ (B − H) H⁻¹, `more` = B − H; what H leaves open stays so.
+// H⁻¹ B H⁻¹ = H⁻¹ + H⁻¹ (B − H) H⁻¹ with `more` = B − H. Infinite variances of H⁻¹ are kept.
 Eigen::MatrixXd Widened(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& more) {
   const Eigen::MatrixXd known = covariance.array().isFinite().select(
       covariance, Eigen::MatrixXd::Zero(more.rows(), more.cols()));
   return covariance + known * more * known;
 }
 
-// `deviation`: of φ.
+// Sets the 95 % interval for a given standard deviation of φ.
 void SetInterval(const CalibratedParameter& parameter, double deviation,
                  ParameterEstimate* estimate) {
   const double free = ToFree(parameter, estimate->value), reach = kNormalQuantile * deviation;
@@ -87,7 +86,7 @@ void SetInterval(const CalibratedParameter& parameter, double deviation,
   estimate->high = std::min(parameter.max, FromFree(parameter, free + reach));
 }
 
-// At the solution; `J`: ∂r/∂φ.
+// Fills in covariance and estimates at the solution, where J = ∂r/∂φ.
 void Estimate(const std::vector<CalibratedParameter>& parameters, const Prediction& last,
               const Eigen::MatrixXd& J, Calibration* calibration) {
   const Eigen::Index count = J.cols();
@@ -120,14 +119,14 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
         estimate.traded_with = parameters[i].name;
       }
     }
-    const double felt =
-        J.col(k).norm() * parameter.typical / calibration->inflation;  // in standard deviations
+    // How far a typical change moves the residual vector, in standard deviations.
+    const double influence = J.col(k).norm() * parameter.typical / calibration->inflation;
     const double width = std::abs(value) + parameter.typical;
-    if (felt < kDead) {
+    if (influence < kDead) {
       estimate.verdict = Verdict::kDead;
     } else if (value - parameter.min < 1e-6 * width || parameter.max - value < 1e-6 * width) {
       estimate.verdict = Verdict::kAtBound;
-    } else if (felt < kNoticeable) {
+    } else if (influence < kNoticeable) {
       estimate.verdict = Verdict::kFlat;
     } else if (kNoticeable * estimate.deviation > parameter.typical) {
       estimate.verdict = Verdict::kTradedOff;
@@ -137,13 +136,6 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
 }
 
 }  // namespace
-
-double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale) {
-  const double change =
-      log_scale && other > 0 ? std::log(other / estimate.value) : other - estimate.value;
-  if (estimate.posterior_deviation > 0) return change / estimate.posterior_deviation;
-  return change == 0 ? 0 : std::copysign(std::numeric_limits<double>::infinity(), change);
-}
 
 void CountModelError(const CalibratedParameter& parameter, double other,
                      ParameterEstimate* estimate) {
@@ -191,7 +183,7 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
 
   const Prediction& last = predictions.ExactAt(calibration.parameters);
   calibration.predictions = predictions.count();
-  CHECK(last.usable) << "the solution could be predicted before: " << last.message;
+  CHECK(last.usable) << "the solution could not be predicted a second time: " << last.message;
   calibration.rms = RootMeanSquare(last.residual);
   calibration.inflation = std::max(1.0, calibration.rms);
   calibration.memory = MemoryOf(last);

@@ -1,116 +1,58 @@
-// Calibration: the parameters with which a model's predictions are nearest to measurements, and
-// what the measurements say about each of them.
+// Calibration: estimates the parameters of a model from measurements, with their uncertainties.
 //
 // Minimises ½ ‖r(θ)‖² + ½ Σ_k ((φ_k − φ⁰_k)/s_k)² over φ, where φ_k is θ_k or its logarithm, r is
-// the whitened residual (each entry of variance one if the model is right) and the second term the
-// priors (Tarantola, Inverse Problem Theory, SIAM 2005, §3.2). By Ceres, with the analytic
-// Jacobian ∂r/∂θ.
+// the whitened residual (prediction_function.h) and the second term holds the Gaussian priors
+// (Tarantola, Inverse Problem Theory, SIAM 2005, §3.2). The minimiser is Ceres with the analytic
+// Jacobian ∂r/∂θ (bounded_descent.h); uncertainties come from the linearisation at the solution.
 #ifndef LACUNA_FIT_CALIBRATION_H_
 #define LACUNA_FIT_CALIBRATION_H_
 
 #include <Eigen/Core>
-#include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "fit/calibrated_parameter.h"
+#include "fit/calibration_options.h"
+#include "fit/prediction_function.h"
+#include "record/parameter_estimate.h"
+
 namespace lacuna {
 
-struct CalibratedParameter {
-  std::string name;  // for messages and records: "material.young_modulus"
-  double start = 0;  // SI
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool log_scale = false;  // φ = ln θ; min must be ≥ 0
-  // Prior: around `prior_mean` (NaN: `start`), s in units of φ. Infinite: none.
-  double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
-  double prior_deviation = std::numeric_limits<double>::infinity();
-  // A change that matters, in units of φ, > 0: what "flat" is judged by, and the fit's own unit.
-  double typical = 1;
-  bool is_linear = false;  // ∂r/∂θ is the same everywhere: its first value is kept
-};
-
-struct Prediction {
-  bool usable = false;
-  std::string message;
-  Eigen::VectorXd residual;  // whitened
-  Eigen::MatrixXd jacobian;  // ∂residual/∂θ; 0 × 0 where it was not asked for
-  // Of each row, the row of the same quantity one frame before; −1 in its first frame. Empty: rows
-  // have no order.
-  std::vector<Eigen::Index> before = {};
-};
-// Must be a function of θ alone. `with_jacobian` false: the residual will do.
-using PredictionFunction =
-    std::function<Prediction(const Eigen::VectorXd& parameters, bool with_jacobian)>;
-
-struct CalibrationOptions {
-  int max_iterations = 30;  // more: slower to give up
-  // Stop when a step lowers the cost by less than this share of a measurement's mean cost; smaller:
-  // more iterations for changes within the intervals.
-  double cost_tolerance = 0.05;
-  // A start that leaves no more than this, rms in standard deviations, is near: a Jacobian there
-  // and one at the end, and in between Broyden's (Math. Comp. 19, 1965), which costs no more than
-  // the residuals. Where the end is none, once more from there.
-  double near_rms = 0;
-};
-
-// What the data says of one parameter.
-struct ParameterEstimate {
-  double value = 0;  // SI
-  // Standard deviation of φ: from the data alone, with all other parameters free, and with the
-  // prior; of noise as Calibration::inflation and memory say. Infinite where the data says nothing.
-  double deviation = std::numeric_limits<double>::infinity();
-  double posterior_deviation = std::numeric_limits<double>::infinity();
-  // 95 % interval of θ, prior included, and the error of the model where CountModelError was told
-  // of it.
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  // kDead: the predictions do not depend on it. kFlat: they do, but a change of `typical` is within
-  // the noise. kTradedOff: other parameters can undo its changes. kAtBound: the best value lies at
-  // a bound, the interval means little.
-  enum class Verdict { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };
-  Verdict verdict = Verdict::kPinnedDown;
-  std::string traded_with;  // the parameter that it is most correlated with
-  double correlation = 0;   // with it
-};
-
-// From the estimate to another value, in its posterior deviations (of φ); infinite where it has
-// none and the other value is not the same.
-double DeviationsTo(double other, const ParameterEstimate& estimate, bool log_scale);
-
-// Widens the interval by an error of the model that is known: without it `other` would be fitted,
-// and the way there counts as one more standard deviation. The posterior deviation stays that of
-// the fit.
-void CountModelError(const CalibratedParameter& parameter, double other,
-                     ParameterEstimate* estimate);
-
+// Vectors and lists are in the order of the parameters given.
 struct Calibration {
   bool usable = false;
-  std::string message;
-  int iterations = 0;
-  int predictions = 0;
-  Eigen::VectorXd parameters;
-  std::vector<ParameterEstimate> estimates;
-  Eigen::MatrixXd covariance;     // of φ; prior, inflation and memory included
-  double start_rms = 0, rms = 0;  // √(‖r‖²/n) before and after
-  // Variances are multiplied by its square: max(1, rms), as a model that misses the data by more
-  // than the noise knows its parameters less well than the noise alone would let it.
+  std::string message;                       // why the result is not usable
+  int iterations = 0;                        // of the optimiser
+  int predictions = 0;                       // evaluations of the prediction function
+  Eigen::VectorXd parameters;                // θ, SI
+  std::vector<ParameterEstimate> estimates;  // empty if the first prediction failed
+  Eigen::MatrixXd covariance;                // of φ, with prior, `inflation` and `memory` included
+  double start_rms = 0, rms = 0;             // √(‖r‖²/n) at the start and at the solution
+  // √v = max(1, rms). All variances of the noise are multiplied by v, because a model that misses
+  // the data by more than the noise determines its parameters less well than the noise would allow.
   double inflation = 1;
-  // a: what remains of a frame's error in the next, as the residual has it, 0 to 0.9. Errors that
-  // last make slow changes less certain than as many unrelated ones would: with R_ij = a^|i−j|
-  // between the frames of a quantity and P the priors' variances, the estimate's covariance is
-  //   H⁻¹ (Jᵀ R J/v + P⁻¹) H⁻¹,  H = JᵀJ/v + P⁻¹,  v = inflation²
-  // (least squares under correlated errors: White, Econometrica 48, 1980).
+  // The lag-one autocorrelation a of the residual, limited to 0 … 0.9. Errors that persist over
+  // frames make slowly varying directions less certain than independent errors would. With
+  // R_ij = a^|i−j| between the frames of a quantity and the prior variances P, the covariance is
+  //   H⁻¹ (Jᵀ R J/v + P⁻¹) H⁻¹,  H = JᵀJ/v + P⁻¹,
+  // the sandwich estimate of least squares under correlated errors (White, Econometrica 48, 1980).
   double memory = 0;
 };
 
-// √(‖r‖²/n); 0 for an empty residual.
-double RootMeanSquare(const Eigen::VectorXd& residual);
-
-// A start outside its bounds is our own mistake (CHECK). When the very first prediction fails the
-// result is not usable and says why; later ones make the step shorter.
+// Runs the calibration. A start outside its bounds is a programming error (CHECK). If the
+// prediction at the start fails, the result is not usable and carries its message; predictions that
+// fail later only shorten the step.
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
                       const PredictionFunction& predict, const CalibrationOptions& options = {});
+
+// Widens the interval of an estimate by a known error of the model: `other` (SI) is the value that
+// a model without this error would have given, and the difference counts as one additional standard
+// deviation. The posterior deviation is left unchanged.
+void CountModelError(const CalibratedParameter& parameter, double other,
+                     ParameterEstimate* estimate);
+
+// √(‖r‖²/n); 0 for an empty residual.
+double RootMeanSquare(const Eigen::VectorXd& residual);
 
 }  // namespace lacuna
 

@@ -14,18 +14,18 @@
 namespace lacuna {
 namespace {
 
-constexpr double kBalanceTolerance = 1e-10;  // of Newton's method, relative to the forces at work
-constexpr double kSolverTolerance = 1e-7;    // of a Newton step
+constexpr double kBalanceTolerance = 1e-10;  // of Newton's method, relative to the acting forces
+constexpr double kSolverTolerance = 1e-7;    // of the linear system of a Newton step
 constexpr int kNewtonIterations = 30;
 constexpr int kMaxLoadParts = 8;
 
-LinearSolverOptions Solving(double tolerance) {
+LinearSolverOptions WithTolerance(double tolerance) {
   LinearSolverOptions options;
   options.relative_tolerance = tolerance;
   return options;
 }
 
-// x(c) and ∂x/∂c at the coefficients that Ceres is about to ask for.
+// Computes x(c) and ∂x/∂c at the coefficients that Ceres is about to evaluate.
 class BalancedMotion : public ceres::EvaluationCallback {
  public:
   BalancedMotion(const Model& model, const StepEquation& equation, const ForceModel& force_model,
@@ -36,7 +36,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
         coefficients_(coefficients),
         fixed_(GrippedNodes(model)),
         gripped_place_(position),
-        newton_solver_(model.body->pattern, fixed_, Solving(kSolverTolerance)),
+        newton_solver_(model.body->pattern, fixed_, WithTolerance(kSolverTolerance)),
         tangent_(model.body->pattern),
         differentiated_position_(position),
         position_(position) {}
@@ -61,7 +61,8 @@ class BalancedMotion : public ceres::EvaluationCallback {
     return sensitivity_.size() > 0 && *coefficients_ == differentiated_coefficients_;
   }
 
-  // From the last differentiated place along the tangent; where that fails, in ever smaller parts.
+  // Solves for the balance, starting with a step along the tangent from the latest differentiated
+  // point. If this fails, the change of the coefficients is applied in increasingly many parts.
   bool Balance() {
     for (int parts = 1; parts <= kMaxLoadParts; parts *= 2) {
       position_ = differentiated_position_;
@@ -102,13 +103,13 @@ class BalancedMotion : public ceres::EvaluationCallback {
   LinearSolver newton_solver_;
   int response_factorisations_ = 0;
   BlockMatrix tangent_;
-  Eigen::VectorXd differentiated_position_, differentiated_coefficients_;  // where ∂x/∂c was taken
+  Eigen::VectorXd differentiated_position_, differentiated_coefficients_;  // the point of ∂x/∂c
   Eigen::VectorXd position_;
   Eigen::MatrixXd sensitivity_;  // 3n × K
   bool is_balanced_ = false;
 };
 
-// W (N x(c) − y), as a function of the coefficients.
+// The whitened residual W (N x(c) − y) as a function of the coefficients.
 class ReducedObservationCost : public ceres::CostFunction {
  public:
   ReducedObservationCost(const BalancedMotion& motion, const Observations& observations,
@@ -131,12 +132,13 @@ class ReducedObservationCost : public ceres::CostFunction {
     Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * deviation;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
     const Eigen::Index coefficients = motion_.sensitivity().cols();
-    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(3, coefficients);
+    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, coefficients);
     for (int a = 0; a < 3; ++a) {
-      if (weight_[a] != 0) moved += weight_[a] * motion_.sensitivity().middleRows(3 * node_[a], 3);
+      if (weight_[a] != 0)
+        derivative += weight_[a] * motion_.sensitivity().middleRows(3 * node_[a], 3);
     }
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-        jacobians[0], rows_.rows(), coefficients) = rows_ * moved;
+        jacobians[0], rows_.rows(), coefficients) = rows_ * derivative;
     return true;
   }
 
@@ -146,6 +148,12 @@ class ReducedObservationCost : public ceres::CostFunction {
   Eigen::Vector3d weight_, target_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
 };
+
+double RootMeanSquare(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
 
 }  // namespace
 
@@ -214,7 +222,8 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   observed_only.residual_blocks = observed;
   observed_only.apply_loss_function = false;
   std::vector<double> residuals;
-  // Also brings the motion back to the best coefficients, which need not be the last ones tried.
+  // This evaluation also returns the motion to the best coefficients, which need not be the last
+  // ones that were tried.
   if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
   fit.weighted_rms = RootMeanSquare(residuals);
   fit.position = motion.position();

@@ -12,10 +12,9 @@ namespace lacuna {
 namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
-using Basis = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// L with L Lᵀ ≈ the correlation matrix exp(−d²/2ℓ²) of the points, the residual variance of each
-// point below `tolerance`. Rows belong to points; as many columns as needed.
+// A factor L with L Lᵀ ≈ exp(−d²/(2 ℓ²)) for the distances d between the points, one row per point.
+// Columns are added until the remaining variance of every point is at most `tolerance`.
 Eigen::MatrixXd PivotedCholesky(const Eigen::Matrix3Xd& points, double length, double tolerance) {
   const Eigen::Index count = points.cols();
   Eigen::VectorXd variance = Eigen::VectorXd::Ones(count);
@@ -100,7 +99,8 @@ ForceModel HoldNetForceAndTorque(const Body& body, const ForceModel& model) {
   const Eigen::Map<const Eigen::VectorXd> rest(body.mesh.nodes.data(), body.mesh.nodes.size());
   const Eigen::Vector3d centre = body.mesh.nodes.rowwise().mean();
 
-  // Coefficients allowed are those in the null space of (coefficients → net force and torque).
+  // Admissible coefficients form the null space of the map from coefficients to net force and
+  // torque.
   Eigen::MatrixXd net(6, count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const NetForce of_mode =

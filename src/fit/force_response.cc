@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-// Only a search direction and an uncertainty depend on it.
+// Moderate, because only a search direction and an uncertainty depend on it.
 constexpr double kTolerance = 1e-7;
 
 }  // namespace
@@ -47,19 +47,19 @@ Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(count, count);
   for (Eigen::Index j = 0; j < observations.Count(); ++j) {
     Eigen::Vector3d deviation = -observations.target.col(j);
-    Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(3, count);
+    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, count);
     for (int a = 0; a < 3; ++a) {
       const double weight = observations.weight(a, j);
       if (weight == 0) continue;
       const Eigen::Index row = 3 * observations.node(a, j);
       deviation += weight * position.segment<3>(row);
-      moved += weight * response.sensitivity.middleRows(row, 3);
+      derivative += weight * response.sensitivity.middleRows(row, 3);
     }
     const auto directions = WhitenedDirections(observations, j);
     const double length = (directions * deviation).norm();
-    const double trust =
+    const double loss_weight =
         robust_threshold > 0 && length > robust_threshold ? robust_threshold / length : 1;
-    const Eigen::MatrixXd jacobian = std::sqrt(trust) * (directions * moved);
+    const Eigen::MatrixXd jacobian = std::sqrt(loss_weight) * (directions * derivative);
     information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
   }
   return information.selfadjointView<Eigen::Lower>().llt().solve(

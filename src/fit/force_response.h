@@ -1,4 +1,5 @@
-// How the end of a step answers to the forces of a model, to first order.
+// The first-order response of the end of a time step to the forces of a force model, and the
+// covariance of their coefficients that follows from it.
 #ifndef LACUNA_FIT_FORCE_RESPONSE_H_
 #define LACUNA_FIT_FORCE_RESPONSE_H_
 
@@ -14,19 +15,22 @@ namespace lacuna {
 struct ForceResponse {
   enum class Status { kNotRun, kSolved, kLinearSolverFailed };
   Status status = Status::kNotRun;
-  Eigen::MatrixXd sensitivity;  // 3n × K, m: ∂x/∂c = (∂r/∂x)⁻¹ B, by the implicit function theorem
+  Eigen::MatrixXd sensitivity;  // 3n × K, m: ∂x/∂c
   int factorisations = 0;
   bool IsUsable() const { return status == Status::kSolved; }
 };
 
-// At `position` (3n, m), where the step is in balance. One factor serves all K columns.
+// Computes ∂x/∂c = (∂r/∂x)⁻¹ B, with the basis B of the force model, by the implicit function
+// theorem at `position` (3n, m), where the step must be in balance. One factorisation serves all K
+// columns. If the linear solver fails, the status says so and the sensitivity is incomplete.
 ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
                               const ForceModel& force_model, const Eigen::VectorXd& position);
 
-// (JᵀJ + I)⁻¹ with J the whitened observations' derivative by the coefficients (K × K): what the
-// observations and the standard normal prior leave open of them, if the observations' standard
-// deviations are right and the problem is linear on that scale. Observations beyond
-// `robust_threshold` deviations count as Huber's loss weighs them (0: all count in full).
+// The posterior covariance (JᵀJ + I)⁻¹ of the coefficients (K × K), where J is the Jacobian of the
+// whitened observations and I the precision of the standard normal prior. It is valid if the
+// standard deviations of the observations are right and the problem is linear on that scale.
+// Observations beyond `robust_threshold` standard deviations are weighted as by Huber's loss (0:
+// all have full weight). CHECKs that the response is usable.
 Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,
                                       const Observations& observations,
                                       const Eigen::VectorXd& position, double robust_threshold);

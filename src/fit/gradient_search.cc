@@ -16,10 +16,11 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kMargin = 1e-3;  // of the range, from a bound to where a search may start
+constexpr double kMargin =
+    1e-3;  // least distance of a start from a bound, as a fraction of the range
 
-// What Ceres sees: the value over the angles, scaled so that its first step has the length asked
-// for. An exception of the objective waits here while Ceres returns.
+// The objective as a function of the angles, scaled so that the first step of Ceres has the
+// requested length. An exception of the objective is stored here until Ceres has returned.
 class OverAngles : public ceres::FirstOrderFunction {
  public:
   OverAngles(Evaluator* evaluator, const GradientSearchOptions& options)
@@ -53,7 +54,7 @@ class OverAngles : public ceres::FirstOrderFunction {
       if (!Differentiate(x, *outcome->value, &slope)) return false;
       slope = slope.array() * 0.5 * range_.array() * t.array().sin();
       if (scale_ == 0) {
-        // x moves half as far as t in mid-range.
+        // In mid-range dx/dt is half of the range.
         const double steepest = slope.norm();
         scale_ = steepest > 0 ? 2 * options_.initial_radius / steepest : 1;
       }

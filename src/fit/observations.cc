@@ -8,8 +8,8 @@
 namespace lacuna {
 namespace {
 
-constexpr double kMinNormalAgreement = 0.5;  // cos 60°: a point that turns more is another side's
-constexpr double kSmoothAgreement = 0.985;   // cos 10°: vertex normals that turn more see an edge
+constexpr double kMinNormalAgreement = 0.5;  // cos 60°: beyond it, the point is on another side
+constexpr double kSmoothAgreement = 0.985;   // cos 10°: beyond it, there is an edge
 
 Observations Allocate(Eigen::Index count) {
   Observations observations;
@@ -35,7 +35,7 @@ Observations Keep(const Observations& all, const std::vector<Eigen::Index>& kept
   return observations;
 }
 
-// The mesh nodes and weights of points given on the boundary's triangles.
+// Sets the mesh nodes and the weights of points that are given on triangles of the boundary.
 void AttachToTriangles(const BoundarySurface& boundary, const SurfaceHits& hits,
                        Observations* observations) {
   for (Eigen::Index j = 0; j < hits.triangle.size(); ++j) {
@@ -86,8 +86,8 @@ Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd
   AttachToTriangles(boundary, hits, &all);
   std::vector<Eigen::Index> kept;
   for (Eigen::Index j = 0; j < scan.Size(); ++j) {
-    // Interpolated vertex normals turn smoothly, so that the residual does too when a point's
-    // nearest triangle changes; at a sharp edge they can be far from the face's own.
+    // Interpolated vertex normals vary continuously, and so does the residual when the nearest
+    // triangle of a point changes. At a sharp edge they can deviate far from the face normal.
     const Eigen::Vector3i triangle = surface.triangles.col(hits.triangle[j]);
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     for (int a = 0; a < 3; ++a) normal += hits.barycentric(a, j) * vertex_normals.col(triangle[a]);
@@ -121,8 +121,8 @@ Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matri
   for (Eigen::Index j = 0; j < target.cols(); ++j) {
     all.node.col(j).setConstant(boundary.node[j]);
     all.weight.col(j) = Eigen::Vector3d::UnitX();
-    const bool says_something = std::isfinite(normal_sigma[j]) || std::isfinite(tangent_sigma[j]);
-    if (says_something && all.normal.col(j).norm() > 0.5) kept.push_back(j);
+    const bool is_observed = std::isfinite(normal_sigma[j]) || std::isfinite(tangent_sigma[j]);
+    if (is_observed && all.normal.col(j).norm() > 0.5) kept.push_back(j);
   }
   return Keep(all, kept);
 }

@@ -1,4 +1,8 @@
-// What one frame says about where points of the body are.
+// Observations of one frame: measured positions of points of the body, with their uncertainties.
+//
+// Observation j compares the body point N_j x = Σ_a weight(a, j) x[node(a, j)] with a target y_j.
+// Its whitened residual is W_j (N_j x − y_j), where the rows of W_j are the observed directions
+// divided by their standard deviations. Lengths are in m.
 #ifndef LACUNA_FIT_OBSERVATIONS_H_
 #define LACUNA_FIT_OBSERVATIONS_H_
 
@@ -12,43 +16,45 @@ namespace lacuna {
 
 inline constexpr double kUnobserved = std::numeric_limits<double>::infinity();
 
-// Observation j says that the body's point Σ_a weight(a, j)·x[node(a, j)] lies at target.col(j), to
-// within `normal_sigma` along `normal` and `tangent_sigma` across it (m; kUnobserved: says
-// nothing). A marker has both equal; a scanned point of a smooth surface says nothing across its
-// normal.
+// The position is known to within `normal_sigma` along `normal` and to within `tangent_sigma`
+// perpendicular to it; kUnobserved marks a direction that is not observed. Both are equal for a
+// marker; a scanned point of a smooth surface is not observed in the tangential directions.
 struct Observations {
-  Eigen::MatrixXi node;     // 3 × m
-  Eigen::MatrixXd weight;   // 3 × m, columns sum to 1
-  Eigen::Matrix3Xd target;  // 3 × m, m
-  Eigen::Matrix3Xd normal;  // 3 × m, unit length
-  Eigen::VectorXd normal_sigma;
-  Eigen::VectorXd tangent_sigma;
+  Eigen::MatrixXi node;           // 3 × m
+  Eigen::MatrixXd weight;         // 3 × m, columns sum to 1
+  Eigen::Matrix3Xd target;        // 3 × m
+  Eigen::Matrix3Xd normal;        // 3 × m, unit length
+  Eigen::VectorXd normal_sigma;   // m entries
+  Eigen::VectorXd tangent_sigma;  // m entries
 
   Eigen::Index Count() const { return target.cols(); }
 };
 
-// The observed directions of observation j, each divided by its standard deviation: rows of a
-// matrix R, so that R (N x − y) is the whitened residual. One row along the normal, two across it,
-// where those are observed.
+// The matrix W_j: one row along the normal and two rows perpendicular to it, as far as these
+// directions are observed.
 Eigen::Matrix<double, Eigen::Dynamic, 3> WhitenedDirections(const Observations& observations,
                                                             Eigen::Index j);
 
+// All observations of `first`, then all of `second`.
 Observations Concatenate(const Observations& first, const Observations& second);
 
-// Each scanned point observes the nearest point of the body's boundary at the node positions `x`
-// (3 × n), along the boundary's normal there. Points farther than `reach` (m), and points whose own
-// normal (where known) turns more than 60° away, observe nothing: they belong to something else.
+// Observes, for each scanned point, the nearest point of the body's boundary at the node positions
+// `x` (3 × n), along the normal of the boundary with standard deviation `sigma` > 0. Points farther
+// away than `reach`, and points whose own normal (if known) deviates by more than 60°, are left
+// out, because they belong to another surface.
 Observations ObserveScan(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,
                          const PointCloud& scan, double sigma, double reach);
 
-// Each boundary vertex is observed at `target` (3 × boundary vertices) with the given uncertainties
-// (m) along and across the boundary's normal at `x`. A weight of 0 drops the vertex.
+// Observes each boundary vertex at `target` (3 × boundary vertices) with the given standard
+// deviations along and perpendicular to the normal of the boundary at `x`. Vertices that are
+// observed in no direction are left out.
 Observations ObserveVertices(const BoundarySurface& boundary, const Eigen::Matrix3Xd& x,
                              const Eigen::Matrix3Xd& target, const Eigen::VectorXd& normal_sigma,
                              const Eigen::VectorXd& tangent_sigma);
 
-// Points fixed to the body's boundary at rest (markers), observed in all directions; a column of
-// `target` with NaN was not seen.
+// Observes markers, points attached to the boundary of the body at rest, in all directions with
+// standard deviation `sigma`. Markers whose column of `target` contains NaN were not seen and are
+// left out.
 Observations ObserveMarkers(const BoundarySurface& boundary, const SurfaceHits& at_rest,
                             const Eigen::Matrix3Xd& target, double sigma);
 

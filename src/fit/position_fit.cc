@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-// r(x) and ∂r/∂x at the point that Ceres is about to ask for: assembled once for all residuals.
+// Assembles r(x) and ∂r/∂x once per point that Ceres evaluates, for all residual blocks.
 class AssembledStep : public ceres::EvaluationCallback {
  public:
   AssembledStep(const Model& model, const StepEquation& equation, const Eigen::VectorXd* position)
@@ -41,10 +41,10 @@ class AssembledStep : public ceres::EvaluationCallback {
   bool tangent_is_current_ = false;
 };
 
-// W (N x − y), as a function of the observation's nodes.
+// The whitened residual W (N x − y) of one observation as a function of its nodes.
 class ObservationCost : public ceres::CostFunction {
  public:
-  // `nodes`: how many of the observation's three nodes carry weight.
+  // `nodes`: the number of the observation's nodes with a weight; they come first.
   ObservationCost(const Observations& observations, Eigen::Index j, int nodes)
       : target_(observations.target.col(j)),
         weights_(observations.weight.col(j)),
@@ -75,7 +75,8 @@ class ObservationCost : public ceres::CostFunction {
   Rows rows_;
 };
 
-// (r_i(x) − g_i − B_i c)/s_i, as a function of the nodes around node i and of the coefficients.
+// The balance (r_i(x) − g_i − B_i c)/s_i of node i as a function of the positions of its neighbours
+// and of the coefficients.
 class BalanceCost : public ceres::CostFunction {
  public:
   using Row = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -123,7 +124,8 @@ class BalanceCost : public ceres::CostFunction {
   double scale_;
 };
 
-// The stiffness that each node feels alone, N/m: a third of the trace of its diagonal block.
+// The stiffness of each node against a displacement of it alone, N/m: a third of the trace of its
+// diagonal block.
 Eigen::VectorXd NodeStiffness(const StepEquation& equation, const Body& body,
                               const Eigen::VectorXd& position) {
   BlockMatrix tangent(body.pattern);
@@ -134,9 +136,126 @@ Eigen::VectorXd NodeStiffness(const StepEquation& equation, const Body& body,
   return stiffness;
 }
 
-// How many nodes of an observation carry weight; they come first.
+// The number of nodes of an observation that have a weight; they come first.
 int WeightedNodes(const Observations& observations, Eigen::Index j) {
   return observations.node(1, j) == observations.node(0, j) ? 1 : 3;
+}
+
+// What the residual blocks of one fit are made from.
+struct PositionFitInput {
+  const Model& model;
+  const ForceModel& force_model;
+  const PositionFitStart& start;
+  const ForceFitPrior& prior;
+  const ForceFitOptions& options;
+  std::vector<char> gripped;  // n flags
+  Eigen::VectorXd stiffness;  // n, N/m
+};
+
+double* NodeAt(ForceFit* fit, int node) { return fit->position.data() + 3 * node; }
+
+void AddPositions(const PositionFitInput& input, ForceFit* fit, ceres::Problem* problem) {
+  for (int i = 0; i < input.model.body->NodeCount(); ++i) {
+    problem->AddParameterBlock(NodeAt(fit, i), 3);
+    if (input.gripped[i]) problem->SetParameterBlockConstant(NodeAt(fit, i));
+  }
+}
+
+std::vector<ceres::ResidualBlockId> AddObservations(const Observations& observations,
+                                                    const ForceFitOptions& options, ForceFit* fit,
+                                                    ceres::Problem* problem) {
+  std::vector<ceres::ResidualBlockId> observed;
+  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
+    const int weighted = WeightedNodes(observations, j);
+    std::vector<double*> blocks;
+    for (int a = 0; a < weighted; ++a) blocks.push_back(NodeAt(fit, observations.node(a, j)));
+    ceres::LossFunction* loss =
+        options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
+    observed.push_back(
+        problem->AddResidualBlock(new ObservationCost(observations, j, weighted), loss, blocks));
+  }
+  return observed;
+}
+
+void AddBalance(const PositionFitInput& input, const AssembledStep& assembled, ForceFit* fit,
+                ceres::Problem* problem) {
+  const BlockPattern& pattern = *input.model.body->pattern;
+  const ForceModel& force_model = input.force_model;
+  for (int i = 0; i < pattern.nodes; ++i) {
+    if (input.gripped[i]) continue;
+    std::vector<double*> blocks;
+    for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k)
+      blocks.push_back(NodeAt(fit, pattern.column[k]));
+    BalanceCost::DenseRows basis(3, 0);
+    const bool spanned = force_model.basis.middleRows(3 * i, 3).nonZeros() > 0;
+    if (spanned) {
+      basis = BalanceCost::DenseRows(force_model.basis.middleRows(3 * i, 3));
+      blocks.push_back(fit->coefficients.data());
+    }
+    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
+    if (force_model.free[i]) {
+      expected = input.prior.force.segment<3>(3 * i);
+    } else {
+      expected = -input.start.multiplier.segment<3>(3 * i);
+    }
+    const double length =
+        force_model.free[i] ? input.options.free_force_scale : input.options.balance_tolerance;
+    problem->AddResidualBlock(
+        new BalanceCost(assembled, i, expected, basis, input.stiffness[i] * length), nullptr,
+        blocks);
+  }
+}
+
+void AddCoefficientPrior(const PositionFitInput& input, ForceFit* fit, ceres::Problem* problem) {
+  const Eigen::Index count = input.force_model.CoefficientCount();
+  if (count == 0) return;
+  problem->AddResidualBlock(
+      new ceres::NormalPrior(Eigen::MatrixXd::Identity(count, count), input.prior.coefficients),
+      nullptr, fit->coefficients.data());
+}
+
+ceres::Solver::Summary SolveInOneThread(const ForceFitOptions& options, ceres::Problem* problem) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.initial_trust_region_radius = 1e16;  // damping is relative to the stiff balance rows
+  solver.num_threads = 1;  // the order in which Ceres sums over threads is not fixed
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  const SerialOpenMp serial;
+  ceres::Solve(solver, problem, &summary);
+  return summary;
+}
+
+// Sets the fitted force, the multiplier and the imbalance from the fitted positions and
+// coefficients.
+void SetForces(const PositionFitInput& input, const StepEquation& equation, ForceFit* fit) {
+  const int nodes = input.model.body->NodeCount();
+  Eigen::VectorXd external;
+  equation.Residual(fit->position, &external);
+  const Eigen::VectorXd spanned_force = input.force_model.basis * fit->coefficients;
+  double squared_imbalance = 0;
+  for (int i = 0; i < nodes; ++i) {
+    if (input.gripped[i]) continue;
+    const Eigen::VectorXd& source = input.force_model.free[i] ? external : spanned_force;
+    fit->force.segment<3>(3 * i) = source.segment<3>(3 * i);
+    const Eigen::Vector3d imbalance = (external - fit->force).segment<3>(3 * i);
+    fit->multiplier.segment<3>(3 * i) += imbalance;
+    squared_imbalance += (imbalance / input.stiffness[i]).squaredNorm() / nodes;
+  }
+  fit->imbalance = std::sqrt(squared_imbalance);
+}
+
+double WeightedRms(const std::vector<ceres::ResidualBlockId>& observed, ceres::Problem* problem) {
+  ceres::Problem::EvaluateOptions observed_only;
+  observed_only.residual_blocks = observed;
+  observed_only.apply_loss_function = false;
+  std::vector<double> residuals;
+  problem->Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr);
+  return Eigen::Map<const Eigen::VectorXd>(residuals.data(), residuals.size()).norm() /
+         std::sqrt(static_cast<double>(residuals.size()));
 }
 
 }  // namespace
@@ -145,80 +264,28 @@ ForceFit FitPositions(const Model& model, const StepEquation& equation,
                       const ForceModel& force_model, const Observations& observations,
                       const PositionFitStart& start, const ForceFitPrior& prior,
                       const ForceFitOptions& options) {
-  const Body& body = *model.body;
-  const int nodes = body.NodeCount();
-  const Eigen::Index coefficient_count = force_model.CoefficientCount();
   ForceFit fit;
   fit.position = start.position;
-  fit.force = Eigen::VectorXd::Zero(3 * nodes);
+  fit.force = Eigen::VectorXd::Zero(start.position.size());
   fit.coefficients = start.coefficients;
   fit.multiplier = start.multiplier;
-  const std::vector<char> gripped = GrippedNodes(model);
-  const Eigen::VectorXd stiffness = NodeStiffness(equation, body, start.position);
-  const auto node_at = [&fit](int node) { return fit.position.data() + 3 * node; };
+  const PositionFitInput input{model,
+                               force_model,
+                               start,
+                               prior,
+                               options,
+                               GrippedNodes(model),
+                               NodeStiffness(equation, *model.body, start.position)};
   AssembledStep assembled(model, equation, &fit.position);
-
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &assembled;
   ceres::Problem problem(problem_options);
-  for (int i = 0; i < nodes; ++i) {
-    problem.AddParameterBlock(node_at(i), 3);
-    if (gripped[i]) problem.SetParameterBlockConstant(node_at(i));
-  }
-
-  std::vector<ceres::ResidualBlockId> observed;
-  for (Eigen::Index j = 0; j < observations.Count(); ++j) {
-    const int weighted = WeightedNodes(observations, j);
-    std::vector<double*> blocks;
-    for (int a = 0; a < weighted; ++a) blocks.push_back(node_at(observations.node(a, j)));
-    ceres::LossFunction* loss =
-        options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
-    observed.push_back(
-        problem.AddResidualBlock(new ObservationCost(observations, j, weighted), loss, blocks));
-  }
-
-  for (int i = 0; i < nodes; ++i) {
-    if (gripped[i]) continue;
-    std::vector<double*> blocks;
-    for (int k = body.pattern->row_begin[i]; k < body.pattern->row_begin[i + 1]; ++k)
-      blocks.push_back(node_at(body.pattern->column[k]));
-    BalanceCost::DenseRows basis(3, 0);
-    const bool spanned = force_model.basis.middleRows(3 * i, 3).nonZeros() > 0;
-    if (spanned) {
-      basis = BalanceCost::DenseRows(force_model.basis.middleRows(3 * i, 3));
-      blocks.push_back(fit.coefficients.data());
-    }
-    Eigen::Vector3d expected = Eigen::Vector3d::Zero();
-    if (force_model.free[i]) {
-      expected = prior.force.segment<3>(3 * i);
-    } else {
-      expected = -start.multiplier.segment<3>(3 * i);
-    }
-    const double length =
-        force_model.free[i] ? options.free_force_scale : options.balance_tolerance;
-    problem.AddResidualBlock(new BalanceCost(assembled, i, expected, basis, stiffness[i] * length),
-                             nullptr, blocks);
-  }
-  if (coefficient_count > 0) {
-    problem.AddResidualBlock(
-        new ceres::NormalPrior(Eigen::MatrixXd::Identity(coefficient_count, coefficient_count),
-                               prior.coefficients),
-        nullptr, fit.coefficients.data());
-  }
-
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
-  solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.function_tolerance;
-  solver.initial_trust_region_radius = 1e16;  // damping is relative to the stiff balance rows
-  solver.num_threads = 1;                     // Ceres sums over threads in no fixed order
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  {
-    const SerialOpenMp serial;
-    ceres::Solve(solver, &problem, &summary);
-  }
+  AddPositions(input, &fit, &problem);
+  const std::vector<ceres::ResidualBlockId> observed =
+      AddObservations(observations, options, &fit, &problem);
+  AddBalance(input, assembled, &fit, &problem);
+  AddCoefficientPrior(input, &fit, &problem);
+  const ceres::Solver::Summary summary = SolveInOneThread(options, &problem);
 
   fit.factorisations = summary.num_linear_solves;
   fit.initial_cost = summary.initial_cost;
@@ -227,28 +294,8 @@ ForceFit FitPositions(const Model& model, const StepEquation& equation,
                                                               : ForceFit::Status::kNoConvergence;
   fit.message = summary.message;
   if (!summary.IsSolutionUsable()) return fit;
-
-  Eigen::VectorXd outer;
-  equation.Residual(fit.position, &outer);
-  const Eigen::VectorXd spanned_force = force_model.basis * fit.coefficients;
-  double squared_imbalance = 0;
-  for (int i = 0; i < nodes; ++i) {
-    if (gripped[i]) continue;
-    const Eigen::VectorXd& source = force_model.free[i] ? outer : spanned_force;
-    fit.force.segment<3>(3 * i) = source.segment<3>(3 * i);
-    const Eigen::Vector3d imbalance = (outer - fit.force).segment<3>(3 * i);
-    fit.multiplier.segment<3>(3 * i) += imbalance;
-    squared_imbalance += (imbalance / stiffness[i]).squaredNorm() / nodes;
-  }
-  fit.imbalance = std::sqrt(squared_imbalance);
-
-  ceres::Problem::EvaluateOptions observed_only;
-  observed_only.residual_blocks = observed;
-  observed_only.apply_loss_function = false;
-  std::vector<double> residuals;
-  problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr);
-  fit.weighted_rms = Eigen::Map<const Eigen::VectorXd>(residuals.data(), residuals.size()).norm() /
-                     std::sqrt(static_cast<double>(residuals.size()));
+  SetForces(input, equation, &fit);
+  fit.weighted_rms = WeightedRms(observed, &problem);
   return fit;
 }
 

@@ -18,10 +18,9 @@ const Prediction& SecantPredictions::ExactAt(const Eigen::VectorXd& values) {
   return prediction_;
 }
 
-// J + (y − J s) sᵀ/(sᵀ s) for the change s of the parameters, in typical ones, and y of the
-// residual: the least change of J that agrees with both. What is linear has no part in it.
 void SecantPredictions::FollowTo(const Eigen::VectorXd& values) {
-  constexpr double kNoChange = 1e-12;  // of sᵀ s: y would be rounding
+  // Below this sᵀ s the change of the residual would consist of rounding errors.
+  constexpr double kNoChange = 1e-12;
   ++count_;
   is_exact_ = false;
   prediction_ = predict_(values, /*with_jacobian=*/false);

@@ -1,4 +1,4 @@
-// A tetrahedral mesh cut open, to show what is inside.
+// Cutting a tetrahedral mesh open along a plane, to show its inside.
 #ifndef LACUNA_GEOMETRY_CUT_OPEN_H_
 #define LACUNA_GEOMETRY_CUT_OPEN_H_
 
@@ -8,14 +8,15 @@
 
 namespace lacuna {
 
-// The boundary of the tetrahedra that are left, whole, on one side of a plane. Vertices are all
-// corner nodes of the mesh.
+// The boundary of the tetrahedra that remain on one side of a plane. No tetrahedron is divided, so
+// the cut surface is jagged. The vertices of both meshes are all nodes of the given mesh.
 struct CutMesh {
-  TriMesh skin;   // what was boundary before
-  TriMesh inner;  // what the cut lays bare
+  TriMesh skin;   // faces that were already on the boundary of the mesh
+  TriMesh inner;  // faces that the cut exposes
 };
 
-// Leaves the tetrahedra whose centroid c has n·(c − p) ≤ 0, with p = `point` (m), n = `normal`.
+// Keeps the tetrahedra whose centroid c satisfies n·(c − p) ≤ 0, with p = `point` (m) and n =
+// `normal`, of any length. Both results are empty if none remains.
 CutMesh CutOpen(const TetMesh& mesh, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 
 }  // namespace lacuna

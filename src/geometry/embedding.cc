@@ -11,11 +11,11 @@
 namespace lacuna {
 namespace {
 
-// Tetrahedra whose centroid is near are tried; in a mesh of bounded quality one of so many contains
-// the point.
+// The number of tetrahedra with the nearest centroids that are tested. In a mesh of bounded quality
+// one of them contains the point.
 constexpr int kCandidates = 48;
 
-// ξ_1, ξ_2, ξ_3 of a straight-edged tetrahedron are this times X − X_0: 3 × 3, 1/m.
+// The matrix G (3 × 3, 1/m) with (ξ_1, ξ_2, ξ_3) = G (X − X_0) in a straight-edged tetrahedron.
 Eigen::Matrix3d BarycentricGradient(const TetMesh& mesh, int tet) {
   Eigen::Matrix3d edges;
   for (int a = 0; a < 3; ++a)

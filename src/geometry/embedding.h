@@ -1,4 +1,4 @@
-// Material points inside a tetrahedral mesh, followed through its deformation.
+// Material points inside a tetrahedral mesh, which follow its deformation.
 #ifndef LACUNA_GEOMETRY_EMBEDDING_H_
 #define LACUNA_GEOMETRY_EMBEDDING_H_
 
@@ -9,23 +9,27 @@
 
 namespace lacuna {
 
+// The location of n points in the reference configuration of a mesh:
+//   x_j = Σ_a N_a(ξ_j) x_a   over the nodes a of one tetrahedron.
 struct Embedding {
-  Eigen::VectorXi tet;     // n
+  Eigen::VectorXi tet;     // n: the tetrahedron of each point
   Eigen::MatrixXd weight;  // (nodes per tet) × n: shape functions N_a at the points, sum 1
-  std::vector<Eigen::MatrixX3d> gradient;  // n of (nodes per tet) × 3: ∂N_a/∂X there, 1/m
-  Eigen::VectorXd outside;                 // n: 0 inside; else −(smallest barycentric coordinate)
+  std::vector<Eigen::MatrixX3d> gradient;  // n of (nodes per tet) × 3: ∂N_a/∂X at the points, 1/m
+  Eigen::VectorXd
+      outside;  // n: 0 for a point inside the mesh, else −(least barycentric coordinate)
 };
 
-// Each point (3 × n, m) in the tetrahedron of `mesh` (at rest) that contains it, or, for a point
-// outside, in the nearby one that it lies least far outside of: its weights then extrapolate.
+// Locates each point (3 × n, m) in the tetrahedron of the undeformed `mesh` that contains it. A
+// point outside the mesh gets the nearby tetrahedron whose least barycentric coordinate is largest,
+// so that its weights extrapolate.
 Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points);
 
-// The points at other node positions (3 × nodes).
+// The positions of the points (3 × n, m) for the node positions `nodes` (3 × nodes, m).
 Eigen::Matrix3Xd PointsAt(const Embedding& embedding, const TetMesh& mesh,
                           const Eigen::Matrix3Xd& nodes);
 
-// F = ∂x/∂X at point j, for nodes at these positions (3 × nodes): a point that lies δ from where it
-// was taken to be on the undeformed body is found F δ from where it was predicted.
+// The deformation gradient F = ∂x/∂X at point j for the node positions `nodes` (3 × nodes, m). An
+// error δ of the point's position in the reference configuration becomes F δ in the deformed one.
 Eigen::Matrix3d DeformationGradientAt(const Embedding& embedding, Eigen::Index j,
                                       const TetMesh& mesh,
                                       const Eigen::Ref<const Eigen::Matrix3Xd>& nodes);

@@ -5,8 +5,8 @@
 namespace lacuna {
 namespace {
 
-// Barycentric coordinates of the whole face at the corners of its quarters, which stand in the
-// order of BoundarySurface::surface.
+// Barycentric coordinates in the whole face of the corners of its four triangles, in the order of
+// BoundarySurface::surface.
 constexpr double kQuarters[4][3][3] = {{{1, 0, 0}, {.5, .5, 0}, {.5, 0, .5}},
                                        {{.5, .5, 0}, {0, 1, 0}, {0, .5, .5}},
                                        {{.5, 0, .5}, {0, .5, .5}, {0, 0, 1}},
@@ -20,7 +20,7 @@ FacePoint PlaceOnFace(const BoundarySurface& boundary, int triangle,
   point.weight.setZero();
   point.by_first.setZero();
   point.by_second.setZero();
-  // The coordinates are l[1] and l[2]; l[0] = 1 − l[1] − l[2].
+  // The two coordinates of the face are l[1] and l[2], with l[0] = 1 − l[1] − l[2].
   constexpr double kFirst[3] = {-1, 1, 0}, kSecond[3] = {-1, 0, 1};
   if (boundary.faces.rows() == 3) {
     point.face = triangle;

@@ -1,4 +1,4 @@
-// Points spread evenly, chosen among many.
+// Choosing a few evenly spread points among many (farthest-point sampling).
 #ifndef LACUNA_GEOMETRY_FARTHEST_FIRST_H_
 #define LACUNA_GEOMETRY_FARTHEST_FIRST_H_
 
@@ -8,9 +8,10 @@
 
 namespace lacuna {
 
-// `count` of the points 0 … size − 1: `first`, then always the one farthest from all before it
-// (Gonzalez, Theor. Comput. Sci. 38, 1985). Of equally far ones the first is taken.
-// `distance(i, j)`: of two points, or any growing function of it. 0 < count ≤ size.
+// Returns `count` of the points 0 … size − 1, 0 < count ≤ size: `first`, and then repeatedly the
+// point whose distance from the nearest chosen one is largest (Gonzalez, Theor. Comput. Sci. 38,
+// 1985). The first of several equally distant points is taken. `distance(i, j)` is the distance of
+// two points or any increasing function of it. Costs count · size evaluations of `distance`.
 template <class Distance>
 std::vector<int> FarthestFirst(int size, int first, int count, const Distance& distance) {
   std::vector<double> away(static_cast<size_t>(size), std::numeric_limits<double>::infinity());

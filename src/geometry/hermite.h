@@ -4,13 +4,16 @@
 
 namespace lacuna {
 
-// Position and velocity, and what they change with, at one time.
+// Positions and velocities at one time. `Matrix` is any Eigen type; the unit of velocity is that of
+// position per unit of time.
 template <typename Matrix>
 struct Knot {
   Matrix position, velocity;
 };
 
-// The cubic through two knots `h` apart, at the fraction t of the interval.
+// The value and the velocity of the cubic that interpolates positions and velocities of two knots,
+// `h` > 0 apart in time, at the fraction t ∈ [0, 1] of the interval:
+//   x(t) = (1 + 2t)(1 − t)² x₀ + t²(3 − 2t) x₁ + h (t (1 − t)² v₀ − t² (1 − t) v₁).
 template <typename Matrix>
 Knot<Matrix> Interpolate(const Knot<Matrix>& from, const Knot<Matrix>& to, double h, double t) {
   const double s = 1 - t;

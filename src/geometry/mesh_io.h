@@ -1,4 +1,9 @@
-// Triangle and tetrahedral meshes from files and to files.
+// Reading and writing of triangle meshes and tetrahedral meshes.
+//
+// The readers choose the format by the extension and keep the file's length unit. They throw
+// InputError with the file, the line if there is one, and the fault: a missing or truncated file,
+// an unsupported version of the format, numbers that are not finite, indices out of range, or no
+// elements at all. Changes that they had to make are listed in `notes`, one sentence each.
 #ifndef LACUNA_GEOMETRY_MESH_IO_H_
 #define LACUNA_GEOMETRY_MESH_IO_H_
 
@@ -12,37 +17,36 @@
 
 namespace lacuna {
 
-// Both readers tell the format by the extension, keep the file's own length unit, and throw
-// InputError with file, line where there is one, and fault: an absent or truncated file, another
-// version of the format, numbers that are not finite, indices out of range, no elements at all.
-// What they had to change stands in `notes`, a sentence each.
-
 struct TriMeshFile {
   TriMesh mesh;
   std::vector<std::string> notes;
 };
 
-// .ply, .obj, .stl and .off, text or binary where the format knows both. Polygons are cut into
-// triangles; the vertices of an STL file are merged where they are equal, bit by bit. The surface
-// may be of any topology: see CheckSurface.
+// Reads .ply, .obj, .stl and .off, in text or binary form where the format has both. Polygons are
+// cut into triangles; vertices of an STL file that are equal bit by bit are merged. The surface may
+// have any topology; CheckSurface examines it.
 TriMeshFile ReadTriMesh(const std::filesystem::path& file);
 
 struct TetMeshFile {
   TetMesh mesh;
-  Eigen::VectorXi node_in_file;  // place of each node among the nodes of the file, from 0
+  Eigen::VectorXi node_in_file;  // for each node, its index among the nodes of the file, from 0
   std::vector<std::string> notes;
 };
 
-// Gmsh .msh 2.2 (text; tetrahedra of order 1 or 2, other elements are passed over), TetGen .node
-// and .ele (either is named, both are read; order 1), MEDIT .mesh (text, order 1), .tet (lines "v x
-// y z" and "t i j k l" from 0), and .txt (numbers of nodes and tetrahedra, nodes, tetrahedra from
-// 0). Tetrahedra that turn the wrong way are turned over, nodes that no tetrahedron uses are
-// dropped, each with a note. Tetrahedra without volume, with repeated nodes, that overlap across a
-// face or meet by three at one are refused.
+// Reads the following formats:
+//   .msh          Gmsh 2.2, text; tetrahedra of order 1 or 2, other elements are skipped
+//   .node, .ele   TetGen, order 1; either file is named and both are read
+//   .mesh         MEDIT, text, order 1
+//   .tet          lines "v x y z" and "t i j k l", indices from 0
+//   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra with indices from
+//   0
+// Tetrahedra with negative volume are reoriented and unused nodes are dropped, each with a note.
+// Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
+// three are refused.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
 
-// Binary PLY of doubles; Gmsh .msh 2.2 text that gives back the same doubles. Written atomically;
-// throws InputError when the file cannot be written.
+// Write a binary PLY file of doubles and a Gmsh .msh 2.2 text file, respectively. Reading them back
+// gives the same doubles. Both write atomically and throw InputError if that fails.
 void WriteTriMesh(const std::filesystem::path& ply, const TriMesh& mesh);
 void WriteTetMesh(const std::filesystem::path& msh, const TetMesh& mesh);
 

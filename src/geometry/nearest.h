@@ -1,4 +1,7 @@
-// Nearest points of clouds and of surfaces.
+// Nearest-point queries on point clouds and triangulated surfaces.
+//
+// Both search structures are built once, keep their own copy of the data, and may be queried from
+// several threads. An empty cloud or surface is a programming error (CHECK).
 #ifndef LACUNA_GEOMETRY_NEAREST_H_
 #define LACUNA_GEOMETRY_NEAREST_H_
 
@@ -9,15 +12,15 @@
 
 namespace lacuna {
 
-// For each query point the nearest point of a surface. The search structure is built once and keeps
-// its own copy. Of equally near triangles the first is taken; a query that is not finite gets
-// triangle −1, distance ∞ and NaN. The surface must have triangles.
+// The nearest point of a surface for each of n query points. If several triangles are equally near,
+// the first is taken. A query that is not finite gets triangle −1, distance ∞ and NaN for the rest.
 struct SurfaceHits {
   Eigen::Matrix3Xd point;        // 3 × n, m, on the surface
   Eigen::VectorXi triangle;      // n
   Eigen::Matrix3Xd barycentric;  // 3 × n
   Eigen::VectorXd distance;      // n, m, ≥ 0
 };
+
 class SurfaceSearch {
  public:
   explicit SurfaceSearch(const TriMesh& mesh);
@@ -25,6 +28,7 @@ class SurfaceSearch {
   SurfaceSearch(SurfaceSearch&&) noexcept;
   SurfaceSearch& operator=(SurfaceSearch&&) noexcept;
 
+  // `queries`: 3 × n, m.
   SurfaceHits Nearest(const Eigen::Matrix3Xd& queries) const;
 
  private:
@@ -32,11 +36,12 @@ class SurfaceSearch {
   std::unique_ptr<Tree> tree_;
 };
 
-// The same for a cloud of points, which must not be empty.
+// The k nearest points of a cloud for each of n query points.
 struct PointHits {
-  Eigen::MatrixXi index;     // k × n, nearest first
+  Eigen::MatrixXi index;     // k × n, the nearest first
   Eigen::MatrixXd distance;  // k × n, m
 };
+
 class PointSearch {
  public:
   explicit PointSearch(const Eigen::Matrix3Xd& points);
@@ -44,7 +49,7 @@ class PointSearch {
   PointSearch(PointSearch&&) noexcept;
   PointSearch& operator=(PointSearch&&) noexcept;
 
-  // k ≤ the number of points.
+  // `queries`: 3 × n, m; 1 ≤ k ≤ the number of points in the cloud.
   PointHits Nearest(const Eigen::Matrix3Xd& queries, int k = 1) const;
 
  private:

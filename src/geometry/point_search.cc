@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-// Eigen's columns as nanoflann reads a data set.
+// The columns of a matrix as a nanoflann data set.
 struct Columns {
   Eigen::Matrix3Xd points;
 

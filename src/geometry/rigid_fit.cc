@@ -7,8 +7,8 @@
 namespace lacuna {
 namespace {
 
-// Points that are no wider than this part of their length lie on a line: their errors would make a
-// turn about it twenty times the one that they make across.
+// An extent below this fraction of the largest counts as none. The errors of points on a nearly
+// straight line would cause a rotation about it that is twenty times the rotation across it.
 constexpr double kWidth = 0.05;
 
 std::vector<Eigen::Index> SeenInBoth(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {

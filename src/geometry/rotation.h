@@ -1,4 +1,4 @@
-// Rotations given by a vector: its direction is the axis, its length the angle.
+// Rotation vectors: the direction is the axis and the length is the angle.
 #ifndef LACUNA_GEOMETRY_ROTATION_H_
 #define LACUNA_GEOMETRY_ROTATION_H_
 
@@ -6,7 +6,7 @@
 
 namespace lacuna {
 
-// `vector`: rad; zero: no rotation.
+// The rotation matrix of a rotation vector (rad); the identity for the zero vector.
 inline Eigen::Matrix3d RotationBy(const Eigen::Vector3d& vector) {
   const double angle = vector.norm();
   if (angle == 0) return Eigen::Matrix3d::Identity();

@@ -73,7 +73,7 @@ TriMesh RoundedBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, d
             return vertex(index);
           };
           const int a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-          // Alternating diagonals leave no preferred direction.
+          // Alternating diagonals avoid a preferred direction.
           std::array<Eigen::Vector3i, 2> pair{Eigen::Vector3i(a, b, c), Eigen::Vector3i(a, c, d)};
           if ((i + j) % 2 == 1) pair = {Eigen::Vector3i(a, b, d), Eigen::Vector3i(b, c, d)};
           for (Eigen::Vector3i& triangle : pair) {

@@ -1,4 +1,4 @@
-// The surface of a box with rounded edges: the soft bar of the synthetic scenes.
+// The surface of a box with rounded edges, used as the soft bar of the synthetic scenes.
 #ifndef LACUNA_GEOMETRY_ROUNDED_BOX_H_
 #define LACUNA_GEOMETRY_ROUNDED_BOX_H_
 
@@ -8,9 +8,10 @@
 
 namespace lacuna {
 
-// All points within `edge_radius` (m, at most half the shortest side; 0: sharp edges) of an inner
-// box, so that the outer size is `size` (m), centred at `centre`. Triangles have edges of about
-// `edge_length` (m). Closed, manifold, outward.
+// The box has the outer size `size` (m) and is centred at `centre`. Its edges are rounded with the
+// radius `edge_radius` (m, at most half the shortest side; 0 gives sharp edges): it consists of all
+// points within that distance of an inner box. Triangles have edges of about `edge_length` (m). The
+// surface is closed, manifold and oriented outward.
 TriMesh RoundedBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, double edge_radius,
                    double edge_length);
 

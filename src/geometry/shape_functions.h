@@ -1,4 +1,4 @@
-// Shape functions of the linear and the quadratic tetrahedron in barycentric coordinates.
+// Shape functions and quadrature of the linear and the quadratic tetrahedron.
 #ifndef LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
 #define LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
 
@@ -6,23 +6,22 @@
 
 namespace lacuna {
 
-// N_a(ξ) of the 4 or 10 nodes at barycentric coordinates ξ (four numbers that sum to 1), in the
-// node order of TetMesh:
+// The shape functions N_a(ξ) of the 4 nodes (order 1) or 10 nodes (order 2) at the barycentric
+// coordinates ξ, four numbers with sum 1, in the node order of TetMesh:
 //   linear     N_a = ξ_a
 //   quadratic  N_a = ξ_a (2 ξ_a − 1) at corners,   4 ξ_a ξ_b at the midpoint of edge (a, b)
 // (Zienkiewicz & Taylor, The Finite Element Method, vol. 1).
 Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric);
 
-// ∂N_a/∂ξ_k with the four coordinates taken as independent: nodes × 4.
+// The derivatives ∂N_a/∂ξ_k (nodes × 4), where the four coordinates are treated as independent.
 Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric);
 
-// Barycentric points (4 × n) and weights (sum 1) of the rule that an element of this order is
-// integrated with: the centroid for order 1, four points exact to degree 2 for order 2
-// (Hammer & Stroud 1956).
 struct TetQuadrature {
-  Eigen::Matrix4Xd points;
-  Eigen::VectorXd weights;
+  Eigen::Matrix4Xd points;  // 4 × n, barycentric
+  Eigen::VectorXd weights;  // n, sum 1
 };
+// The quadrature rule for an element of this order: the centroid for order 1, and four points,
+// exact to degree 2, for order 2 (Hammer & Stroud 1956).
 TetQuadrature ElementQuadrature(int order);
 
 }  // namespace lacuna

@@ -19,7 +19,7 @@ void RefuseUnlessOpenSheet(const TriMesh& sheet) {
     throw InputError(fmt::format("{} vertices of the sheet to thicken belong to no triangle",
                                  report.unused_vertices));
   }
-  // An open sheet has an edge, and intersections show as prisms that turn over.
+  // A boundary is expected in an open sheet, and intersections will show as inverted prisms.
   report.boundary_loops.clear();
   report.inside_out_components.clear();
   report.self_intersections_tested = true;
@@ -27,7 +27,7 @@ void RefuseUnlessOpenSheet(const TriMesh& sheet) {
   if (!faults.empty()) throw InputError("the sheet to thicken has " + faults);
 }
 
-// Height above the sheet of the lowest level, in thicknesses.
+// The height of the lowest level above the sheet, as a multiple of the thickness.
 double LowestLevel(SheetPosition position) {
   switch (position) {
     case SheetPosition::kMiddle:
@@ -40,8 +40,8 @@ double LowestLevel(SheetPosition position) {
   LOG(FATAL) << "no such position";
 }
 
-// Three tetrahedra of the prism over corners with the numbers a < b < c, positive when these turn
-// counter-clockwise seen from above. Each holds one of the stairs from a below to c above.
+// The three tetrahedra of the prism over corners with the numbers a < b < c. Their volumes are
+// positive if the corners are counter-clockwise seen from above.
 std::array<std::array<int, 4>, 3> PrismTets(std::array<int, 3> corners, int lower, int upper) {
   std::sort(corners.begin(), corners.end());
   const auto& [a, b, c] = corners;
@@ -68,7 +68,7 @@ TetMesh ThickenToTets(const TriMesh& sheet, double thickness, int layers, SheetP
   for (int t = 0; t < triangle_count; ++t) {
     const std::array<int, 3> corners{sheet.triangles(0, t), sheet.triangles(1, t),
                                      sheet.triangles(2, t)};
-    // Sorting the corners by number turns the triangle over for an odd permutation.
+    // Sorting the corners by number reverses the triangle if the permutation is odd.
     const bool turned =
         (corners[0] < corners[1]) + (corners[1] < corners[2]) + (corners[2] < corners[0]) == 1;
     for (int layer = 0; layer < layers; ++layer) {

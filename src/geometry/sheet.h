@@ -1,4 +1,4 @@
-// An open sheet with a thickness: a closed surface, or prisms split into tetrahedra.
+// Giving an open sheet a thickness, as a closed surface or as a tetrahedral mesh.
 #ifndef LACUNA_GEOMETRY_SHEET_H_
 #define LACUNA_GEOMETRY_SHEET_H_
 
@@ -7,26 +7,27 @@
 
 namespace lacuna {
 
-// Where the material lies as seen from the sheet, whose normals point "above".
+// The position of the sheet in the thickened body: it becomes the middle, the top or the bottom
+// surface. The sheet's normals point to the top.
 enum class SheetPosition { kMiddle, kTop, kBottom };
 
-// The closed surface of a sheet. Vertex v + k·n stands over vertex v of the sheet's n vertices,
-// below it for k = 0 and above for k = 1.
+// The closed surface of a thickened sheet with n vertices: vertex v + k·n belongs to vertex v of
+// the sheet and lies on the bottom for k = 0 and on the top for k = 1.
 struct ThickSheet {
   TriMesh surface;
-  Eigen::VectorXi origin;  // the sheet's vertex for each of the 2n
+  Eigen::VectorXi origin;  // 2n: the vertex of the sheet for each vertex of `surface`
 };
 
-// Moves copies of the sheet along its vertex normals, `thickness` (m) apart, and closes the side.
-// The sheet must be manifold, consistently oriented, open, and thin against its radius of
-// curvature. Throws InputError with the fault and its place where it is not manifold or oriented,
-// where it is closed, and where a prism over one of its triangles would turn over.
+// Offsets copies of the sheet along its vertex normals, `thickness` (m) apart, and closes the rim.
+// The sheet must be manifold, consistently oriented, open, and thin compared with its radius of
+// curvature. Throws InputError with the fault and its location if the sheet is not manifold, not
+// oriented or closed, or if a prism over one of its triangles would be inverted.
 ThickSheet ThickenSheet(const TriMesh& sheet, double thickness,
                         SheetPosition position = SheetPosition::kMiddle);
 
-// The same body as `layers` layers of prisms, each split into three tetrahedra. Node v + k·n stands
-// over vertex v on level k = 0..layers, counted from below. The diagonals run from the vertex of
-// lower number, so that prisms side by side agree. Linear; throws as ThickenSheet does.
+// The same body as `layers` ≥ 1 layers of prisms, each split into three linear tetrahedra. Node
+// v + k·n belongs to vertex v on level k = 0..layers, counted from the bottom. Diagonals start at
+// the vertex of lower number, so that neighbouring prisms agree. Throws like ThickenSheet.
 TetMesh ThickenToTets(const TriMesh& sheet, double thickness, int layers,
                       SheetPosition position = SheetPosition::kMiddle);
 

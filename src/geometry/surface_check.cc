@@ -9,14 +9,12 @@
 #include <numeric>
 #include <tuple>
 
-#include "geometry/self_intersection.h"
-
 namespace lacuna {
 namespace {
 
 using Eigen::Vector3d;
 
-// Sets of integers that are merged step by step.
+// A partition of the integers 0 … count − 1 into sets that can be merged (union-find).
 class DisjointSets {
  public:
   explicit DisjointSets(size_t count) : parent_(count) {
@@ -59,7 +57,7 @@ std::vector<HalfEdge> SortedHalfEdges(const TriMesh& mesh) {
   return edges;
 }
 
-// The corner of `triangle` at `vertex`, numbered through all triangles.
+// The corner of `triangle` at `vertex`, numbered as 3 · triangle + local corner.
 int CornerAt(const TriMesh& mesh, int triangle, int vertex) {
   for (int k = 0; k < 2; ++k) {
     if (mesh.triangles(k, triangle) == vertex) return 3 * triangle + k;

@@ -1,5 +1,5 @@
-// What a triangulated surface is: closed, manifold, oriented, free of self-intersections; and where
-// it is not.
+// Examination of a triangulated surface: whether it is closed, manifold, consistently oriented and
+// free of self-intersections, and where it is not.
 #ifndef LACUNA_GEOMETRY_SURFACE_CHECK_H_
 #define LACUNA_GEOMETRY_SURFACE_CHECK_H_
 
@@ -7,41 +7,36 @@
 #include <string>
 #include <vector>
 
+#include "geometry/self_intersection.h"
 #include "geometry/tri_mesh.h"
 
 namespace lacuna {
 
-// Boundary edges that hang together.
+// A connected set of boundary edges.
 struct BoundaryLoop {
-  Eigen::Vector3d centre;  // mean over the length, m
+  Eigen::Vector3d centre;  // length-weighted mean, m
   double length = 0;       // m
   int edges = 0;
 };
 
-// Two triangles that meet elsewhere than in the vertices they share.
-struct SelfIntersection {
-  int first = -1, second = -1;  // triangles, first < second
-  Eigen::Vector3d place;        // the middle of their common bounding box, m
-};
-
-// A fault at a place: an edge's midpoint, a vertex or a triangle's centroid.
+// The locations of faults (m): midpoints of edges, vertices or centroids of triangles.
 using Places = std::vector<Eigen::Vector3d>;
 
 struct SurfaceReport {
-  Eigen::Index vertices = 0, triangles = 0;  // vertices that triangles use
+  Eigen::Index vertices = 0, triangles = 0;  // only vertices that triangles use
   Eigen::Index unused_vertices = 0;
-  int components = 0;                        // triangles that hang together by edges
+  int components = 0;                        // sets of triangles that are connected by edges
   int euler_characteristic = 0;              // V − E + F
   std::vector<BoundaryLoop> boundary_loops;  // longest first
-  Places nonmanifold_edges;                  // shared by three triangles or more
-  Places nonmanifold_vertices;               // where several fans of triangles touch
-  Places misoriented_edges;                  // whose two triangles turn opposite ways
-  Places degenerate_triangles;               // repeated vertices or no area at all
-  Places inside_out_components;              // closed, with a negative volume
+  Places nonmanifold_edges;                  // edges of three triangles or more
+  Places nonmanifold_vertices;               // vertices at which several fans of triangles meet
+  Places misoriented_edges;                  // edges whose two triangles have opposite orientations
+  Places degenerate_triangles;               // triangles with a repeated vertex or no area
+  Places inside_out_components;              // closed components of negative volume
   bool self_intersections_tested = false;
   std::vector<SelfIntersection> self_intersections;
   double area = 0;    // m²
-  double volume = 0;  // signed, m³; has a meaning only for a closed surface
+  double volume = 0;  // signed, m³; meaningful only for a closed surface
   double min_edge = 0, mean_edge = 0, max_edge = 0;  // m
   double min_angle = 0;                              // smallest of all triangles, rad
 
@@ -58,13 +53,14 @@ struct SurfaceReport {
   }
 };
 
-// Examines `mesh`, any soup of triangles with indices in range and finite vertices. Intersections
-// are decided exactly (CGAL's predicates); they are by far the dearest part, so a caller who needs
-// only the topology leaves them out.
+// Examines `mesh`, which may be any set of triangles with indices in range and finite vertices.
+// Testing for self-intersections (exactly, with CGAL's predicates) takes by far the most time and
+// may be omitted if only the topology matters.
 SurfaceReport CheckSurface(const TriMesh& mesh, bool test_self_intersections = true);
 
-// What keeps the surface from bounding a volume, with the first places of each fault; empty when
-// nothing does: "2 holes, the longest of 0.031 m around (0.01, 0.2, 0.03); ...".
+// A description of the faults that keep the surface from bounding a volume, with the first
+// locations of each: "2 holes, the longest of 0.031 m around (0.01, 0.2, 0.03); ...". Empty if
+// there are none.
 std::string DescribeFaults(const SurfaceReport& report);
 
 }  // namespace lacuna

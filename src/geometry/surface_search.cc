@@ -24,7 +24,7 @@ struct Triangle {
   int index;  // in the mesh
 };
 
-// Nodes stand in depth-first order, so the left child follows its parent.
+// Nodes are stored in depth-first order, so the left child follows its parent.
 struct Node {
   Vector3d min, max;
   int right = 0;  // inner node: the right child
@@ -36,15 +36,16 @@ double SquaredDistance(const Node& node, const Vector3d& query) {
   return (node.min - query).cwiseMax(query - node.max).cwiseMax(0).squaredNorm();
 }
 
-// The place on segment a-b nearest the origin, as the fraction from a.
+// The point on the segment from a to b that is nearest to the origin, as a fraction of the segment.
 double NearestOnSegment(const Vector3d& a, const Vector3d& b) {
   const Vector3d along = b - a;
   const double squared_length = along.squaredNorm();
   return squared_length > 0 ? std::clamp(-a.dot(along) / squared_length, 0.0, 1.0) : 0.0;
 }
 
-// Barycentric coordinates of the point nearest the origin of triangle a, b, c. The plane's own
-// nearest point serves where it lies inside; else, and for slivers, the nearest of the edges does.
+// Barycentric coordinates of the point of triangle a, b, c that is nearest to the origin: the
+// orthogonal projection if it lies inside, otherwise (and for slivers) the nearest point of an
+// edge.
 Vector3d NearestOnTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d normal = (b - a).cross(c - a);
   const Vector3d inside(normal.dot(b.cross(c)), normal.dot(c.cross(a)), normal.dot(a.cross(b)));
@@ -111,7 +112,7 @@ struct SurfaceSearch::Tree {
     Build(middle, end);
   }
 
-  // Of equally near triangles the first wins, whatever the order of the walk.
+  // Of equally near triangles the one with the lowest index wins, whatever the order of traversal.
   void Consider(const Triangle& t, const Vector3d& query, Hit& best) const {
     const Vector3d barycentric = NearestOnTriangle(t.a - query, t.b - query, t.c - query);
     const Vector3d point = barycentric[0] * t.a + barycentric[1] * t.b + barycentric[2] * t.c;

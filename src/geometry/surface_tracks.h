@@ -1,4 +1,4 @@
-// Material points on a body's boundary, followed through its deformation.
+// Material points on or near the boundary of a body, which follow its deformation.
 #ifndef LACUNA_GEOMETRY_SURFACE_TRACKS_H_
 #define LACUNA_GEOMETRY_SURFACE_TRACKS_H_
 
@@ -9,17 +9,18 @@
 
 namespace lacuna {
 
-// Points (3 × n, m) seen at rest on or beside the boundary: each goes with the nearest place of the
-// boundary, at the offset that it had at rest. A point at NaN stays at NaN.
+// Points attached to the nearest point of the undeformed boundary by a constant offset.
 struct SurfaceTracks {
-  SurfaceHits at_rest;      // the places
-  Eigen::Matrix3Xd offset;  // 3 × n, m, from place to point
+  SurfaceHits at_rest;      // the nearest points of the undeformed boundary
+  Eigen::Matrix3Xd offset;  // 3 × n, m: from the nearest boundary point to the tracked point
 
   Eigen::Index Count() const { return offset.cols(); }
 };
+// Attaches `points` (3 × n, m, in the reference configuration). A point at NaN stays at NaN.
 SurfaceTracks TrackOnSurface(const BoundarySurface& boundary, const Eigen::Matrix3Xd& points);
 
-// The points when the mesh nodes are at `nodes` (3 × nodes, m).
+// The positions of the points (3 × n, m) for the node positions `nodes` (3 × nodes, m). Offsets are
+// not rotated with the surface.
 Eigen::Matrix3Xd PointsAt(const SurfaceTracks& tracks, const BoundarySurface& boundary,
                           const Eigen::Matrix3Xd& nodes);
 

@@ -23,7 +23,8 @@ constexpr std::array<std::array<int, 6>, 4> kFaces{
 constexpr std::array<std::array<int, 3>, 4> kFaceQuarters{
     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
 
-// Places in 6 × m (edges of tets), grouped by the edge they hold: equal edges become neighbours.
+// One of the 6 m edges of the tetrahedra, with its position in that list. Sorting by the edge makes
+// equal edges neighbours.
 struct EdgePlace {
   uint64_t edge;
   int64_t place;
@@ -94,8 +95,8 @@ TetMesh ToQuadratic(const TetMesh& linear) {
   if (linear.Order() == 2) return linear;
   const std::vector<EdgePlace> places = SortedEdgePlaces(linear.tets);
 
-  // An edge's node is numbered by the first tetrahedron that has it, so that nodes which meet in an
-  // element stay close in memory.
+  // Midpoints are numbered in the order of the first tetrahedron with the edge, so that nodes of
+  // one element stay close in memory.
   std::vector<int64_t> first_place(places.size());
   for (size_t begin = 0, end = 0; begin < places.size(); begin = end) {
     for (; end < places.size() && places[end].edge == places[begin].edge; ++end) {

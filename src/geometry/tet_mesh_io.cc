@@ -19,7 +19,7 @@ namespace {
 constexpr int kGmshTet = 4;
 constexpr int kGmshQuadraticTet = 11;
 
-// The numbers of nodes that the file uses, as places in the list of nodes.
+// Maps the node numbers of the file to indices in the list of nodes.
 class NodeNumbers {
  public:
   void Add(long long number, const TextScanner& scanner) {
@@ -44,7 +44,7 @@ long long Count(TextScanner& scanner, const char* what) {
   return count;
 }
 
-// `corners` node numbers from the rest of the line, counted from `first`.
+// Reads the four node numbers of a tetrahedron, counted from `first`, from the rest of the line.
 void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
   std::array<int, 4> tet;
   for (int& node : tet) {
@@ -143,7 +143,7 @@ TetSoup ReadGmsh(const std::filesystem::path& file) {
 }
 
 TetSoup ReadVertexTetLines(const std::filesystem::path& file) {
-  // Vertices may stand behind the tetrahedra that use them, so those are read in a second pass.
+  // Vertices may follow the tetrahedra that use them, so tetrahedra are read in a second pass.
   TetSoup soup;
   for (const bool reads_tets : {false, true}) {
     TextScanner scanner(file, '#');
@@ -256,8 +256,8 @@ TetMeshFile ReadTetMesh(const std::filesystem::path& file) {
   const auto reader = Readers().find(LowerExtension(file));
   if (reader == Readers().end()) {
     throw InputError({file.string()},
-                     fmt::format("\"{}\" is no format of tetrahedral meshes; expected .msh, .tet, "
-                                 ".txt, .node, .ele or .mesh",
+                     fmt::format("\"{}\" is not a format of tetrahedral meshes; expected .msh, "
+                                 ".tet, .txt, .node, .ele or .mesh",
                                  file.extension().string()));
   }
   return FinishTetMesh(reader->second(file), file);

@@ -35,9 +35,9 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
   return tets;
 }
 
-// Turns the negative tetrahedra over and says how many; refuses flat ones.
+// Reorients the tetrahedra of negative volume and returns their number; refuses flat ones.
 Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
-  // Volumes below this are rounding of the nodes' coordinates, not shape.
+  // Relative to the cubed edge length, a volume below this is a rounding error of the coordinates.
   constexpr double kFlat = 1e-14;
   const Eigen::VectorXd volumes = TetVolumes(mesh);
   Eigen::Index turned = 0;
@@ -62,7 +62,8 @@ Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file
   return turned;
 }
 
-// A face with its corners ascending, and whether that order turns outward.
+// A face with its corners in ascending order, and whether that order is counter-clockwise seen from
+// outside.
 struct Face {
   std::array<int, 3> corners;
   bool outward;
@@ -78,7 +79,7 @@ Face MakeFace(int a, int b, int c, Eigen::Index tet) {
   return face;
 }
 
-// Of two positive tetrahedra at a face, one must lie on either side.
+// Two tetrahedra of positive volume that share a face must lie on different sides of it.
 void RefuseOverlaps(const TetSoup& soup, const std::filesystem::path& file, const TetMesh& mesh) {
   std::vector<Face> faces;
   faces.reserve(4 * mesh.TetCount());

@@ -1,4 +1,4 @@
-// Tetrahedra as a file lists them, before they are known to make a mesh.
+// Tetrahedra as a file lists them, before it is known whether they form a valid mesh.
 #ifndef LACUNA_GEOMETRY_TET_SOUP_H_
 #define LACUNA_GEOMETRY_TET_SOUP_H_
 
@@ -13,15 +13,17 @@
 namespace lacuna {
 
 struct TetSoup {
-  std::vector<Eigen::Vector3d> nodes;
-  std::vector<std::array<int, 10>> tets;  // the first `size` entries count; nodes in VTK's order
-  std::vector<int> sizes;                 // 4 or 10
-  std::vector<int> lines;                 // where each tetrahedron stands in the file
+  std::vector<Eigen::Vector3d> nodes;     // in the file's length unit
+  std::vector<std::array<int, 10>> tets;  // node indices in VTK's order; the first sizes[e] count
+  std::vector<int> sizes;                 // nodes per tetrahedron: 4 or 10
+  std::vector<int> lines;                 // the line of each tetrahedron in the file
 
+  // Appends a tetrahedron of 4 or 10 nodes.
   void Add(std::span<const int> tet, int line);
 };
 
-// Checks, turns and renumbers as ReadTetMesh promises; `file` is for messages.
+// Checks the tetrahedra, reorients those of negative volume and removes unused nodes, as described
+// for ReadTetMesh. Throws InputError with `file` and line for an invalid mesh.
 TetMeshFile FinishTetMesh(const TetSoup& soup, const std::filesystem::path& file);
 
 }  // namespace lacuna

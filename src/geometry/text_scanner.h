@@ -1,4 +1,4 @@
-// Numbers and words of a text file, line by line, with the place for each complaint.
+// Reading of words and numbers from a text file, line by line, with errors that name the line.
 #ifndef LACUNA_GEOMETRY_TEXT_SCANNER_H_
 #define LACUNA_GEOMETRY_TEXT_SCANNER_H_
 
@@ -9,29 +9,29 @@
 
 namespace lacuna {
 
-// ".ply" of "Bar.PLY".
+// The extension of `file` in lower case: ".ply" for "Bar.PLY".
 std::string LowerExtension(const std::filesystem::path& file);
 
 class TextScanner {
  public:
-  // Reads the whole file; throws InputError when it cannot. What follows `comment` on a line is
-  // passed over.
+  // Reads the whole file; throws InputError if that fails. On each line the character `comment` and
+  // everything after it is ignored.
   explicit TextScanner(const std::filesystem::path& file, char comment = '\0');
 
-  // Goes to the next line that holds anything; false at the end of the file.
+  // Moves to the next line that is not blank; returns false at the end of the file.
   bool NextLine();
-  // The same where there must be one: `what` names what is missing at the end of the file.
+  // The same, but throws InputError at the end of the file, naming the missing `what`.
   void ExpectLine(const std::string& what);
 
-  // Reads from the line; throws InputError with the line when there is nothing (or not the right
-  // thing) to read. Numbers are finite.
+  // Read the next item of the current line. Each throws InputError, naming the line and `what` was
+  // expected, if the line ends or the item has the wrong form. Numbers must be finite.
   std::string_view Word(const char* what);
   double Number(const char* what);
   long long Integer(const char* what);
   Eigen::Vector3d Point(const char* what);
   bool AtLineEnd();
 
-  // As Word, but goes on to following lines.
+  // Like Word, but moves to the next line if the current one has ended.
   std::string_view WordAnywhere(const char* what);
 
   int Line() const { return line_number_; }
@@ -42,7 +42,7 @@ class TextScanner {
   std::string content_;
   char comment_;
   size_t next_line_ = 0;
-  std::string_view rest_;  // of the line
+  std::string_view rest_;  // the unread part of the line
   int line_number_ = 0;
 };
 

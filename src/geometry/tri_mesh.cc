@@ -15,7 +15,7 @@ Eigen::Vector3d Corner(const TriMesh& mesh, Eigen::Index triangle, int corner) {
   return mesh.vertices.col(mesh.triangles(corner, triangle));
 }
 
-// Twice the area, along the normal.
+// The vector along the normal whose length is twice the area.
 Eigen::Vector3d AreaVector(const TriMesh& mesh, Eigen::Index triangle) {
   const Eigen::Vector3d a = Corner(mesh, triangle, 0);
   return (Corner(mesh, triangle, 1) - a).cross(Corner(mesh, triangle, 2) - a);
@@ -26,7 +26,7 @@ Eigen::Vector3d UnitOrZero(const Eigen::Vector3d& v) {
   return length > 0 ? Eigen::Vector3d(v / length) : Eigen::Vector3d::Zero();
 }
 
-// The distributions of the standard library differ between its makers; this does not.
+// A number in [0, 1). Unlike the standard library's distributions it is the same on every platform.
 double UniformFrom(std::mt19937_64& generator) {
   return static_cast<double>(generator() >> 11) * 0x1p-53;
 }
@@ -71,7 +71,7 @@ Eigen::VectorXd VertexAreas(const TriMesh& mesh) {
 
 double EnclosedVolume(const TriMesh& mesh) {
   if (mesh.triangles.cols() == 0) return 0;
-  // Seen from a point nearby, the signed cones cancel less.
+  // A reference point near the mesh reduces the cancellation between the signed cones.
   const Eigen::Vector3d apex = BoundingBox(mesh.vertices).center();
   double sixfold = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {

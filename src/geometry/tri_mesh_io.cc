@@ -43,7 +43,7 @@ Soup ReadSoup(const std::filesystem::path& file) {
   const auto reader = Readers().find(LowerExtension(file));
   if (reader == Readers().end()) {
     throw InputError({file.string()},
-                     fmt::format("\"{}\" is no format of triangle meshes; expected .ply, .obj, "
+                     fmt::format("\"{}\" is not a format of triangle meshes; expected .ply, .obj, "
                                  ".stl or .off",
                                  file.extension().string()));
   }
@@ -71,7 +71,7 @@ Eigen::Matrix3Xd FiniteVertices(const std::filesystem::path& file, const Soup& s
   return vertices;
 }
 
-// Cuts polygons into fans from their first corner.
+// Cuts each polygon into a fan of triangles around its first corner.
 Eigen::Matrix3Xi Triangles(const std::filesystem::path& file, const Soup& soup,
                            std::vector<std::string>& notes) {
   std::vector<int> corners;

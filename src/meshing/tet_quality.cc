@@ -22,8 +22,8 @@ struct Shape {
   double min_dihedral, max_dihedral;
 };
 
-// With edges u, v, w from corner 0 and D = u·(v×w): circumradius
-// |u²(v×w) + v²(w×u) + w²(u×v)| / 2|D|, inradius |D| / Σ|face normals|.
+// With the edges u, v, w from corner 0 and D = u·(v×w), the circumradius is
+// |u²(v×w) + v²(w×u) + w²(u×v)| / 2|D| and the inradius |D| / Σ|face normals|.
 Shape Measure(const std::array<Vector3d, 4>& corner) {
   Shape shape{0, kInfinity, 0, 0, kInfinity, kInfinity, std::numbers::pi, 0};
   for (const auto& [i, j] : kEdges) {
@@ -33,7 +33,7 @@ Shape Measure(const std::array<Vector3d, 4>& corner) {
     shape.edge_sum += length;
   }
   const Vector3d u = corner[1] - corner[0], v = corner[2] - corner[0], w = corner[3] - corner[0];
-  // Outward normals of the faces opposite corners 0..3, of twice the area.
+  // Outward normals of the faces opposite to corners 0..3, with the length of twice the area.
   const std::array<Vector3d, 4> normal{(v - u).cross(w - u), w.cross(v), u.cross(w), v.cross(u)};
   const double determinant = u.dot(v.cross(w));
   shape.volume = determinant / 6;
@@ -88,7 +88,7 @@ TetQuality MeasureTets(const TetMesh& mesh, double radius_edge_bound, double vol
     quality.max_dihedral_angle = std::max(quality.max_dihedral_angle, shape.max_dihedral);
     quality.radius_edge_ratios(e) = shape.radius_edge_ratio;
     quality.min_dihedral_angles(e) = shape.min_dihedral;
-    // Rounding apart: a bound met exactly is met.
+    // The slack allows for rounding where a bound is met exactly.
     constexpr double kSlack = 1 + 1e-9;
     quality.inverted += !(shape.volume > 0);
     quality.above_ratio +=

@@ -16,30 +16,31 @@
 namespace lacuna {
 namespace {
 
-// What TetGen 1.5 throws.
+// The error codes that TetGen 1.5 throws.
 constexpr int kTetGenOutOfMemory = 1;
 constexpr int kTetGenSelfIntersection = 3;
 constexpr int kTetGenSmallFeature = 4;
 constexpr int kTetGenCloseFacets = 5;
 
-// TetGen takes vertices for one where they are closer than its tolerance times the object's size,
-// and can crash on what becomes of the surface then.
+// TetGen merges vertices that are closer than its tolerance times the object's size, and may crash
+// on the resulting surface. Such surfaces are therefore refused.
 constexpr double kTetGenTolerance = 1e-10;
 constexpr double kClosestVertices = 10 * kTetGenTolerance;
 
-// Facets that meet at more than this angle are one flat facet to TetGen, degrees. Its own 179.9
-// shifts the surface of bodies with many triangles by more than rounding.
+// TetGen treats facets that meet at more than this angle (degrees) as one flat facet. Its default
+// of 179.9 would change the surface of a body with many triangles noticeably.
 constexpr double kFlatAngle = 179.9999;
 
-// At half a kilobyte each, and as much again for what is done with them, more than a workstation
-// has.
+// The most tetrahedra that may be requested. With about 1 kB per tetrahedron for meshing and
+// simulation, more would not fit into the memory of a workstation.
 constexpr double kMostTets = 2e7;
 
-// The share of the volume that the tetrahedra may miss before the mesh is refused.
+// The relative deviation of the tetrahedra's total volume from that of the surface above which the
+// mesh is refused.
 constexpr double kVolumeTolerance = 1e-7;
 
-// TetGen's tolerances are relative to the bounding box, but its number formats and some of its
-// thresholds are not: it works on the surface moved to the origin and scaled to size 1.
+// TetGen works on the surface moved to the origin and scaled to size 1, because some of its
+// thresholds are absolute.
 struct UnitFrame {
   Eigen::Vector3d centre;
   double size;
@@ -50,8 +51,8 @@ UnitFrame FrameOf(const TriMesh& surface) {
   return {box.center(), box.sizes().maxCoeff()};
 }
 
-// TetGen's polygons point into arrays that its destructor would free one by one; here they are
-// columns of `triangles`, so the pointers are taken back before it runs.
+// TetGen's input made from a surface. TetGen's destructor would free the vertex list of each
+// polygon; here the lists are columns of one matrix, so the pointers are reset before it runs.
 class Facets {
  public:
   Facets(const TriMesh& surface, const UnitFrame& frame)
@@ -105,7 +106,8 @@ TetMesh FromTetGen(const tetgenio& output, const UnitFrame& frame) {
   return mesh;
 }
 
-// A few tetrahedra in a thousand above a bound are what TetGen's last smoothing leaves.
+// The fraction of tetrahedra above a bound that deserves a note. TetGen's final smoothing usually
+// leaves a few in a thousand.
 constexpr double kWorthANote = 0.005;
 
 void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
@@ -129,8 +131,8 @@ void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
   }
 }
 
-// So many times more tetrahedra than the largest volume asks for, and no fewer than these, are
-// worth a note: simulations take that much longer.
+// A mesh deserves a note if it has at least kFewTets tetrahedra and kManyMore times as many as
+// max_volume requires, because simulations take correspondingly longer.
 constexpr double kManyMore = 10;
 constexpr Eigen::Index kFewTets = 2000;
 
@@ -140,9 +142,10 @@ void NoteAFineSurface(const TriMesh& surface, const TetOptions& options, MeshRes
   const Eigen::Index tets = result.quality.tets;
   if (tets < kFewTets || static_cast<double>(tets) < kManyMore * asked) return;
   result.notes.push_back(
-      fmt::format("{} tetrahedra, where volumes of {:.4g} m^3 would be some {:.0f}: they must fit "
-                  "the surface's {} triangles; one of fewer triangles would make a faster model",
-                  tets, options.max_volume, std::max(1.0, asked), surface.triangles.cols()));
+      fmt::format("the mesh has {} tetrahedra because it must match the surface's {} triangles; "
+                  "max_volume {:.4g} m^3 alone would need about {:.0f}, so a coarser surface would "
+                  "make a faster model",
+                  tets, surface.triangles.cols(), options.max_volume, std::max(1.0, asked)));
 }
 
 void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
@@ -150,7 +153,8 @@ void Fail(MeshStatus status, const std::string& message, MeshResult& result) {
   result.message = message;
 }
 
-// Says where two vertices are too close for TetGen; empty when none are.
+// A message with the location of two vertices that are too close for TetGen; empty if there are
+// none.
 std::string TooCloseVertices(const TriMesh& surface, double size) {
   const Eigen::VectorXd gap =
       PointSearch(surface.vertices).Nearest(surface.vertices, 2).distance.row(1);
@@ -212,14 +216,15 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
       options.max_volume > 0 ? result.surface_report.volume / options.max_volume : 0;
   if (least_tets > kMostTets) {
     Fail(MeshStatus::kOutOfMemory,
-         fmt::format("max_volume asks for {:.0f} million tetrahedra at least, {:.0f} million are "
-                     "the most",
-                     1e-6 * least_tets, 1e-6 * kMostTets),
+         fmt::format(
+             "max_volume requires at least {:.0f} million tetrahedra; at most {:.0f} million "
+             "are allowed",
+             1e-6 * least_tets, 1e-6 * kMostTets),
          result);
     return result;
   }
 
-  // The predicates of TetGen keep their constants in variables of the whole process.
+  // TetGen's geometric predicates keep their constants in global variables.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   Facets facets(surface, frame);
@@ -235,7 +240,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
   if (output.numberoftetrahedra == 0) {
-    Fail(MeshStatus::kInternalError, "TetGen made no tetrahedra", result);
+    Fail(MeshStatus::kInternalError, "TetGen returned no tetrahedra", result);
     return result;
   }
   result.mesh = FromTetGen(output, frame);
@@ -248,7 +253,7 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
   const double missing = result.quality.total_volume - result.surface_report.volume;
   if (std::abs(missing) > kVolumeTolerance * result.surface_report.volume) {
     Fail(MeshStatus::kInternalError,
-         fmt::format("the tetrahedra fill {:.6g} m^3 of a surface of {:.6g} m^3",
+         fmt::format("the tetrahedra fill {:.6g} m^3, but the surface encloses {:.6g} m^3",
                      result.quality.total_volume, result.surface_report.volume),
          result);
     return result;

@@ -1,4 +1,4 @@
-// A tetrahedral mesh inside a closed surface.
+// Tetrahedral meshing of the volume inside a closed surface, by TetGen.
 #ifndef LACUNA_MESHING_TETRAHEDRALIZE_H_
 #define LACUNA_MESHING_TETRAHEDRALIZE_H_
 
@@ -13,21 +13,22 @@
 namespace lacuna {
 
 struct TetOptions {
-  // q: the radius of a tetrahedron's circumsphere over its shortest edge stays below this, > 1.
-  // Lowering it makes tetrahedra more even and more numerous; below 1.414 TetGen need not end.
+  // TetGen's q: upper bound on the circumradius over the shortest edge, > 1. Lowering it gives
+  // better shaped and more tetrahedra; below 1.414 TetGen is not guaranteed to terminate.
   double radius_edge_ratio = 2.0;
-  // Dihedral angles stay above this where possible, rad. Raising it (to 0.3 or so) removes slivers
-  // at the cost of more tetrahedra; 0 leaves them.
+  // Lower bound on dihedral angles where possible, rad. Raising it (to about 0.3) removes slivers
+  // at the cost of more tetrahedra; 0 keeps them.
   double min_dihedral_angle = 0.2;
-  // v: the largest volume of a tetrahedron, m³; 0 sets no limit. Raising it makes coarser meshes.
+  // TetGen's a (v in the paper): upper bound on the volume of a tetrahedron, m³; 0 means none.
+  // Raising it gives a coarser mesh.
   double max_volume = 0;
-  // Keep the triangles of the surface as they are, so that boundary nodes 0..n−1 are its vertices:
-  // the better choice for even triangles about as large as the tetrahedra should be. Otherwise
-  // TetGen splits triangles that are too coarse for `max_volume`.
+  // Keep the triangles of the surface, so that the boundary nodes 0..n−1 are its vertices. This is
+  // the better choice for a surface of uniform triangles about as large as the tetrahedra should
+  // be. Otherwise TetGen splits triangles that are too large for `max_volume`.
   bool preserve_surface = true;
-  // Order of the result, 1 or 2 (straight edges with midpoints).
+  // Order of the elements: 1, or 2 with straight edges and midpoints.
   int order = 1;
-  // The most nodes that may be added: a guard against a bound that cannot be met.
+  // The most nodes that TetGen may add, as a guard against bounds that cannot be met.
   int max_added_nodes = 5'000'000;
 };
 
@@ -35,9 +36,9 @@ enum class MeshStatus {
   kNotRun,
   kUsable,
   kFaultySurface,    // open, non-manifold, inside out or self-intersecting: see `surface_report`
-  kTooSmallFeature,  // parts of the surface all but touch
-  kOutOfMemory,
-  kInternalError,  // TetGen gave up
+  kTooSmallFeature,  // parts of the surface are too close to each other for TetGen
+  kOutOfMemory,      // memory ran out, or the bounds would require too many tetrahedra
+  kInternalError,    // TetGen failed or returned an invalid mesh
 };
 
 struct MeshResult {
@@ -46,16 +47,17 @@ struct MeshResult {
   SurfaceReport surface_report;  // of the input
   MeshStatus status = MeshStatus::kNotRun;
   std::string message = "not run";
-  std::vector<std::string> notes;  // bounds that were not met everywhere, and why
+  std::vector<std::string> notes;  // which bounds are not met everywhere, and why
 
   bool IsUsable() const { return status == MeshStatus::kUsable; }
 };
 
-// Constrained Delaunay tetrahedra inside `surface`, refined to the bounds (Si 2015, by TetGen 1.5).
-// The surface must bound a volume; several bodies beside each other may share one mesh, cavities
-// are refused. The same input gives the same mesh, bit by bit. Bounds that are not met everywhere
-// (a coarse surface that must be kept, sharp angles between its edges) stand in `quality` and
-// `notes`; they do not make the mesh unusable.
+// A constrained Delaunay tetrahedralisation of the inside of `surface` (vertices in m), refined
+// until it meets the bounds (H. Si, ACM TOMS 41, 2015, by TetGen 1.5). The surface must bound a
+// volume; several separate bodies are allowed, cavities are refused. The same input gives the same
+// mesh, bit by bit. A coarse surface that must be preserved, or sharp angles between its edges, can
+// prevent a bound from being met everywhere; `quality` and `notes` then say so, but the mesh is
+// still usable. Failures are reported in `status` and `message`, never by an exception.
 MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options);
 
 }  // namespace lacuna

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
-#include "effects/catalogue.h"
+#include "effects/plane_contact.h"
 #include "fem/element_strain.h"
 #include "report/line_chart.h"
 
@@ -33,7 +33,7 @@ constexpr std::array<Column, 9> kColumns{{
     {"energy growth", "energy_growth", &DropNumbers::energy_growth, 1, "{:.1e}"},
     {"energy left %", "energy_left", &DropNumbers::energy_left, 1e2, "{:.1f}"},
 }};
-// Those of which a relative change means something.
+// Whether the relative change of a column is meaningful.
 bool IsCompared(const Column& column) {
   return column.value != &DropNumbers::touch_time && column.value != &DropNumbers::energy_growth;
 }
@@ -71,7 +71,8 @@ const DropRun& FinestOf(const std::vector<DropRun>& runs) {
   });
 }
 
-// Largest principal strain, in %, of the elements around each boundary vertex, by volume.
+// Largest principal strain, in %, averaged over the elements around each boundary vertex with their
+// volumes as weights.
 Eigen::VectorXd SurfaceStrain(const Body& body, const Eigen::Matrix3Xd& positions) {
   const Eigen::VectorXd position = positions.reshaped();
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(position.size());
@@ -90,7 +91,7 @@ Eigen::VectorXd SurfaceStrain(const Body& body, const Eigen::Matrix3Xd& position
   return 100 * sum.cwiseQuotient(weight)(body.boundary.node);
 }
 
-// The part of the floor that the pictures show.
+// The rectangle of the floor that the pictures show.
 PanelSurface Floor(const Eigen::AlignedBox3d& box, double height) {
   PanelSurface floor;
   const Eigen::Vector3d low = box.min(), high = box.max();
@@ -109,14 +110,6 @@ size_t FrameAt(const SceneMotion& motion, double time) {
   for (size_t k = 0; k < motion.times.size(); ++k)
     if (std::abs(motion.times[k] - time) < std::abs(motion.times[nearest] - time)) nearest = k;
   return nearest;
-}
-
-double FloorHeight(const Scene& scene) {
-  for (const auto& effect : scene.effects) {
-    if (effect->Card().type == "plane_contact")
-      return effect->Parameters()[ParameterIndex(effect->Card(), "offset")];
-  }
-  return 0;
 }
 
 void WriteHeights(const std::vector<DropRun>& runs, const std::filesystem::path& file) {
@@ -200,6 +193,7 @@ PanelPicture DropPicture(const DropStudy& study, const std::vector<DropRun>& run
   picture.title =
       fmt::format("Figure 1: dropped body, {} elements, at the same instants", NameOf(order));
   picture.value_name = "strain %";
+  const double floor_height = ContactPlaneOf(*FindPlaneContact(study.scene.effects))->offset;
   const Eigen::Vector3d margin = 0.12 * box.sizes();
   const Eigen::AlignedBox3d ground(box.min() - margin, box.max() + margin);
   for (const double instant : study.instants) {
@@ -208,7 +202,7 @@ PanelPicture DropPicture(const DropStudy& study, const std::vector<DropRun>& run
       const size_t k = FrameAt(run->motion, instant);
       Panel panel;
       panel.title = fmt::format("n = {}, {:.1f} ms", body.NodeCount(), 1e3 * run->motion.times[k]);
-      panel.surfaces.push_back(Floor(ground, FloorHeight(study.scene)));
+      panel.surfaces.push_back(Floor(ground, floor_height));
       PanelSurface surface;
       surface.mesh = BoundaryAt(body.boundary, run->motion.positions[k]);
       surface.vertex_values = SurfaceStrain(body, run->motion.positions[k]);

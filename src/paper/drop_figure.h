@@ -1,4 +1,4 @@
-// Figure 1 as pictures, a chart, a table and JSON.
+// Output of Figure 1 of Transue & Choi 2015 (drop_study.h): pictures, a chart, a table and JSON.
 #ifndef LACUNA_PAPER_DROP_FIGURE_H_
 #define LACUNA_PAPER_DROP_FIGURE_H_
 
@@ -11,16 +11,18 @@
 
 namespace lacuna {
 
-// The numbers of every run, how far the halved steps move them, and how far each is from the run
-// with the most nodes of the highest order.
+// Three tables as plain text: the quantities of every run, their relative change when the time step
+// is halved, and their relative difference from the finest run, which has the most nodes among the
+// runs of the highest element order. `runs` must not be empty.
 std::string DropText(const std::vector<DropRun>& runs);
 
-// A column for each mesh of this order, a row for each instant: the bodies on their floor, coloured
-// by their strain.
+// One column for each mesh of this element order, one row for each instant of the study: the body
+// on the floor, coloured by its largest principal strain. Without panels if no mesh has this order.
 PanelPicture DropPicture(const DropStudy& study, const std::vector<DropRun>& runs, int order);
 
-// figure1.txt, figure1.json, figure1_height.svg, and figure1_linear.png and figure1_quadratic.png
-// where there are meshes of that order. The status is that of the pictures.
+// Writes figure1.txt, figure1.json and figure1_height.svg, and for each element order that occurs
+// figure1_linear.png or figure1_quadratic.png. Returns the status of the pictures; throws
+// InputError if a text file cannot be written.
 PictureResult WriteDropFigure(const DropStudy& study, const std::vector<DropRun>& runs,
                               const std::filesystem::path& folder);
 

@@ -5,40 +5,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "effects/gravity.h"
+#include "effects/plane_contact.h"
 
 namespace lacuna {
 namespace {
 
-const Effect* FindEffect(const Scene& scene, const std::string& type) {
-  for (const auto& effect : scene.effects)
-    if (effect->Card().type == type) return effect.get();
-  return nullptr;
-}
+bool IsAlongZ(const Eigen::Vector3d& vector) { return vector.x() == 0 && vector.y() == 0; }
 
-double ParameterOf(const Effect& effect, const std::string& name) {
-  const auto& parameters = effect.Card().parameters;
-  const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                  [&](const auto& each) { return each.name == name; });
-  CHECK(found != parameters.end()) << name;
-  return effect.Parameters()[found - parameters.begin()];
-}
-
-bool IsAlongZ(const Effect& effect, const std::string& name) {
-  return ParameterOf(effect, name + "_x") == 0 && ParameterOf(effect, name + "_y") == 0;
-}
-
-// One frame of the fall, as far as it is measured.
+// The measured quantities of one frame, SI.
 struct DropState {
   double time = 0;
-  double centre = 0, speed = 0;  // of mass, along z
-  double gap = 0;                // of the lowest node over the floor
+  double centre = 0, speed = 0;  // of the centre of mass, along z
+  double gap = 0;                // between the lowest node and the floor
   double height = 0;             // of the body
-  double force = 0;              // of the floor
+  double force = 0;              // of the floor on the body
   double kinetic = 0, energy = 0;
 };
 
 DropState StateAt(const Scene& scene, const SceneMotion& motion, size_t k) {
-  const Effect& floor = *FindEffect(scene, "plane_contact");
+  const Effect& floor = *FindPlaneContact(scene.effects);
   const Body& body = *motion.body;
   const Eigen::VectorXd position = motion.positions[k].reshaped();
   const Eigen::VectorXd velocity = motion.velocities[k].reshaped();
@@ -52,7 +40,7 @@ DropState StateAt(const Scene& scene, const SceneMotion& motion, size_t k) {
   state.centre = motion.positions[k].row(2).dot(share);
   state.speed = motion.velocities[k].row(2).dot(share);
   const double lowest = motion.positions[k].row(2).minCoeff();
-  state.gap = lowest - ParameterOf(floor, "offset");
+  state.gap = lowest - ContactPlaneOf(floor)->offset;
   state.height = motion.positions[k].row(2).maxCoeff() - lowest;
   Eigen::VectorXd push = Eigen::VectorXd::Zero(position.size());
   floor.AddForce(at, &push);
@@ -75,7 +63,7 @@ double Vertex(double before, double middle, double after) {
   return middle - 0.5 * slope * slope / curvature;
 }
 
-// Of the largest of all samples, refined by its neighbours.
+// The largest sample, refined by a parabola through it and its neighbours.
 double Peak(const std::vector<DropState>& states, double (*value)(const DropState&)) {
   size_t peak = 0;
   for (size_t k = 0; k < states.size(); ++k)
@@ -84,7 +72,8 @@ double Peak(const std::vector<DropState>& states, double (*value)(const DropStat
   return Vertex(value(states[peak - 1]), value(states[peak]), value(states[peak + 1]));
 }
 
-// Where the spectrum of the height, about its mean and under Hann's window, is largest.
+// The frequency at which the spectrum of the height is largest; its mean is subtracted and a Hann
+// window applied.
 double SwingFrequency(const std::vector<DropState>& flight) {
   constexpr size_t kFewest = 16;
   if (flight.size() < kFewest) return kNotMeasured;
@@ -104,7 +93,7 @@ double SwingFrequency(const std::vector<DropState>& flight) {
     }
     return re * re + im * im;
   };
-  // Below 3/2 periods in the window there is no telling a swing from a drift.
+  // With fewer than 3/2 periods in the window an oscillation cannot be distinguished from a drift.
   const double resolution = 0.01 / span;
   double best = 1.5 / span, largest = 0;
   for (double f = best; f < 0.25 / step; f += resolution) {
@@ -123,12 +112,11 @@ DropStudy ReadDrop(const Config& config) {
   DropStudy study;
   config.Integer("schema_version", 1, 1);
   study.scene = ReadScene(Config::Load(config.Path("scene")));
-  const Effect* floor = FindEffect(study.scene, "plane_contact");
-  if (floor == nullptr || !IsAlongZ(*floor, "normal"))
+  const Effect* floor = FindPlaneContact(study.scene.effects);
+  if (floor == nullptr || !IsAlongZ(ContactPlaneOf(*floor)->normal))
     config.Fail("scene", "has no plane_contact with a normal along z to fall on");
-  const Effect* gravity = FindEffect(study.scene, "gravity");
-  if (gravity == nullptr || !IsAlongZ(*gravity, "acceleration") ||
-      ParameterOf(*gravity, "acceleration_z") >= 0)
+  const std::optional<Eigen::Vector3d> gravity = GravityOf(study.scene.effects);
+  if (!gravity || !IsAlongZ(*gravity) || gravity->z() >= 0)
     config.Fail("scene", "has no gravity along -z");
   if (study.scene.bar.velocity.z() >= 0)
     config.Fail("scene", "has a bar that does not fall: bar.velocity");
@@ -171,20 +159,22 @@ DropNumbers MeasureDrop(const Scene& scene, const SceneMotion& motion) {
   const auto leave = std::find_if(states.rbegin(), states.rend(), touches).base();
   if (leave == states.end()) return numbers;
   const auto last = std::prev(leave);
-  const double left = ZeroBetween(last->time, last->gap, leave->time, leave->gap);
-  numbers.contact_time = left - numbers.touch_time;
+  const double lift_off = ZeroBetween(last->time, last->gap, leave->time, leave->gap);
+  numbers.contact_time = lift_off - numbers.touch_time;
 
-  // In flight the centre moves on a parabola, which tells its speed at the start of the flight.
-  const double gravity = -ParameterOf(*FindEffect(scene, "gravity"), "acceleration_z");
+  // In flight the centre moves on a parabola, which determines its speed at the start of the
+  // flight.
+  const double gravity = -GravityOf(scene.effects)->z();
   const DropState& end = states.back();
-  const double flight = end.time - left;
+  const double flight = end.time - lift_off;
   numbers.rebound_speed = end.speed + gravity * flight;
-  const double centre_left = end.centre - (end.speed + 0.5 * gravity * flight) * flight;
+  const double centre_at_lift_off = end.centre - (end.speed + 0.5 * gravity * flight) * flight;
   const double standing = start.centre - start.gap;
   numbers.rebound_height =
-      centre_left - standing + 0.5 * numbers.rebound_speed * numbers.rebound_speed / gravity;
+      centre_at_lift_off - standing + 0.5 * numbers.rebound_speed * numbers.rebound_speed / gravity;
   numbers.frequency = SwingFrequency({leave, states.end()});
-  // Heights count from the standing body, so that only what moves or strains it is left.
+  // The potential energy is zero for the body standing on the floor, so that the rest is the energy
+  // of motion and strain.
   const double weight = motion.body->node_mass.sum() * gravity;
   const double height_energy = start.energy - start.kinetic - weight * start.gap;
   numbers.energy_left = (end.energy - height_energy) / start.kinetic;

@@ -1,9 +1,9 @@
 // Figure 1 of Transue & Choi 2015: one body dropped on a floor, simulated on meshes of different
-// sizes; here with the numbers in which they differ.
+// sizes, with the quantities in which the simulations differ.
 //
-// The scene is an ordinary one (experiment/scene.h) with gravity and a floor along z, whose bar
-// falls from the start. Each mesh replaces the scene's, takes its time steps, and takes them again
-// halved.
+// The scene is an ordinary one (experiment/scene.h) with gravity and a floor normal to z, whose bar
+// falls from the start. It is simulated once with each mesh at the time step of the scene, and once
+// more at half of that step. All quantities are in SI units.
 #ifndef LACUNA_PAPER_DROP_STUDY_H_
 #define LACUNA_PAPER_DROP_STUDY_H_
 
@@ -18,7 +18,7 @@
 namespace lacuna {
 
 struct DropMesh {
-  int paper_nodes = 0;     // the number that it comes close to
+  int paper_nodes = 0;     // the node count of the mesh of the paper that it approximates
   double edge_length = 0;  // m, of the surface's triangles
   MeshSettings settings;
 };
@@ -28,10 +28,11 @@ struct DropStudy {
   std::vector<DropMesh> meshes;
   std::vector<double> instants;  // s, to be drawn
 };
-// Throws InputError; also for a scene without floor or gravity.
+// The scene of the study must have a floor, gravity along −z and a falling bar. Throws InputError
+// at the key that is wrong.
 DropStudy ReadDrop(const Config& config);
 
-// Of the first bounce. What is not reached in the scene's time is not measured.
+// Quantities of the first bounce. One that the simulated time does not reach is kNotMeasured.
 struct DropNumbers {
   double touch_time = kNotMeasured;      // s, when the lowest node meets the floor
   double contact_time = kNotMeasured;    // s, until the last node has left it
@@ -41,12 +42,13 @@ struct DropNumbers {
   double rebound_height = kNotMeasured;  // m, to which the centre then rises, above where it is
                                          // when the undeformed body stands on the floor
   double frequency = kNotMeasured;       // Hz, at which the body's height swings most in flight
-  // The largest rise of the total energy over what it was before, and its end, both in parts of the
-  // kinetic energy at the start.
+  // The largest rise of the total energy above an earlier value, and its final value, both as
+  // shares of the kinetic energy at the start.
   double energy_growth = kNotMeasured;
   double energy_left = kNotMeasured;
 };
-// The motion must be usable, with frames close enough to tell its swing.
+// The motion must be usable (CHECK). Its frames must be close enough to resolve the oscillation of
+// the body.
 DropNumbers MeasureDrop(const Scene& scene, const SceneMotion& motion);
 
 struct DropRun {
@@ -55,10 +57,11 @@ struct DropRun {
   DropNumbers numbers;
   DropNumbers halved;  // with steps of half the length
 };
-// The scene with the mesh and steps of one run.
+// The scene with the mesh of one run and its time steps divided by `step_divisor`.
 Scene SceneOf(const DropStudy& study, const DropMesh& mesh, int step_divisor);
 
-// Throws Interrupted, and InputError where a mesh or a step fails.
+// Runs all meshes one after the other. Throws Interrupted, and InputError if a mesh cannot be made
+// or a time step fails.
 std::vector<DropRun> RunDrop(const DropStudy& study, Progress* progress);
 
 }  // namespace lacuna

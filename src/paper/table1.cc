@@ -148,9 +148,9 @@ std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
 }
 
 // What only the first seed is asked for.
-void AskMore(const Table1Study& study, const Table1Options& options, const OuterProblem& problem,
-             const std::filesystem::path& folder, const std::string& key, Table1Result* result,
-             Progress* progress) {
+void RunFirstSeedExtras(const Table1Study& study, const Table1Options& options,
+                        const OuterProblem& problem, const std::filesystem::path& folder,
+                        const std::string& key, Table1Result* result, Progress* progress) {
   const OuterParameters truth = TruthOf(study, study.configurations.front());
   progress->Begin("mesh noise", options.turns);
   for (int k = 0; k < options.turns; ++k) {
@@ -174,7 +174,7 @@ void AskMore(const Table1Study& study, const Table1Options& options, const Outer
     OuterParameters at = truth;
     at.young_modulus *= factor;
     ModulusPoint point{factor, Kept(problem, at, folder / "modulus_fitted.jsonl", key), {}};
-    if (!problem.study.recording.forces.empty())
+    if (!problem.study.recording.object.forces.empty())
       point.known = Kept(known, at, folder / "modulus_known.jsonl", key);
     result->profile.push_back(point);
     progress->Report(static_cast<int64_t>(result->profile.size()));
@@ -211,7 +211,7 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
     search.at_truth = Kept(problem, TruthOf(study, configuration), place / "truth.jsonl", key);
     if (seed == 1) {
       if (&configuration == &study.configurations.front())
-        AskMore(study, options, problem, folder, key, result, progress);
+        RunFirstSeedExtras(study, options, problem, folder, key, result, progress);
       if (options.in_loop && search.found.IsUsable()) {
         problem.registration_in_loop = true;
         const auto& at = search.found.parameters;
@@ -228,12 +228,12 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
 Recording AnnouncedRecording(const Scene& scene) {
   Recording recording;
   recording.name = scene.name;
-  recording.density = scene.density;
+  recording.object.density = scene.density;
   for (int k = 0; k < scene.frames; ++k) recording.times.push_back(k / scene.frame_rate);
   const Eigen::Vector2d covered(recording.times.front(), recording.times.back());
   for (const SceneLoad& load : scene.loads)
     if (load.measured)
-      recording.forces.push_back(
+      recording.object.forces.push_back(
           {load.region.name, load.region, covered, Eigen::Matrix3Xd::Zero(3, 2), {}});
   return recording;
 }

@@ -32,7 +32,7 @@ std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double
   const bool rests_at_first =
       tells_the_shape && item.recording.reference.source == ReferenceSource::kFirstFrame;
   std::vector<Eigen::Matrix3Xd> moved(item.frames.size(), mesh.nodes);
-  for (const RecordedGrip& grip : item.recording.grips) {
+  for (const RecordedGrip& grip : item.recording.object.grips) {
     if (grip.motion != GripMotion::kFollowsScan) continue;
     const std::vector<int> nodes = NamingWhere(
         item.recording.file.string(), [&] { return SelectNodes(grip.region, mesh.nodes); });
@@ -111,8 +111,8 @@ void RequireMarkersNear(const Recording& recording, const TetMesh& mesh) {
   constexpr double kFar = 0.5;
   const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
   const double size = box.diagonal().norm();
-  for (Eigen::Index m = 0; m < recording.marker_places.cols(); ++m) {
-    const double away = box.exteriorDistance(Eigen::Vector3d(recording.marker_places.col(m)));
+  for (Eigen::Index m = 0; m < recording.markers.places.cols(); ++m) {
+    const double away = box.exteriorDistance(Eigen::Vector3d(recording.markers.places.col(m)));
     if (away > kFar * size)
       throw InputError(fmt::format(
           "{}: marker_places: {} sits {:.3g} mm away from the object, which measures {:.3g} mm",
@@ -299,7 +299,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         Eigen::VectorXd predicted = *seen.rows * state.position;
         Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;
-        if (!perturbations.empty()) by = *seen.rows * state.position_by;
+        if (!perturbations.empty()) by = *seen.rows * state.position_jacobian;
         std::vector<Eigen::Matrix3d> deformation = seen.deformation;
         if (is_registered) {
           Turn(registration.linear(), &predicted);

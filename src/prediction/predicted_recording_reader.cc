@@ -23,7 +23,7 @@ std::vector<int> FramesWithin(const Recording& recording, double from, double to
 }
 
 Hold ReadHold(const Config& config, const Recording& recording) {
-  Hold hold{ReadRegion(config.Child("region"), recording.data_folder, "hold"),
+  Hold hold{ReadRegion(config.Child("region"), recording.data.folder, "hold"),
             config.Quantity("release", kTime, kAnyValue)};
   if (hold.release > recording.times.back()) {
     config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
@@ -73,17 +73,18 @@ void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
 void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
   const Recording& recording = item.recording;
   const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
-  if (recording.tracked && item.hold)
+  const bool is_tracked = HasTrackedPoints(recording);
+  if (is_tracked && item.hold)
     config.Fail("hold",
                 "tracked points sit on the object where the first frame shows them, so it may not "
                 "be held out of shape there");
   if (item.scans == nullptr) {
-    if (!recording.marker_places.allFinite())
+    if (!recording.markers.places.allFinite())
       config.Fail("recording",
                   "lacks marker_places: where each marker sits on the undeformed object");
-    if (of_first_frame && !recording.tracked)
+    if (of_first_frame && !is_tracked)
       config.Fail("recording", "has no reference shape: markers alone do not tell it");
-    for (const RecordedGrip& grip : recording.grips)
+    for (const RecordedGrip& grip : recording.object.grips)
       if (grip.motion == GripMotion::kFollowsScan)
         config.Fail("recording",
                     fmt::format("{} is to follow the scan, but there are only markers: "
@@ -91,7 +92,7 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
                                 grip.region.name));
     return;
   }
-  for (const RecordedGrip& grip : recording.grips)
+  for (const RecordedGrip& grip : recording.object.grips)
     if (grip.deforms)
       config.Fail("recording",
                   fmt::format("{} is to deform with the scan, whose points are not told "
@@ -107,7 +108,7 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
 void RequireGripPaths(const Config& config, const PredictedRecording& item) {
   const double first = item.recording.times[item.frames.front()];
   const double last = item.recording.times[item.frames.back()];
-  for (const RecordedGrip& grip : item.recording.grips) {
+  for (const RecordedGrip& grip : item.recording.object.grips) {
     const Eigen::Index end = grip.times.size() - 1;
     if (grip.motion == GripMotion::kGiven && (grip.times[0] > first || grip.times[end] < last))
       config.Fail("recording",
@@ -124,8 +125,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   PredictedRecording item;
   item.recording = LoadRecording(config.Path("recording"));
   item.name = config.Text("name", item.recording.name);
-  const bool is_scan = item.recording.kind != FrameKind::kMarkers && !item.recording.tracked;
-  if (is_scan) item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
+  if (IsScan(item.recording)) item.scans = std::make_shared<const ScanFrames>(item.recording, scan);
   const double from = config.Quantity("from", kTime, kAnyValue, item.recording.times.front());
   const double to = config.Quantity("to", kTime, kAnyValue, item.recording.times.back());
   item.frames = FramesWithin(item.recording, from, to, config.Integer("every", 1, 1000000, 1));
@@ -151,7 +151,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   }
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
-  if (item.recording.tracked) SeeAsMarkers(item.frames, &item.recording);
+  if (HasTrackedPoints(item.recording)) SeeAsMarkers(item.frames, &item.recording);
   CheckObserved(config, item, tells_the_shape);
   if (scheme == TimeScheme::kQuasiStatic) {
     if (item.hold)
@@ -160,7 +160,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     RequireStartAtRest(config, item);
   }
   RequireGripPaths(config, item);
-  for (const MeasuredForce& force : item.recording.forces) {
+  for (const MeasuredForce& force : item.recording.object.forces) {
     const double first = item.recording.times[item.frames.front()];
     const double last = item.recording.times[item.frames.back()];
     if (!force.region)

@@ -164,7 +164,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
         fmt::format("last {:g} s, which a motion with inertia takes millions of steps for: give "
                     "`motion: {{scheme: quasi_static}}`, a shorter `to`, or a time_step",
                     Duration(study)));
-  const auto& density = study.recordings.front().recording.density;
+  const auto& density = study.recordings.front().recording.object.density;
   study.density = density ? config.Quantity("density", kDensity, kPositive, *density)
                           : config.Quantity("density", kDensity, kPositive);
   study.fitted = ReadFitted(config, study.effects);

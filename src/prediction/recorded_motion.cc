@@ -37,7 +37,7 @@ Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, 
   double sum = 0, squares = 0, seen = 0;
   for (const int frame : frames) {
     const double value = item.recording.markers.positions[frame](axis, marker) -
-                         item.recording.marker_places(axis, marker);
+                         item.recording.markers.places(axis, marker);
     if (std::isnan(value)) continue;
     sum += value;
     squares += value * value;
@@ -56,7 +56,7 @@ bool IsAtRest(const PredictedRecording& item) {
   // Rounding of the mean square must not look like motion where there is no noise.
   constexpr double kRounding = 1e-9;  // m
   const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
-  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker)
+  for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker)
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       if (SpreadOf(item, frames, axis, marker).deviation > least) return false;
   return true;
@@ -128,7 +128,7 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
 double RestDeformation(const PredictedRecording& item) {
   const std::vector<int> frames = FittedFrames(item);
   double largest = 0;
-  for (Eigen::Index marker = 0; marker < item.recording.marker_places.cols(); ++marker) {
+  for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker) {
     Eigen::Vector3d mean;
     for (Eigen::Index axis = 0; axis < 3; ++axis)
       mean[axis] = SpreadOf(item, frames, axis, marker).mean;
@@ -139,7 +139,7 @@ double RestDeformation(const PredictedRecording& item) {
 
 double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
   if (item.scans != nullptr) return EstimateScanNoise(*item.scans, frames);
-  Eigen::MatrixXd rows(item.recording.marker_places.size(),
+  Eigen::MatrixXd rows(item.recording.markers.places.size(),
                        static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();

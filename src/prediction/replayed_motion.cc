@@ -4,20 +4,17 @@
 
 #include <algorithm>
 
+#include "effects/gravity.h"
 #include "fem/element_strain.h"
 
 namespace lacuna {
 namespace {
 
 void FindUp(const Model& model, ReplayedMotion* motion) {
-  for (const auto& effect : model.effects) {
-    if (effect->Card().type != "gravity") continue;
-    const Eigen::Vector3d gravity = effect->Parameters().head<3>();
-    if (gravity.norm() == 0) continue;
-    motion->up = -gravity.normalized();
-    motion->up_from_gravity = true;
-    return;
-  }
+  const Eigen::Vector3d gravity = GravityOf(model.effects).value_or(Eigen::Vector3d::Zero());
+  if (gravity.norm() == 0) return;
+  motion->up = -gravity.normalized();
+  motion->up_from_gravity = true;
 }
 
 // Follows the memory of the effects from one visited state to the next.

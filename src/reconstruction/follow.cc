@@ -11,6 +11,7 @@
 #include "core/interrupt.h"
 #include "experiment/grip_tracks.h"
 #include "experiment/known_loads.h"
+#include "fit/step_force_fitter.h"
 #include "geometry/surface_tracks.h"
 #include "reconstruction/followed_sensitivity.h"
 #include "reconstruction/force_model_choice.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/gravity.h"
 #include "experiment/scan_settings.h"
 
 namespace lacuna {
@@ -122,19 +123,19 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
 void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
   Recording& recording = study->recording;
   if (study->follow.forces.kind != ForceSettings::Kind::kKnown) {
-    if (!recording.forces.empty()) {
+    if (!recording.object.forces.empty()) {
       recording.warnings.push_back(
           "the recording's measured forces are not used: forces.model is not known");
     }
     return;
   }
   const Config forces = config.Child("forces");
-  if (recording.forces.empty())
+  if (recording.object.forces.empty())
     forces.Fail("model", "known forces, but the recording has no forces");
   const double first = recording.times[study->frames.front()];
   const double last = recording.times[study->frames.back()];
   const double slack = 1e-9 * (last - first);
-  for (const MeasuredForce& force : recording.forces) {
+  for (const MeasuredForce& force : recording.object.forces) {
     if (!force.region)
       forces.Fail("model", fmt::format("the recording does not tell where {} acts (its region)",
                                        force.name));
@@ -178,11 +179,11 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   const Config mesh = config.Child("mesh");
   study.mesh = ReadMeshSettings(mesh);
   study.sheet_layers = mesh.Integer("sheet_layers", 1, 100, study.sheet_layers);
-  study.density = study.recording.density
-                      ? config.Quantity("density", kDensity, kPositive, *study.recording.density)
-                      : config.Quantity("density", kDensity, kPositive);
+  study.density = study.recording.object.density ? config.Quantity("density", kDensity, kPositive,
+                                                                   *study.recording.object.density)
+                                                 : config.Quantity("density", kDensity, kPositive);
   study.effects = ReadEffects(config);
-  study.follow = ReadFollow(config, study.recording.data_folder);
+  study.follow = ReadFollow(config, study.recording.data.folder);
   ReadValidation(config, &study.validation);
   config.RefuseUnknownKeys();
   if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
@@ -193,10 +194,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   CheckMeasuredForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
-  const bool has_gravity =
-      std::any_of(study.effects.begin(), study.effects.end(),
-                  [](const auto& effect) { return effect->Card().type == "gravity"; });
-  if (study.recording.gravity && !has_gravity) {
+  if (study.recording.object.gravity && !GravityOf(study.effects)) {
     study.recording.warnings.push_back(
         "the recording was made in gravity, the model has none; sound where the reference shape "
         "was scanned in the same gravity");

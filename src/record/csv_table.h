@@ -1,4 +1,4 @@
-// Tables of numbers with named columns, for people, spreadsheets and plotting programs.
+// Tables of numbers with named columns as CSV files, for spreadsheets and plotting programs.
 #ifndef LACUNA_RECORD_CSV_TABLE_H_
 #define LACUNA_RECORD_CSV_TABLE_H_
 
@@ -10,18 +10,19 @@
 namespace lacuna {
 
 struct CsvColumn {
-  std::string name;  // with its unit: "time_s"
+  std::string name;  // ends with the SI unit: "time_s"
   Eigen::VectorXd values;
 };
 using CsvTable = std::vector<CsvColumn>;
 
-// Written atomically; each number in the shortest form that reads back the same, NaN as "nan".
-// Columns of unequal length, and names that are empty, repeated or hold a comma, quote or line
-// break, are a mistake of the program (CHECK).
+// Writes the table atomically. Each number gets the shortest form that is read back as the same
+// double; NaN is written as "nan". Throws InputError if the file cannot be written. Columns of
+// unequal length, and names that are empty, repeated or contain a comma, quote or line break, are
+// programming errors (CHECK).
 void SaveCsv(const CsvTable& table, const std::filesystem::path& file);
 
-// Reads what SaveCsv wrote. Throws InputError with file:line when a row has another number of
-// fields than the header, or a field is no number.
+// Reads a file written by SaveCsv. Throws InputError with file:line if a row has another number of
+// fields than the header or if a field is not a number.
 CsvTable LoadCsv(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Text in a table of comma-separated values.
+// Quoting of text in a table of comma-separated values.
 #ifndef LACUNA_RECORD_CSV_TEXT_H_
 #define LACUNA_RECORD_CSV_TEXT_H_
 
@@ -6,7 +6,8 @@
 
 namespace lacuna {
 
-// As one field (RFC 4180): in quotes where it holds a comma, a quote or a line's end.
+// `text` as one field (RFC 4180): in double quotes if it contains a comma, a quote or a line break,
+// with each quote doubled.
 inline std::string CsvField(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string field = "\"";

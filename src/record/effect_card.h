@@ -1,9 +1,16 @@
-// What the program knows of a physical effect in words and numbers, written once beside the
-// effect's code and read by the YAML check, `lacuna effects`, `explain`, `diagnose` and the report.
+// The card of a physical effect: everything that the rest of the program must know of the effect
+// besides its equations of motion.
+//
+// The card stands beside the effect's code (src/effects/NAME.cc) and is the only place for these
+// facts. The YAML check reads the parameters; `lacuna effects` and `lacuna explain` print the card;
+// the diagnosis reads `tried_at` to enumerate the variants that it tries, and the experiment that
+// it recommends; the sealed trials read `trial` to hide the effect in a synthetic recording. Values
+// are in SI units. Cards are constant after their construction, so that any thread may read them.
 #ifndef LACUNA_RECORD_EFFECT_CARD_H_
 #define LACUNA_RECORD_EFFECT_CARD_H_
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/config.h"
@@ -11,17 +18,92 @@
 
 namespace lacuna {
 
+// How the sealed trials (trials/trial_case.h) choose a parameter that is not the size of the
+// effect. With neither a share nor a range the parameter keeps its default value.
+struct TrialSetting {
+  double share_of_length = 0;  // > 0: this share of the length of the bar
+  // min < max: drawn between these values (SI), uniformly in the logarithm if the parameter has
+  // `log_scale`. `draw` numbers the random draw of the case that gives the value; parameters of one
+  // effect need different numbers. Numbers 0 and 6 to 8 are taken by the place and the axis.
+  // A number that is kept keeps the cases of a seed as they are.
+  double min = 0, max = 0;
+  int draw = 0;
+
+  bool IsDrawn() const { return min < max; }
+};
+
 struct ParameterCard {
   std::string name;           // the YAML key
   std::string meaning;        // one phrase
   Dimension dimension;        // of the value; SI inside
-  Bounds bounds = kAnyValue;  // values outside make no sense: the YAML check refuses them
-  double null_value = 0;      // the value at which the effect vanishes (NaN where it has none)
-  double plausible_min = 0;   // plausible range for soft objects, SI; also the scale of its prior
-  double plausible_max = 0;
-  double default_value = 0;  // SI; NaN: the user must give it
-  bool log_scale = false;    // searched on a logarithmic scale
-  bool setting = false;      // says where or how the effect acts: given, never fitted
+  Bounds bounds = kAnyValue;  // the YAML check refuses values outside, which make no sense
+  double null_value = 0;      // the value at which the effect vanishes; NaN if there is none
+  double plausible_min = 0;   // range of plausible values for soft objects, SI; the larger of the
+  double plausible_max = 0;   // two absolute values is the scale of the prior
+  double default_value = 0;   // SI; NaN: the user must give the value
+  bool log_scale = false;     // the fit and the trials use the logarithm of the value
+  bool setting = false;       // says where or how the effect acts: given by the user, never fitted
+  TrialSetting trial = {};
+};
+
+// Where the diagnosis tries an effect that the model lacks. A derivative at the null value finds
+// the size of an effect, but not its place, its direction or its time scale; those are enumerated.
+// The number of variants trades the time of the first-order ranking against the distance between an
+// unknown place, direction or time and the nearest variant.
+//
+// The variants fill the parameters of the card by name: `centre` and `point` get a place, `axis`
+// (or `azimuth` and `inclination`) a direction, `radius` the width of a place, `origin` and
+// `length` the extent of a gradient. All other parameters take the model's value (those of the
+// material, and gravity), else the default of the card.
+
+// One variant: nothing has to be enumerated.
+struct TriedOnce {};
+
+// At places of the body: along the length of a bar, or spread over the volume of any other body.
+struct TriedAtPlaces {
+  std::vector<double> length_shares;  // of a bar: the distance from one end, in its length
+  double radius_share = 0;            // the width of each place, in the length of the body
+};
+
+// Along the principal axes of the body and the diagonals between them (13 directions).
+struct TriedAlongDirections {};
+
+// As a gradient along the length of a bar, or along the two longest axes of any other body.
+struct TriedAsGradients {};
+
+// At values of one parameter.
+struct TriedAtValues {
+  std::string parameter;       // its name on the card
+  std::string label;           // how the variant is called: "κ₀" gives "κ₀ = 0.1"
+  std::vector<double> values;  // SI, in ascending order
+};
+
+// At values of a relaxation time, by a factor of four from the time step of the simulation to the
+// duration of the recordings.
+struct TriedAtRelaxationTimes {
+  std::string parameter;  // its name on the card
+  std::string label;      // how the variant is called: "τ" gives "τ = 0.3 s"
+};
+
+// On the whole surface, and near both ends and the middle of the length; if the support slips, each
+// of these at several slip distances.
+struct TriedAsSupports {
+  std::vector<double> slip_shares;  // of the parameter `slip_distance`, in the length of the body
+};
+
+// At planes that the predicted body crosses and the measured one does not. Such a contact has no
+// derivative at its null value, so it is tried by a simulation of its own.
+struct TriedAtContactPlanes {};
+
+using TriedAt =
+    std::variant<TriedOnce, TriedAtPlaces, TriedAlongDirections, TriedAsGradients, TriedAtValues,
+                 TriedAtRelaxationTimes, TriedAsSupports, TriedAtContactPlanes>;
+
+// How the sealed trials hide the effect in a synthetic recording of a soft bar along x.
+struct TrialDesign {
+  // The model of every case has the effect, so that a case hides it by leaving it out of the model.
+  bool is_in_every_model = false;
+  bool axis_along_bar = false;  // the parameter `axis` is x; false: a random direction
 };
 
 struct EffectCard {
@@ -29,15 +111,41 @@ struct EffectCard {
   std::string title;     // e.g. "Mass-proportional damping"
   std::string equation;  // in plain Unicode
   std::string citation;
-  std::vector<ParameterCard> parameters;
-  std::string residual_when_missing;     // what a user sees when the model lacks it
-  std::string separating_experiment;     // what tells it from its look-alikes
-  std::vector<std::string> look_alikes;  // types of effects easily taken for it
-  bool repeatable = false;               // a model may have several, e.g. walls
-  // Invariances that the test suite then checks.
-  bool conserves_momentum = false;          // forces sum to zero
-  bool conserves_angular_momentum = false;  // torques sum to zero
+  std::vector<ParameterCard> parameters;  // the size of the effect first
+  std::string residual_when_missing;      // what the residual of a model without it looks like
+  // An experiment that distinguishes the effect from its look-alikes; without a final full stop, so
+  // that the diagnosis can append alternatives.
+  std::string separating_experiment;
+  // Types of effects that are easily confused with this one. The relation is symmetric and need be
+  // stated on one of the two cards only (LookAlikesOf in effects/catalogue.h).
+  std::vector<std::string> look_alikes;
+  TriedAt tried_at = TriedOnce{};
+  TrialDesign trial = {};
+  bool repeatable = false;  // a model may contain several, e.g. several walls
+  // Invariances, which the test suite checks.
+  bool conserves_momentum = false;          // the forces sum to zero
+  bool conserves_angular_momentum = false;  // the torques sum to zero
 };
+
+// Index of the parameter of this name; −1 if the card has none.
+inline int ParameterIndex(const EffectCard& card, const std::string& name) {
+  for (size_t k = 0; k < card.parameters.size(); ++k)
+    if (card.parameters[k].name == name) return static_cast<int>(k);
+  return -1;
+}
+
+// Indices of the parameters that make the size of the effect: the first one, or the first three
+// where these are the components of a vector. The card must have parameters.
+inline std::vector<int> SizeParameters(const EffectCard& card) {
+  if (card.parameters.front().name.ends_with("_x")) return {0, 1, 2};
+  return {0};
+}
+
+// Whether the diagnosis tries the effect by a simulation of its own (pilot) and not by a
+// derivative.
+inline bool IsContact(const EffectCard& card) {
+  return std::holds_alternative<TriedAtContactPlanes>(card.tried_at);
+}
 
 }  // namespace lacuna
 

@@ -1,4 +1,4 @@
-// What the program was built from.
+// The versions of the program and of the libraries that it was built with.
 #ifndef LACUNA_RECORD_LIBRARY_VERSIONS_H_
 #define LACUNA_RECORD_LIBRARY_VERSIONS_H_
 
@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-// "0.1.0"
+// The version of the program: "0.1.0".
 std::string ProgramVersion();
 
-// Library name → the version of its headers, for those on which numbers depend.
+// The header versions, by library name, of the libraries that can affect numerical results.
 std::map<std::string, std::string> LibraryVersions();
 
 }  // namespace lacuna

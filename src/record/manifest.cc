@@ -13,7 +13,7 @@ namespace lacuna {
 using nlohmann::json;
 
 std::string StageKey(const StageIdentity& identity) {
-  // CBOR keeps apart what JSON text would not: NaN, infinity and null.
+  // CBOR distinguishes NaN, infinity and null, which are all null in JSON text.
   const std::vector<uint8_t> bytes = json::to_cbor({{"stage", identity.stage},
                                                     {"code_version", identity.code_version},
                                                     {"options", identity.options},
@@ -69,7 +69,7 @@ Manifest LoadManifest(const std::filesystem::path& file) {
     }
     manifest.finished = document.at("finished");
   } catch (const json::exception& error) {
-    throw InputError({file.string()}, std::string("is not a sound manifest: ") + error.what());
+    throw InputError({file.string()}, std::string("is not a valid manifest: ") + error.what());
   }
   return manifest;
 }

@@ -1,6 +1,6 @@
-// manifest.json: what a run was asked to do, from which inputs, and which of its results stand.
+// manifest.json: the configuration and the inputs of a run, and its valid results.
 //
-// Nothing in it depends on the machine or the hour: the same run gives the same bytes anywhere.
+// Nothing in it depends on the machine or the time: the same run gives the same bytes everywhere.
 #ifndef LACUNA_RECORD_MANIFEST_H_
 #define LACUNA_RECORD_MANIFEST_H_
 
@@ -21,8 +21,9 @@ struct StoredFile {
   std::string hash;
 };
 
+// The result of one stage, such as `surface` or `fit`.
 struct StageResult {
-  std::string key;  // see StageKey
+  std::string key;  // StageKey of the configuration and the inputs that led to it
   std::vector<StoredFile> files;
 };
 
@@ -31,26 +32,28 @@ struct Manifest {
   int schema_version = kManifestSchemaVersion;
   std::string program_version;
   std::map<std::string, std::string> library_versions;
-  nlohmann::json configuration;               // resolved: all values, defaults included, in SI
-  std::map<std::string, std::string> inputs;  // file as the user names it → hash of its content
+  nlohmann::json configuration;               // all values in SI, defaults included
+  std::map<std::string, std::string> inputs;  // file as named by the user → hash of its content
   uint64_t seed = 0;
-  std::map<std::string, StageResult> stages;
-  bool finished = false;  // every stage belongs to this configuration and none is missing
+  std::map<std::string, StageResult> stages;  // by name
+  bool finished = false;  // whether every stage exists and belongs to this configuration
 };
 
-// All that decides a stage's result. Whoever changes the stage's code so that its result changes
-// raises `code_version`.
+// Everything that determines the result of a stage. `code_version` must be increased when a change
+// of the stage's code changes its result.
 struct StageIdentity {
   std::string stage;
   int code_version = 0;
   nlohmann::json options;
   std::map<std::string, std::string> inputs;  // name → hash: of files, or of earlier stages
 };
+// The hash of the identity, under which the result is stored.
 std::string StageKey(const StageIdentity& identity);
 
+// Writes the file atomically. Throws InputError if that fails.
 void SaveManifest(const Manifest& manifest, const std::filesystem::path& file);
 
-// Throws InputError when the file is absent, damaged, or written by a later version of Lacuna.
+// Throws InputError if the file is absent, damaged, or written by a later version of Lacuna.
 Manifest LoadManifest(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -34,16 +34,16 @@ bool IsPartialFolder(const fs::path& path) {
 void CheckStageName(const std::string& stage) {
   CHECK(!stage.empty() &&
         stage.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos)
-      << "'" << stage << "' is no name for a stage";
+      << "'" << stage << "' is not a valid name of a stage";
 }
 
-// Refuses a folder with other contents than a run's: results must not be mixed into them.
+// Refuses a folder that contains something other than a run.
 void RefuseForeignFolder(const fs::path& folder) {
   if (fs::exists(folder / kManifestName)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().filename() == kLockName || IsPartialFolder(entry.path())) continue;
     throw InputError({folder.string()},
-                     fmt::format("is not a run folder (it has no {}) and not empty; choose another",
+                     fmt::format("is neither empty nor a run folder (it has no {}); choose another",
                                  kManifestName));
   }
 }
@@ -58,7 +58,7 @@ void SyncFile(const fs::path& file) {
   }
 }
 
-// The files of a folder by name, after they have reached the disk.
+// Flushes all files of a folder to the disk and returns them, sorted by name.
 std::vector<StoredFile> SyncAndList(const fs::path& folder) {
   std::vector<StoredFile> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -76,7 +76,7 @@ std::vector<StoredFile> SyncAndList(const fs::path& folder) {
   return files;
 }
 
-// Empty when every file is as it was stored.
+// A description of the first file that is missing or changed; empty if there is none.
 std::string FindDamage(const fs::path& folder, const StageResult& result) {
   for (const StoredFile& stored : result.files) {
     const fs::path file = folder / stored.name;
@@ -98,7 +98,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   fs::create_directories(folder_, error);
   if (error || !fs::is_directory(folder_)) {
     const std::string cause = error ? error.message() : "it is not a folder";
-    throw InputError({folder_.string()}, "cannot be made a run folder: " + cause);
+    throw InputError({folder_.string()}, "cannot be used as a run folder: " + cause);
   }
   RefuseForeignFolder(folder_);
   const fs::path file = folder_ / kLockName;
@@ -111,7 +111,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
     if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
   }
   if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
-  // Other code or other libraries may give other results; the manifest names one set of both.
+  // Another version of the program or of a library may give other results.
   if (manifest_.program_version != ProgramVersion() ||
       manifest_.library_versions != LibraryVersions()) {
     manifest_.stages.clear();
@@ -156,7 +156,7 @@ void RunDirectory::Store(const std::string& stage, const std::string& key,
     fs::create_directory(partial);
     write(partial);
     result.files = SyncAndList(partial);
-    // From here to the last Save no manifest names the stage, whatever happens in between.
+    // From here to the last Save the manifest does not list the stage, whatever happens in between.
     if (manifest_.stages.erase(stage) > 0) Save();
     fs::remove_all(StageFolder(stage));
     fs::rename(partial, StageFolder(stage));
@@ -191,7 +191,7 @@ void RunDirectory::Finish() {
   for (const std::string& stage : outdated) manifest_.stages.erase(stage);
   manifest_.finished = true;
   Save();
-  std::error_code ignored;  // what no manifest names harms nobody
+  std::error_code ignored;  // a folder that the manifest does not list does no harm
   for (const std::string& stage : outdated) fs::remove_all(StageFolder(stage), ignored);
 }
 
@@ -201,8 +201,8 @@ fs::path FinishedStage(const fs::path& run, const std::string& stage) {
   const Manifest manifest = LoadManifest(run / kManifestName);
   if (!manifest.finished) {
     throw InputError({run.string()},
-                     "is the folder of a run that was not finished; start the run "
-                     "again and it goes on where it stopped");
+                     "is the folder of an unfinished run; start the run again and it resumes where "
+                     "it stopped");
   }
   const auto found = manifest.stages.find(stage);
   if (found == manifest.stages.end()) {

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_number.h"
 #include "core/npy.h"
 #include "record/csv_table.h"
 
@@ -23,21 +24,20 @@ constexpr char kRecordName[] = "record.json";
 constexpr char kFramesName[] = "frames.csv";
 constexpr char kPointResidualsName[] = "point_residuals.npy";
 
-// JSON has no NaN: null stands for "not measured".
+// NaN, "not measured", becomes null; no measure may be infinite.
 json FromNumber(double value) {
   CHECK(!std::isinf(value)) << "an infinite measure cannot be recorded";
-  return std::isnan(value) ? json() : json(value);
+  return NumberOrNull(value);
 }
-double ToNumber(const json& value) { return value.is_null() ? kNotMeasured : value.get<double>(); }
 
 json FromVector(const Eigen::Vector3d& v) {
   return {FromNumber(v.x()), FromNumber(v.y()), FromNumber(v.z())};
 }
 Eigen::Vector3d ToVector(const json& value) {
-  return {ToNumber(value.at(0)), ToNumber(value.at(1)), ToNumber(value.at(2))};
+  return {NumberOr(value.at(0)), NumberOr(value.at(1)), NumberOr(value.at(2))};
 }
 
-// The numbers of a frame under the names that both files use, so that neither can forget one.
+// The numbers of a frame with their names in both files.
 struct FrameNumber {
   const char* name;
   double FrameRecord::*value;
@@ -78,7 +78,7 @@ FrameRecord ToFrame(const json& value) {
   FrameRecord frame;
   frame.frame = value.at("frame");
   for (const FrameNumber& number : kFrameNumbers) {
-    frame.*number.value = ToNumber(value.at(number.name));
+    frame.*number.value = NumberOr(value.at(number.name));
   }
   frame.force_resultant = ToVector(value.at("force_resultant_N"));
   frame.force_resultant_deviation = ToVector(value.at("force_resultant_deviation_N"));
@@ -99,9 +99,9 @@ MeshRecord ToMesh(const json& value) {
   return {value.at("node_count"),
           value.at("tet_count"),
           value.at("order"),
-          ToNumber(value.at("volume_m3")),
-          ToNumber(value.at("smallest_angle_rad")),
-          ToNumber(value.at("largest_radius_edge_ratio"))};
+          NumberOr(value.at("volume_m3")),
+          NumberOr(value.at("smallest_angle_rad")),
+          NumberOr(value.at("largest_radius_edge_ratio"))};
 }
 
 CsvTable FrameTable(const std::vector<FrameRecord>& frames) {
@@ -179,23 +179,23 @@ RunRecord LoadRunRecord(const std::filesystem::path& folder) {
                        fmt::format("has schema_version {}; expected {}", version, kSchemaVersion));
     }
     record.recording = document.at("recording");
-    record.object_size = ToNumber(document.at("object_size_m"));
-    record.animation_residual = ToNumber(document.at("animation_residual_m"));
-    record.relative_animation_residual = ToNumber(document.at("relative_animation_residual"));
+    record.object_size = NumberOr(document.at("object_size_m"));
+    record.animation_residual = NumberOr(document.at("animation_residual_m"));
+    record.relative_animation_residual = NumberOr(document.at("relative_animation_residual"));
     record.mesh = ToMesh(document.at("mesh"));
     for (const json& frame : document.at("frames")) record.frames.push_back(ToFrame(frame));
     for (const auto& [stage, status] : document.at("stages").items()) {
       record.stages[stage] = ToStatus(status);
     }
     for (const auto& [name, value] : document.at("measures").items()) {
-      record.measures[name] = ToNumber(value);
+      record.measures[name] = NumberOr(value);
     }
     document.at("warnings").get_to(record.warnings);
     if (document.at("has_point_residuals").get<bool>()) {
       record.point_residuals = ReadNpyMatrix(folder / kPointResidualsName);
     }
   } catch (const json::exception& error) {
-    throw InputError({file.string()}, std::string("is not a sound record: ") + error.what());
+    throw InputError({file.string()}, std::string("is not a valid record: ") + error.what());
   }
   if (record.point_residuals.size() > 0 &&
       record.point_residuals.cols() != static_cast<Eigen::Index>(record.frames.size())) {

@@ -1,4 +1,4 @@
-// What a run found, as plain data: read by the commands that compare, explain and report.
+// The results of a run as plain data, read by the commands that compare, explain and report.
 #ifndef LACUNA_RECORD_RUN_RECORD_H_
 #define LACUNA_RECORD_RUN_RECORD_H_
 
@@ -12,10 +12,10 @@
 
 namespace lacuna {
 
-// NaN throughout means "not measured".
+// A measure that does not exist. Test for it with std::isnan.
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-// How the stage's solver ended, for one frame or for the whole stage.
+// How the solver of a stage ended, for one frame or for the whole stage.
 struct SolverStatus {
   bool usable = false;
   std::string status = "not run";  // "converged", "no convergence", ...
@@ -26,9 +26,9 @@ struct SolverStatus {
 struct FrameRecord {
   int frame = 0;
   double time = kNotMeasured;  // s
-  // |D| (Transue & Choi 2015, Eq. 1): the lengths of the alignment of the simulated surface with
-  // the recorded one, summed over the points; then per point, so that frames with different numbers
-  // of points compare, and that mean divided by RunRecord::object_size.
+  // |D| (Transue & Choi 2015, Eq. 1): the sum over the points of the simulated surface of their
+  // distances from the corresponding recorded points; the mean per point, which makes frames with
+  // different numbers of points comparable; and that mean divided by RunRecord::object_size.
   double residual = kNotMeasured;       // m
   double residual_mean = kNotMeasured;  // m
   double relative_residual = kNotMeasured;
@@ -36,12 +36,12 @@ struct FrameRecord {
   double surface_distance_mean = kNotMeasured;
   double surface_distance_rms = kNotMeasured;
   double surface_distance_max = kNotMeasured;
-  double relative_surface_distance = kNotMeasured;  // the mean, divided by object_size
-  // Of the nodal forces, in N, and of their torques about the centre of mass, in N m.
+  double relative_surface_distance = kNotMeasured;  // the mean divided by object_size
+  // The sum of the nodal forces, N, and its standard deviation, N; the latter is NaN unless the
+  // forces were fitted.
   Eigen::Vector3d force_resultant = Eigen::Vector3d::Constant(kNotMeasured);
-  // Standard deviation of the force resultant as the fit sees it; NaN where it was not a fit's
-  // coefficients that made it.
   Eigen::Vector3d force_resultant_deviation = Eigen::Vector3d::Constant(kNotMeasured);
+  // The sum of the torques of the nodal forces about the centre of mass, N m.
   Eigen::Vector3d torque_resultant = Eigen::Vector3d::Constant(kNotMeasured);
   SolverStatus solver;
 };
@@ -49,36 +49,37 @@ struct FrameRecord {
 struct MeshRecord {
   int64_t node_count = 0;
   int64_t tet_count = 0;
-  int order = 0;                         // 0: no mesh
+  int order = 0;                         // of the elements; 0 if there is no mesh
   double volume = kNotMeasured;          // m³
   double smallest_angle = kNotMeasured;  // dihedral, rad
   double largest_radius_edge_ratio = kNotMeasured;
 };
 
 struct RunRecord {
-  std::string recording;              // its name
-  double object_size = kNotMeasured;  // m, what relative measures refer to
+  std::string recording;              // the name of the recording
+  double object_size = kNotMeasured;  // m, the length to which relative measures refer
   std::vector<FrameRecord> frames;
   double animation_residual = kNotMeasured;           // |D_anim| (Eq. 2): Σ |D|, m
   double relative_animation_residual = kNotMeasured;  // mean of the frames' relative residuals
   MeshRecord mesh;
-  std::map<std::string, SolverStatus> stages;  // by stage
-  std::map<std::string, double> measures;      // further named numbers, SI; the name says the unit
+  std::map<std::string, SolverStatus> stages;  // by name of the stage
+  std::map<std::string, double> measures;      // further numbers, SI; the name ends with the unit
   std::vector<std::string> warnings;
-  // Length of the residual displacement of each point of the simulated surface, points × frames, m;
-  // 0 × 0 where not measured.
+  // The length of the residual displacement of each point of the simulated surface, points ×
+  // frames, m; 0 × 0 if not measured.
   Eigen::MatrixXd point_residuals;
 
-  // Every stage and every frame has ended well.
+  // Whether there are frames, and all frames and stages are usable.
   bool IsUsable() const;
 };
 
-// Writes into `folder`, which must exist: record.json with everything but the point residuals,
-// point_residuals.npy with those, and frames.csv, the frames' numbers once more as a table.
-// The point residuals' columns, if any, must be as many as the frames (CHECK).
+// Writes three files into `folder`, which must exist: record.json with everything except the point
+// residuals, point_residuals.npy with those, and frames.csv, a table of the numbers of the frames.
+// Throws InputError if a file cannot be written. CHECKs that the point residuals, if any, have one
+// column per frame.
 void SaveRunRecord(const RunRecord& record, const std::filesystem::path& folder);
 
-// Throws InputError when a file is absent or damaged.
+// Reads record.json and point_residuals.npy. Throws InputError if a file is absent or damaged.
 RunRecord LoadRunRecord(const std::filesystem::path& folder);
 
 }  // namespace lacuna

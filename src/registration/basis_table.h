@@ -1,5 +1,5 @@
-// The kernel values of a basis at many points, and the two products with them that every iteration
-// needs: coefficients → displacements, and forces → coefficients.
+// A table of kernel values of a basis at many points, with the two products that every iteration of
+// the registration needs: coefficients → displacements, and forces → coefficients.
 #ifndef LACUNA_REGISTRATION_BASIS_TABLE_H_
 #define LACUNA_REGISTRATION_BASIS_TABLE_H_
 
@@ -12,19 +12,21 @@
 
 namespace lacuna {
 
-// Holds k(p, y) rather than φ(y) = L⁻¹ k(p, y), in single precision: L is applied to the few
-// coefficients, in double, instead of to the many points. That magnifies the rounding of k by
-// 1/L_KK, so that a basis of fine tolerance is held as φ itself, which takes longer to fill in.
-// Memory: 4 bytes × rank × points.
+// The table stores k(p, y) in single precision rather than φ(y) = L⁻¹ k(p, y): L is applied in
+// double precision to the few coefficients instead of to the many points. This magnifies the
+// rounding error of k by 1/L_KK; a basis of fine tolerance (GaussianBasis::IsFine) is therefore
+// stored as φ itself, which takes longer to compute. Memory: 4 bytes × rank × points.
 class BasisTable {
  public:
-  // `points` in their places at construction; the basis and the kernels must outlive the table.
+  // Tabulates the basis at the present positions of `points`. The basis and the kernels must
+  // outlive the table.
   BasisTable(const GaussianBasis& basis, const BlockTree& points, const GaussianKernels& kernels);
 
-  // Σ_k c_k φ_k at the points: 3 × n, for coefficients 3 × K.
+  // Returns u(y_i) = Σ_k c_k φ_k(y_i) (3 × n) for the coefficients c (3 × K).
   Eigen::Matrix3Xf Expand(const Eigen::Matrix3Xd& coefficients) const;
 
-  // Σ_i f_i φ_k(y_i): 3 × K, for forces 3 × n. Sums are formed in an order that depends on n alone.
+  // Returns Σ_i f_i φ_k(y_i) (3 × K) for the forces f (3 × n). The order of summation depends on n
+  // only.
   Eigen::Matrix3Xd Project(const Eigen::Matrix3Xf& forces) const;
 
  private:
@@ -37,7 +39,7 @@ class BasisTable {
   int size_ = 0;
   int rank_ = 0;
   bool holds_functions_ = false;
-  std::vector<LaneRow> values_;  // rank rows per block of points
+  std::vector<LaneRow> values_;  // rank_ rows for each block of points
 };
 
 }  // namespace lacuna

@@ -17,8 +17,8 @@ struct Entry {
   int point;
 };
 
-// Halves [begin, end) at a multiple of the leaf size that is a power of two of leaves, so that the
-// runs of the tree are the cells of the halving.
+// The number of points in the first half: a power of two of leaves, so that the nodes of the tree
+// coincide with the cells of the halving.
 int64_t Middle(int64_t count) {
   int64_t left = kLeaf;
   while (2 * left < count) left *= 2;

@@ -1,5 +1,5 @@
-// Points in an order in which neighbours in space are neighbours in memory, and boxes over runs of
-// them: what the truncated Gaussian sums walk over. Memory is linear in the number of points.
+// A bounding-box tree over points that are sorted so that neighbours in space are neighbours in
+// memory; the truncated Gaussian sums traverse it. Memory is linear in the number of points.
 #ifndef LACUNA_REGISTRATION_BLOCK_TREE_H_
 #define LACUNA_REGISTRATION_BLOCK_TREE_H_
 
@@ -10,11 +10,12 @@
 
 namespace lacuna {
 
-// A permutation of the points (3 × n, finite) by repeated halving along the widest side, such that
-// every aligned run of 8·2^k points fills a compact box. `order[i]` is the point that comes i-th.
+// A permutation of the points (3 × n, finite) by repeated halving along the longest side, such that
+// every aligned run of 8·2^k points fills a compact box. Entry i is the index of the i-th point.
 std::vector<int> SpatialOrder(const Eigen::Matrix3Xf& points);
 
-// The fourth component is idle: it makes a box two SIMD registers of every x86-64 processor.
+// An axis-aligned box, empty by default. The fourth component is unused; with it a box fits exactly
+// into two SIMD registers.
 struct alignas(16) Box {
   float low[4] = {kFarAway, kFarAway, kFarAway, 0.f};
   float high[4] = {-kFarAway, -kFarAway, -kFarAway, 0.f};
@@ -23,13 +24,13 @@ struct alignas(16) Box {
   void Extend(float x, float y, float z);
 };
 
-// A cloud in both roles of the Gaussian sums. The points come in spatial order and may be moved;
-// the order, and with it the tree, stays that of the beginning.
+// A cloud that can serve as queries and as candidates of the Gaussian sums. The points must be in
+// spatial order. They may be moved, which keeps their order and thus the structure of the tree.
 class BlockTree {
  public:
   explicit BlockTree(const Eigen::Matrix3Xf& points);
 
-  // New positions (3 × n), the same number. Keeps the weights.
+  // Sets new positions (3 × n) of the same number of points. Keeps the weights.
   void Move(const Eigen::Matrix3Xf& points);
   void SetWeight(int point, float weight) { candidates_[point].weight = weight; }
 
@@ -39,7 +40,8 @@ class BlockTree {
   Box QueryBox(int block) const;
   const Candidate* Candidates() const { return candidates_.data(); }
 
-  // The leaves whose boxes come within `radius` of `box`, ascending.
+  // Stores in `*leaves` the leaves whose boxes have a distance of at most `radius` from `box`, in
+  // ascending order.
   void LeavesWithin(const Box& box, float radius, std::vector<int>* leaves) const;
 
  private:
@@ -49,9 +51,9 @@ class BlockTree {
                      std::vector<int>* leaves) const;
 
   int size_ = 0;
-  std::vector<QueryBlock> queries_;      // padded with points far away
-  std::vector<Candidate> candidates_;    // padded with points far away, weight 0
-  std::vector<std::vector<Box>> boxes_;  // [0]: of the leaves; [k]: of kFanOut boxes of [k − 1]
+  std::vector<QueryBlock> queries_;      // padded with points at kFarAway
+  std::vector<Candidate> candidates_;    // padded with points at kFarAway of weight 0
+  std::vector<std::vector<Box>> boxes_;  // [0]: the leaves; [k]: unions of kFanOut boxes of [k − 1]
 };
 
 }  // namespace lacuna

@@ -37,8 +37,8 @@ std::optional<CpdResult> Refusal(const char* name, const PointCloud& cloud) {
   return std::nullopt;
 }
 
-// Twice the distance that 70 % of the source's points have to the target: large enough to see the
-// partner, blind to parts that the target lacks.
+// Twice the 70 % quantile of the source points' distances to the target: large enough to reach the
+// corresponding points, yet insensitive to parts that the target lacks.
 double InitialSigma(const Eigen::Matrix3Xf& source, const Eigen::Matrix3Xf& target) {
   constexpr int kEvery = 4;
   constexpr double kShare = 0.7;
@@ -51,7 +51,7 @@ double InitialSigma(const Eigen::Matrix3Xf& source, const Eigen::Matrix3Xf& targ
   return 2.0 * std::sqrt(static_cast<double>(*chosen));
 }
 
-// A sample of the source that is fine beside the width of the kernel.
+// A sample of the source with a spacing well below the width of the kernel.
 Eigen::Matrix3Xd BasisSample(const Eigen::Matrix3Xd& source) {
   constexpr int kSample = 1000;
   int stride = 1;
@@ -68,7 +68,7 @@ GaussianBasis MakeBasis(const Eigen::Matrix3Xd& source, const CpdOptions& option
                        std::clamp(affordable, kLeastRank, options.max_rank));
 }
 
-// The coefficients of the field nearest to `displacement` at the points of `sample`.
+// The coefficients of the least-squares fit to `displacement` at the points of `sample`.
 Eigen::Matrix3Xd Coefficients(const GaussianBasis& basis, const Eigen::Matrix3Xd& sample,
                               const Eigen::Matrix3Xd& displacement) {
   const Eigen::MatrixXd values = basis.Values(sample);
@@ -78,7 +78,7 @@ Eigen::Matrix3Xd Coefficients(const GaussianBasis& basis, const Eigen::Matrix3Xd
   return gram.llt().solve(values * displacement.transpose()).transpose();
 }
 
-// Where the registration starts: the previous field, the match of the extents, or the rest.
+// The coefficients at the start: those of the previous field, of the match of extents, or zero.
 Eigen::Matrix3Xd FirstCoefficients(const GaussianBasis& basis, const NormalisedClouds& clouds,
                                    const CpdOptions& options, const DisplacementField* previous) {
   const Eigen::Matrix3Xd sample = BasisSample(clouds.source);
@@ -171,15 +171,15 @@ CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
   if (options.initial_sigma > 0.0) {
     drift.sigma = options.initial_sigma / clouds.scale;
   } else {
-    // A warm start is judged by all target points, lest the gaps of a coarse sample hide how good
-    // it is.
+    // A warm start is assessed with all target points, because the gaps of a coarse sample would
+    // hide how good it is.
     const Eigen::Matrix3Xd rest = EveryNth(clouds.source, levels.front().source_stride);
     drift.sigma = InitialSigma(
         (rest + drift.coefficients * basis.Values(rest)).cast<float>(),
         EveryNth(clouds.target, is_warm ? 1 : levels.front().target_stride).cast<float>());
   }
   for (const Level& level : levels) {
-    // A level that is too coarse for a warm start would only undo it.
+    // A level coarser than the accuracy of a warm start would only deteriorate it.
     if (is_warm && !level.is_last && drift.sigma < level.floor) continue;
     drift.sigma = std::max(drift.sigma, level.floor);
     constexpr int kCoarseRank = 40;
@@ -187,7 +187,7 @@ CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
     RunLevel(clouds, level, basis.Leading(rank), options, &drift);
     if (!drift.has_overlap) {
       return Failure(CpdStatus::kNoOverlap,
-                     "no overlap: hardly a target point belongs to the source");
+                     "no overlap: almost no target point belongs to the source");
     }
   }
   return MakeResult(source, clouds, basis, options, drift);

@@ -1,4 +1,4 @@
-// A continuous displacement field and how far it may be trusted.
+// A continuous displacement field with its posterior uncertainty.
 #ifndef LACUNA_REGISTRATION_DISPLACEMENT_FIELD_H_
 #define LACUNA_REGISTRATION_DISPLACEMENT_FIELD_H_
 
@@ -14,21 +14,24 @@ class DisplacementField {
  public:
   DisplacementField() = default;
 
-  // centre, m; scale, m: the unit of length of the basis; coefficients: 3 × K, in that unit;
-  // covariance: K × K, that of the coefficients summed over the three axes, or 0 × 0 where unknown;
-  // unseen_variance: prior variance, summed over the axes, for the part of the kernel that the
-  // basis misses.
+  //   centre           m
+  //   scale            m, the unit of length of the basis
+  //   coefficients     3 × K, in units of `scale`
+  //   covariance       K × K, covariance of the coefficients summed over the three axes; 0 × 0 if
+  //                    unknown
+  //   unseen_variance  prior variance, summed over the axes, of the part of the kernel that the
+  //                    basis does not represent
   DisplacementField(const Eigen::Vector3d& centre, double scale, GaussianBasis basis,
                     Eigen::Matrix3Xd coefficients, Eigen::MatrixXd covariance,
                     double unseen_variance);
 
   bool IsEmpty() const { return basis_.Rank() == 0; }
 
-  // Displacements (3 × n, m) at points (3 × n, m).
+  // The displacements (3 × n, m) at `points` (3 × n, m).
   Eigen::Matrix3Xd Evaluate(const Eigen::Matrix3Xd& points) const;
 
-  // The posterior standard deviation of the displacement at points (n, m): the square root of the
-  // trace of its 3 × 3 covariance. NaN where the field has no covariance.
+  // The posterior standard deviation (n, m) of the displacement at `points` (3 × n, m): the square
+  // root of the trace of its 3 × 3 covariance. NaN if the covariance is unknown.
   Eigen::VectorXd StandardDeviation(const Eigen::Matrix3Xd& points) const;
 
  private:

@@ -13,17 +13,20 @@
 namespace lacuna {
 namespace {
 
+// The range of the outlier weight during the iterations. At 0 or 1 its estimate could not recover.
 constexpr double kFewestOutliers = 1e-3;
 constexpr double kMostOutliers = 0.8;
 
-// Spread over the target's bounding box; a flat target is given some thickness.
+// The volume over which outliers are uniformly distributed: the target's bounding box, with a
+// minimum thickness for a flat target.
 double OutlierVolume(const Eigen::Matrix3Xd& target) {
   const Eigen::Vector3d extent = target.rowwise().maxCoeff() - target.rowwise().minCoeff();
   constexpr double kLeastThickness = 0.1;
   return extent.cwiseMax(kLeastThickness * std::max(extent.maxCoeff(), 1e-3)).prod();
 }
 
-// b / σ² of motion_step.h, measured at a σ that is small but sees neighbours.
+// The curvature bias b / σ² of motion_step.h, measured with a σ that is small but covers some
+// neighbours.
 Eigen::VectorXd CurvatureBias(const Eigen::Matrix3Xf& points, const Eigen::Matrix3Xd& normals,
                               double sigma, const CpdOptions& options) {
   const BlockTree queries(points);
@@ -34,8 +37,8 @@ Eigen::VectorXd CurvatureBias(const Eigen::Matrix3Xf& points, const Eigen::Matri
          (sigma * sigma);
 }
 
-// The factor of a Hessian (lower half) that is positive definite but for the rounding of the single
-// precision that it was summed in.
+// The Cholesky factor of a Hessian (lower half) that is positive definite except for rounding
+// errors of its summation in single precision.
 Eigen::LLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd hessian) {
   Eigen::LLT<Eigen::MatrixXd> factor(hessian.selfadjointView<Eigen::Lower>());
   for (double shift = 1e-7; factor.info() != Eigen::Success && shift < 1.0; shift *= 10.0) {
@@ -45,9 +48,10 @@ Eigen::LLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd hessian) {
   return factor;
 }
 
-// How much wider the prior of the motion would have to be for the motion found to be an ordinary
-// one: s² = N (λ |c|² + 2 μ E(c)) / 3K, the mean of a χ² (an empirical Bayes estimate). Without it
-// the uncertainty of what the data leaves open would not know a large motion from a small one.
+// The factor by which the variance of the motion prior must be scaled to make the motion found a
+// typical one: s² = N (λ |c|² + 2 μ E(c)) / 3K, the mean of a χ² distribution (empirical Bayes).
+// Without it the uncertainty in directions that the data do not determine would not scale with the
+// size of the motion.
 double PriorScale(const Patches& patches, const Eigen::Matrix3Xd& coefficients, double target_count,
                   const CpdOptions& options) {
   double strain = 0.0;
@@ -55,13 +59,13 @@ double PriorScale(const Patches& patches, const Eigen::Matrix3Xd& coefficients, 
     strain += (f - NearestRotation(f)).squaredNorm() / patches.Count();
   }
   const double energy = options.lambda * coefficients.squaredNorm() + options.rigidity * strain;
-  constexpr double kStillPrior = 1e-4;  // a motion of nothing at all is not certain either
+  constexpr double kStillPrior = 1e-4;  // even a vanishing motion keeps some uncertainty
   return std::max(kStillPrior, target_count * energy / static_cast<double>(coefficients.size()));
 }
 
-// The covariance of the coefficients, summed over the axes (K × K): the inverse of the Hessian of
-// the negative log posterior, of which the objective is σ² times, with the prior as wide as it was
-// found.
+// The covariance of the coefficients, summed over the axes (K × K): the inverse Hessian of the
+// negative log posterior with the estimated prior variance. The objective is σ² times that
+// posterior.
 Eigen::MatrixXd Covariance(const SourceSurface& surface, const Pull& pull,
                            const Eigen::MatrixXd& rigidity_hessian, double sigma,
                            double target_count, double prior_scale, const CpdOptions& options) {
@@ -77,9 +81,9 @@ Eigen::MatrixXd Covariance(const SourceSurface& surface, const Pull& pull,
           inverse.bottomRightCorner(rank, rank));
 }
 
-// In the surface Σ p |d|² / Σ p is 2 σ² whatever σ is; what is left is the spread along the normal,
-// which estimates σ² in few steps. Where distances within the surface count (ε), it is Myronenko &
-// Song's mean over the three axes instead.
+// Within the surface Σ p |d|² / Σ p equals 2 σ² for any σ. Subtracting it gives the variance along
+// the normal, which estimates σ² in a few steps. As far as distances within the surface count (ε),
+// Myronenko & Song's mean over the three axes is used instead.
 double NormalVariance(const Posterior& posterior, double sigma) {
   return std::max(0.0, posterior.total_spread / posterior.total_weight - 2.0 * sigma * sigma);
 }
@@ -93,14 +97,14 @@ double NextSigma(const Posterior& posterior, double sigma, double tangential_wei
   return std::clamp(next, kFastest * sigma, sigma);
 }
 
-// The variance that the prior is weighed against. The distances that the motion leaves along the
-// normals tell how far a point may be trusted: clean scans less prior, noisy ones more than σ²
-// alone, which cannot fall below the spacing, would give them. Where distances within the surface
-// count (ε), Myronenko & Song's variance tells it, which the floor of σ does not hold up either.
+// The variance τ² that weights the prior against the data. It follows the residuals along the
+// normals rather than σ², which cannot fall below the point spacing: clean scans get less and noisy
+// scans more prior than σ² would give them. As far as distances within the surface count (ε),
+// Myronenko & Song's variance without the lower bound is used instead.
 double PriorVariance(const Posterior& posterior, double sigma, double residual,
                      double tangential_weight) {
-  constexpr double kResidualShare =
-      8.0;  // residual / σ is about 0.06 for clean scans, 0.2 for noisy
+  // The ratio residual / σ is about 0.06 for clean scans and 0.2 for noisy ones.
+  constexpr double kResidualShare = 8.0;
   constexpr double kLeast = 0.05, kMost = 4.0;
   constexpr double kLeastIsotropic = 1e-4;
   const double variance = sigma * sigma;
@@ -160,8 +164,9 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
                                                       options.tangential_weight);
     objective.coherence = prior * options.lambda;
     objective.rigidity = prior * options.rigidity;
-    // The Hessian sets the pace only, so that an old factor will do for a few steps; but not where
-    // the functions are so local that one point which found its target makes up their curvature.
+    // The Hessian only affects the speed of convergence, so a factor is reused for a few steps.
+    // This does not hold for a fine basis, where a single newly matched point can dominate the
+    // curvature of a function.
     const int oldest_factor = basis.IsFine() ? 1 : 4;
     if (factor_age == oldest_factor || std::abs(sigma - factor_sigma) > 0.1 * sigma) {
       factor_sigma = sigma;

@@ -1,42 +1,43 @@
-// EM on one level of the clouds.
+// Expectation maximisation on one level of the coarse-to-fine hierarchy.
 #ifndef LACUNA_REGISTRATION_DRIFT_H_
 #define LACUNA_REGISTRATION_DRIFT_H_
 
 #include <Eigen/Core>
 
-#include "registration/coherent_point_drift.h"
+#include "registration/cpd_options.h"
 #include "registration/gaussian_basis.h"
 #include "registration/posterior.h"
 #include "registration/registration_level.h"
 
 namespace lacuna {
 
-// What the levels pass on. Lengths are in the frame of NormalisedClouds.
+// The state that is passed from level to level. Lengths are in the frame of NormalisedClouds.
 struct Drift {
   Eigen::Matrix3Xd coefficients;  // 3 × K
   double sigma = 0.0;
   double outlier_weight = 0.0;
-  double noise = 0.0;  // rms distance of target points along the normals
-  int iterations = 0;
-  bool converged = false;
-  bool has_overlap = true;
+  double noise = 0.0;       // rms distance of the target points along the normals
+  int iterations = 0;       // over all levels so far
+  bool converged = false;   // on the latest level
+  bool has_overlap = true;  // false if almost no target point belongs to the source
 
-  // Of the last level.
+  // Results of the last level.
   Posterior posterior;
   Eigen::Matrix3Xf displacement;  // 3 × M
-  Eigen::MatrixXd covariance;     // K × K, of the coefficients, summed over the axes
-  double prior_scale = 1.0;       // s²: how much wider than the options' the prior was taken
+  Eigen::MatrixXd covariance;     // K × K, covariance of the coefficients, summed over the axes
+  double prior_scale = 1.0;  // s², the estimated variance of the prior relative to the options'
 };
 
 struct Level {
-  int source_stride = 1;
-  int target_stride = 1;
-  double floor = 0.0;  // of σ
+  int source_stride = 1;  // every how many points of the source are used
+  int target_stride = 1;  // the same for the target
+  double floor = 0.0;     // lower bound of σ
   bool is_last = true;
 };
 
-// Iterates until the points rest or the options' limit. `basis` may be the leading part of that of
-// the coefficients. Lets σ fall from drift->sigma to no less than the level's floor.
+// Iterates until convergence or options.max_iterations; returns early without overlap. `basis` may
+// be the leading part of the basis of drift->coefficients. Reduces drift->sigma, but not below the
+// level's floor.
 void RunLevel(const NormalisedClouds& clouds, const Level& level, const GaussianBasis& basis,
               const CpdOptions& options, Drift* drift);
 

@@ -18,7 +18,7 @@ double KernelAt(const std::vector<KernelScale>& kernel, double squared_distance)
   return value;
 }
 
-// The slope with ∂k/∂a = −slope · (a − p).
+// The factor in ∂k/∂a = −slope · (a − p).
 double KernelSlope(const std::vector<KernelScale>& kernel, double squared_distance) {
   double value = 0.0;
   for (const KernelScale& scale : kernel) {
@@ -64,7 +64,9 @@ GaussianBasis::GaussianBasis(const Eigen::Matrix3Xd& points, std::vector<KernelS
 double GaussianBasis::Variance() const { return KernelAt(kernel_, 0.0); }
 
 bool GaussianBasis::IsFine() const {
-  constexpr double kSmallestShare = 1e-5;  // 1/L_KK up to 300: φ to 2e-5
+  // L_KK² / k(y, y) of the last function. The rounding error of k is magnified by up to 300, so
+  // that φ is accurate to 2e-5.
+  constexpr double kSmallestShare = 1e-5;
   if (Rank() == 0) return false;
   const double smallest = factor_(Rank() - 1, Rank() - 1);
   return smallest * smallest < kSmallestShare * Variance();

@@ -1,30 +1,30 @@
-// The innermost loops of registration: truncated Gaussian sums between blocks of points, and the
-// products with a table of kernel values.
+// The inner loops of registration: truncated Gaussian sums between blocks of points, and products
+// with a table of kernel values.
 //
-// With e(q, p) = exp(−|q − p|² / 2σ²) where |q − p| ≤ cutoff and 0 beyond, for the sixteen queries
-// of a block and the candidates p of a list of leaves:
+// With e(q, p) = exp(−|q − p|² / 2σ²) for |q − p| ≤ cutoff and 0 beyond, for each of the sixteen
+// queries q of a block and over the candidates p of a list of leaves:
 //   MassSums      mass     = Σ_p e
 //   PosteriorSums weight   = Σ_p e w_p,   shift = Σ_p e w_p (p − q),   spread = Σ_p e w_p |p − q|²
 //   MomentSums    the ten moments Σ_p e {1, d, d dᵀ} with d = p − q
-// and with values[k] = Σ_s amplitude_s exp(−|q − pivot_k|² / 2 width_s²), k < rank:
-//   KernelValues  the values at a block
-//   Expand        Σ_k coefficient_k values[k], for three coefficients each
-//   Project       projection_k += force · values[k], lane by lane, for three forces each
-// in single precision. The same pair is cut or kept alike by all of them, since |q − p|² does not
-// depend on which of the two is called the query.
+// With values[k] = Σ_s amplitude_s exp(−|q − pivot_k|² / 2 width_s²), k < rank:
+//   KernelValues  the values for a block of queries
+//   Expand        Σ_k coefficient_k values[k], for vector coefficients
+//   Project       projection_k += force · values[k], lane by lane, for vector forces
+// All are computed in single precision. All truncate the same pairs, since |q − p|² does not depend
+// on which of the two points is the query.
 //
-// Each function exists for three instruction sets; the choice is made once, at run time. Results
-// are the same for the same set, and agree to about 1e-6 relative between sets (fused multiply-add
-// rounds differently).
+// Each function exists for three instruction sets, one of which is chosen at run time. Results are
+// reproducible for one set and agree to a relative 1e-6 between sets, because fused multiply-adds
+// round differently.
 #ifndef LACUNA_REGISTRATION_GAUSSIAN_SUMS_H_
 #define LACUNA_REGISTRATION_GAUSSIAN_SUMS_H_
 
 namespace lacuna {
 
-inline constexpr int kQueryBlock = 16;  // queries that are worked on together, one per SIMD lane
-inline constexpr int kLeaf = 8;         // candidates that are kept or skipped together
+inline constexpr int kQueryBlock = 16;  // queries that are processed together, one per SIMD lane
+inline constexpr int kLeaf = 8;         // candidates that are visited or skipped together
 
-// Where padding points lie: so far away that the cutoff drops them, near enough not to overflow.
+// The coordinate of padding points: beyond any cutoff, but without overflow of its square.
 inline constexpr float kFarAway = 1e17f;
 
 struct alignas(64) QueryBlock {
@@ -40,7 +40,7 @@ struct alignas(16) Candidate {
   float weight = 0.f;
 };
 
-// `leaves[k]` names the candidates [8·leaves[k], 8·leaves[k] + 8).
+// The candidates [8·leaves[k], 8·leaves[k] + 8) for k < leaf_count. Owns nothing.
 struct CandidateList {
   const Candidate* candidates = nullptr;
   const int* leaves = nullptr;
@@ -66,7 +66,7 @@ struct alignas(64) MomentBlock {
   float moment[10][kQueryBlock];  // 1, x, y, z, xx, xy, xz, yy, yz, zz
 };
 
-// One Gaussian of a kernel, 2^(−exponent·|d|²) times its amplitude.
+// One Gaussian of a kernel: amplitude · 2^(−exponent·|d|²).
 struct GaussianTerm {
   float exponent = 0.f;
   float amplitude = 0.f;
@@ -76,7 +76,7 @@ struct KernelTerms {
   int count = 0;
 };
 
-// `rank` rows of one value per lane; three vectors per row.
+// One value per lane, and three values (a vector) as scalars and per lane.
 struct alignas(64) LaneRow {
   float lane[kQueryBlock];
 };
@@ -93,6 +93,7 @@ struct alignas(64) TripleBlock {
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
+// The functions above for one instruction set. All arrays have `rank` entries.
 struct GaussianKernels {
   InstructionSet set = InstructionSet::kBaseline;
   void (*mass_sums)(const QueryBlock&, const CandidateList&, const GaussianWidth&, MassBlock*);
@@ -106,11 +107,12 @@ struct GaussianKernels {
                   TripleBlock* projection);
 };
 
-// Whether this processor has the instruction set, and its kernels (precondition: it has).
+// Whether this processor supports the instruction set.
 bool IsSupported(InstructionSet set);
+// The kernels for an instruction set that this processor supports.
 const GaussianKernels& KernelsFor(InstructionSet set);
 
-// The kernels of the best set that this processor has.
+// The kernels for the best instruction set that this processor supports.
 const GaussianKernels& BestKernels();
 
 }  // namespace lacuna

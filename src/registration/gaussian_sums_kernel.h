@@ -1,8 +1,8 @@
-// The body of gaussian_sums.h, written once in GCC's vector extensions and compiled once per
-// instruction set: gaussian_sums_<set>.cc defines LACUNA_LANES (4, 8 or 16) and includes it.
+// The implementation of gaussian_sums.h, written in GCC's vector extensions and compiled once per
+// instruction set: gaussian_sums_<set>.cc defines LACUNA_LANES (4, 8 or 16) and includes this file.
 //
-// It includes nothing from the standard library or Eigen: an inline function of theirs compiled
-// here for AVX-512 could be the copy that the linker keeps for everybody.
+// It must not include anything from the standard library or Eigen: the linker might keep an inline
+// function compiled here for AVX-512 as the copy for the whole program.
 #ifndef LACUNA_LANES
 #error "define LACUNA_LANES before including this file"
 #endif
@@ -33,7 +33,7 @@ inline Floats PowerOfTwo(Floats t) {
   return power * reinterpret_cast<Floats>((whole + 127) << 23);
 }
 
-// The same to 2e-7: for values that are stored and solved with.
+// The same with relative error 2e-7, for values that enter a linear system.
 inline Floats AccuratePowerOfTwo(Floats t) {
   t = t < -126.f ? Floats{} - 126.f : t;
   const Ints whole = __builtin_convertvector(t - 0.5f, Ints);
@@ -47,7 +47,7 @@ inline Floats AccuratePowerOfTwo(Floats t) {
   return power * reinterpret_cast<Floats>((whole + 127) << 23);
 }
 
-// e(q, p) for the displacement p − q of each lane; 0 beyond the cutoff.
+// e(q, p) from |q − p|² of each lane; 0 beyond the cutoff.
 inline Floats Gaussian(const Floats& squared, const GaussianWidth& width) {
   const Floats value = PowerOfTwo(squared * -width.exponent);
   return squared <= width.squared_cutoff ? value : Floats{};
@@ -90,7 +90,7 @@ void PosteriorSums(const QueryBlock& block, const CandidateList& list, const Gau
       shift_x += e * dx;
       shift_y += e * dy;
       shift_z += e * dz;
-      // A cut pair of padding has e = 0 and |d|² = 1e34: the product is still 0.
+      // For a padding point e = 0 and |d|² = 1e34 is finite, so the product is 0.
       spread += e * squared;
     });
     Store(weight, out->weight + lane);

@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-// Normals turn with the cofactors of F (Nanson's formula).
+// Normals transform with the cofactor matrix of F (Nanson's formula).
 Eigen::Matrix3d Cofactors(const Eigen::Matrix3d& f) {
   Eigen::Matrix3d cofactors;
   cofactors << f.col(1).cross(f.col(2)), f.col(2).cross(f.col(0)), f.col(0).cross(f.col(1));

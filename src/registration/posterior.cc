@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kBlocksPerTask = 16;
 
-// Calls visit(block, queries, list of the candidates in reach) for each query block.
+// Calls visit(block, queries, candidates within reach) for each query block, in parallel.
 template <typename Visit>
 void ForEachBlock(const BlockTree& queries, const BlockTree& candidates, float reach,
                   const Visit& visit) {

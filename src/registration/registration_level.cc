@@ -43,7 +43,7 @@ std::vector<int> LevelStrides(Eigen::Index larger_count) {
   int stride = 1;
   while (larger_count / (2 * stride) >= kCoarsestPoints) stride *= 2;
   std::vector<int> strides;
-  // A level that only halves the last one's spacing costs more than it saves.
+  // A level whose spacing is only twice that of the last one would cost more than it saves.
   for (; stride >= kRefinement / 2; stride /= kRefinement) strides.push_back(stride);
   strides.push_back(1);
   return strides;

@@ -1,4 +1,5 @@
-// Nested samples of the two clouds, from coarse to fine.
+// Preparation of the two clouds for registration: normalisation, and nested samples for a
+// coarse-to-fine hierarchy.
 #ifndef LACUNA_REGISTRATION_REGISTRATION_LEVEL_H_
 #define LACUNA_REGISTRATION_REGISTRATION_LEVEL_H_
 
@@ -10,8 +11,8 @@
 
 namespace lacuna {
 
-// Source and target in one frame, (x − centre) / scale with the source's centre and size, in
-// spatial order. One frame for both: a centre of its own for a target that lacks a part would be a
+// Source and target in spatial order and in one common frame, (x − centre) / scale with the mean
+// and the size of the source. A separate centre for a target that lacks a part would amount to a
 // motion that no point has made.
 struct NormalisedClouds {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
@@ -19,23 +20,25 @@ struct NormalisedClouds {
   Eigen::Matrix3Xd source;                           // 3 × M
   Eigen::Matrix3Xd source_normals;                   // 3 × M, 0 where unknown
   Eigen::Matrix3Xd target;                           // 3 × N
-  std::vector<int> source_order;  // the place in the caller's cloud of each source point
-  std::vector<int> target_order;
-  double source_spacing = 0.0;  // between neighbours
+  std::vector<int> source_order;  // M: the index of each source point in the caller's cloud
+  std::vector<int> target_order;  // N: the same for the target
+  double source_spacing = 0.0;    // distance between neighbours in the source
 };
 
-// Normals are estimated where `source` has none. A scale of 0 means that the source has no extent.
+// Normalises the clouds. Normals are estimated if `source` has none. If all source points coincide,
+// the scale is 0 and the rest is empty.
 NormalisedClouds Normalise(const PointCloud& source, const PointCloud& target,
                            const GaussianKernels& kernels);
 
-// Every how many points of the larger cloud are taken per level; the last is 1.
+// For each level, from coarse to fine, every how many points of the larger cloud are used; the last
+// entry is 1.
 std::vector<int> LevelStrides(Eigen::Index larger_count);
 
-// The largest power of two up to `stride` with which `count` points still give about as many as
-// the larger cloud gives with `stride`.
+// The stride for a cloud of `count` points on the level where the larger cloud uses `stride`: the
+// largest power of two up to `stride` that gives about as many points.
 int StrideFor(Eigen::Index count, Eigen::Index larger_count, int stride);
 
-// One point of each run of `stride`.
+// One point from each run of `stride` consecutive points.
 Eigen::Matrix3Xd EveryNth(const Eigen::Matrix3Xd& points, int stride);
 
 }  // namespace lacuna

@@ -16,8 +16,7 @@ Patches MakePatches(const GaussianBasis& basis, const Eigen::Matrix3Xd& points) 
   while (!patches.is_fine && count >= 2 * patches.size * kFewestPatches) patches.size *= 2;
   const Eigen::Index patch_count = (count + patches.size - 1) / patches.size;
 
-  // The mean of φ over a patch to second order: φ at the centroid of four of its points would do,
-  // but the mean itself is as cheap for patches this small.
+  // The mean of φ over a patch is estimated from about four of its points.
   constexpr int kSamples = 4;
   const int stride = std::max(1, patches.size / kSamples);
   Eigen::Matrix3Xd centres(3, patch_count);
@@ -55,7 +54,7 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& f) {
   Eigen::Matrix3d rotation = f;
   constexpr int kMaxIterations = 30;
   for (int k = 0; k < kMaxIterations; ++k) {
-    // A reflected or collapsed patch has no nearest rotation that means anything.
+    // A reflected or collapsed patch has no meaningful rotation.
     if (!(rotation.determinant() > 1e-6)) return Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d next = 0.5 * (rotation + rotation.inverse().transpose());
     const double change = (next - rotation).squaredNorm();
@@ -86,7 +85,8 @@ Eigen::Matrix3Xd RigidityGradient(const Patches& patches,
 Eigen::MatrixXd RigidityHessian(const Patches& patches) {
   constexpr double kFixedRotations = 0.05;
   const Eigen::Index rank = patches.mean_basis.rows();
-  // The Hessian sets the pace of the iteration only: single precision and every so many patches do.
+  // The Hessian only affects the speed of convergence, so single precision and a subset of the
+  // patches are sufficient.
   constexpr Eigen::Index kEnoughPatches = 200;
   const Eigen::Index stride = std::max<Eigen::Index>(1, patches.Count() / kEnoughPatches);
   const Eigen::Index count = (patches.Count() + stride - 1) / stride;

@@ -11,8 +11,9 @@
 namespace lacuna {
 namespace {
 
-// Sixteen points spread evenly over a square of side b have the variances b²/12 along it, so that
-// the geometric mean of the two largest tells the area per point. 0 for a degenerate block.
+// The square root of the area per point of a block. Points spread evenly over a square of side b
+// have the variance b²/12 along both sides, so the geometric mean of the two largest variances
+// gives the area. 0 for a degenerate block.
 double BlockSpacing(const QueryBlock& block, int count) {
   if (count < 3) return 0.0;
   Eigen::Matrix3Xd points(3, count);
@@ -21,7 +22,7 @@ double BlockSpacing(const QueryBlock& block, int count) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
   axes.computeDirect(centred * centred.transpose() / count, Eigen::EigenvaluesOnly);
   const Eigen::Vector3d variance = axes.eigenvalues().cwiseMax(0.0);
-  constexpr double kLine = 1e-8;  // variance across a line that is rounding of single precision
+  constexpr double kLine = 1e-8;  // relative variance across a line due to single precision
   if (!(variance[1] > kLine * variance[2])) return 0.0;
   return std::sqrt(12.0 * std::sqrt(variance[1] * variance[2]) / count);
 }

@@ -1,4 +1,4 @@
-// Normals of a cloud from the points around each, for the normal-weighted M-step.
+// Estimation of the normals and the spacing of a cloud from the neighbourhoods of its points.
 #ifndef LACUNA_REGISTRATION_SURFACE_NORMALS_H_
 #define LACUNA_REGISTRATION_SURFACE_NORMALS_H_
 
@@ -9,12 +9,13 @@
 
 namespace lacuna {
 
-// The direction of least spread of the neighbours of each point, weighted by a Gaussian as wide as
-// about 1.5 times the local spacing (that of the sixteen points of its block): 3 × n, unit length,
-// of either sign. Where the neighbours do not span a plane the normal is 0.
+// The normals (3 × n, unit length, of either sign): for each point the direction of least variance
+// of its neighbours, weighted by a Gaussian whose width is 1.5 times the local spacing (that of the
+// sixteen points of its block). The normal is 0 if the neighbours do not span a plane.
 Eigen::Matrix3Xd EstimateNormals(const BlockTree& cloud, const GaussianKernels& kernels);
 
-// The distance between neighbours on a surface, the median over the blocks, in units of the cloud.
+// The distance between neighbours on the surface (the square root of the area per point), as the
+// median over the blocks, in the unit of the cloud. 0 if no block spans a surface.
 double SurfaceSpacing(const BlockTree& cloud);
 
 }  // namespace lacuna

@@ -1,5 +1,6 @@
-// C3D: blocks of 512 bytes; block 1 the header, then the parameters, then the data. Layout and
-// meaning after the C3D user guide (https://www.c3d.org).
+// Reads C3D files. They consist of blocks of 512 bytes: block 1 is the header; the parameters and
+// the data follow. Layout and meaning are those of The C3D File Format User Guide
+// (https://www.c3d.org).
 #include <fmt/format.h>
 
 #include <bit>
@@ -23,7 +24,7 @@ constexpr uint8_t kKey = 0x50;
 
 enum class Processor { kIntel = 84, kDec = 85, kMips = 86 };
 
-// Checked access to the bytes of the file in the order of its processor.
+// Bounds-checked access to the content of the file, in the number format of its processor.
 class Bytes {
  public:
   Bytes(const std::filesystem::path& file, std::string content)
@@ -44,7 +45,8 @@ class Bytes {
     return processor_ == Processor::kMips ? a << 8 | b : b << 8 | a;
   }
   int16_t Integer(size_t at) const { return static_cast<int16_t>(Word(at)); }
-  // DEC: the VAX F format, words swapped, exponent biased by 2 more than IEEE's.
+  // On DEC the VAX F format: words are swapped, and the bias of the exponent is 2 larger than
+  // IEEE's.
   float Real(size_t at) const {
     const uint32_t first = Word(at), second = Word(at + 2);
     const uint32_t bits =
@@ -72,10 +74,11 @@ class Bytes {
 struct Parameter {
   int type = 0;  // bytes per entry; −1: characters
   std::vector<size_t> extents;
-  size_t data = 0;  // where its entries begin
+  size_t data = 0;  // position of its entries in the file
 };
 
-// "POINT:LABELS" → entry. Groups have negative numbers, their parameters the positive ones.
+// All parameters by name, e.g. "POINT:LABELS". A group has a negative number, and its parameters
+// have the same number with a positive sign.
 std::map<std::string, Parameter> ReadParameters(const Bytes& bytes, size_t begin) {
   struct Entry {
     int group;
@@ -146,7 +149,7 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
   format.rate = bytes.Real(20);
   format.data = bytes.Word(16);
   format.analog_per_frame = bytes.Word(4);
-  // The header's 16-bit frame numbers cannot tell of long recordings; the parameters then do.
+  // The 16-bit frame numbers of the header do not suffice for long recordings; parameters do.
   const auto find = [&](const char* name) {
     const auto found = parameters.find(name);
     return found == parameters.end() ? nullptr : &found->second;
@@ -160,12 +163,12 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
   }
   const Parameter* used = find("POINT:USED");
   if (used && bytes.Word(used->data) != format.marker_count) {
-    bytes.Fail(fmt::format("tells of {} points in its header and {} in POINT:USED",
+    bytes.Fail(fmt::format("announces {} points in its header and {} in POINT:USED",
                            format.marker_count, bytes.Word(used->data)));
   }
   if (format.marker_count == 0) bytes.Fail("holds no 3-D points");
   if (format.frame_count < 1) bytes.Fail("holds no frame");
-  if (format.data < 2) bytes.Fail("does not tell where its data begin");
+  if (format.data < 2) bytes.Fail("does not say where its data begin");
   if (!std::isfinite(format.scale) || format.scale == 0) bytes.Fail("has no point scale factor");
   if (!(format.rate > 0 && std::isfinite(format.rate))) bytes.Fail("has no frame rate");
   format.data = (format.data - 1) * kBlock;

@@ -12,7 +12,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/rotation.h"
 
@@ -22,7 +21,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 using Icp = pcl::IterativeClosestPoint<pcl::PointNormal, pcl::PointNormal, double>;
 
-// Single precision in PCL: coordinates are taken about the common centre.
+// PCL computes in single precision, so coordinates are taken relative to the common centre.
 Cloud::Ptr ToPcl(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& center,
                  const Eigen::Vector3d& sensor, int neighbours) {
   auto cloud = std::make_shared<Cloud>();
@@ -60,8 +59,8 @@ struct PairDistance {
   double rms = -1;
 };
 
-// The distances that ICP minimises: of mutually nearest points of both views, along the sum of
-// their normals.
+// Measures the distances that ICP minimises: those of mutually nearest points of the two views
+// along the sum of their normals.
 PairDistance MeasurePairs(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_distance,
                           double max_angle) {
   pcl::search::KdTree<pcl::PointNormal> source_tree, target_tree;
@@ -89,15 +88,15 @@ PairDistance MeasurePairs(const Cloud::Ptr& source, const Cloud::Ptr& target, do
   return result;
 }
 
-// The step of ICP: minimises Σ ((ω × p + t + p − q)·n)² with n the sum of both normals, but only
-// along the directions of motion that the pairs pin down. Along the others (a plane that slides in
-// itself, a sphere that turns) the step is zero and the pose stays as it was given (the "solution
-// remapping" of Zhang, Kaess & Singh 2016).
-class PinnedDownEstimation
+// The step of ICP: minimises Σ ((ω × p + t + p − q)·n)², where n is the normalised sum of the two
+// normals, but only along those directions of motion that the pairs determine. Along the others (a
+// plane that slides along itself, a sphere that rotates) the step is zero and the pose stays as it
+// was given ("solution remapping", Zhang, Kaess & Singh 2016).
+class DeterminedMotionEstimation
     : public pcl::registration::TransformationEstimation<pcl::PointNormal, pcl::PointNormal,
                                                          double> {
  public:
-  PinnedDownEstimation(double min_stiffness, int* free_directions)
+  DeterminedMotionEstimation(double min_stiffness, int* free_directions)
       : min_stiffness_(min_stiffness), free_directions_(free_directions) {}
 
   void estimateRigidTransformation(const Cloud& source, const Cloud& target,
@@ -112,7 +111,7 @@ class PinnedDownEstimation
     for (const auto& pair : pairs) {
       squared_radius += (Position(source[pair.index_query]) - center).squaredNorm();
     }
-    // Rotations in units of the motion at this distance, so that all six are lengths.
+    // Rotations are multiplied by this distance, so that all six components are lengths.
     const double radius = std::sqrt(squared_radius / static_cast<double>(pairs.size()));
     using Matrix6d = Eigen::Matrix<double, 6, 6>;
     using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -140,14 +139,14 @@ class PinnedDownEstimation
       const Vector6d mode = modes.eigenvectors().col(i);
       step += mode * (mode.dot(force) / value);
     }
-    const Eigen::Vector3d turn = step.head<3>() / radius;
+    const Eigen::Vector3d rotation = step.head<3>() / radius;
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-    motion.linear() = RotationBy(turn);
+    motion.linear() = RotationBy(rotation);
     motion.translation() = center + step.tail<3>() - motion.linear() * center;
     matrix = motion.matrix();
   }
 
-  // PCL's ICP calls the form above only.
+  // PCL's ICP calls only the form above.
   void estimateRigidTransformation(const Cloud&, const Cloud&, Matrix4&) const override {
     LOG(FATAL) << "not used";
   }
@@ -183,15 +182,15 @@ Fit FitByIcp(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_dist
   rejector->setThreshold(std::cos(options.max_angle));
   icp.addCorrespondenceRejector(rejector);
   icp.setTransformationEstimation(
-      std::make_shared<PinnedDownEstimation>(options.min_stiffness, &fit.free_directions));
+      std::make_shared<DeterminedMotionEstimation>(options.min_stiffness, &fit.free_directions));
   icp.setInputSource(source);
   icp.setInputTarget(target);
   // Without this, points beyond the border of the other view would pull towards that border.
   icp.setUseReciprocalCorrespondences(true);
   icp.setMaxCorrespondenceDistance(max_distance);
   icp.setMaximumIterations(options.iterations);
-  // A view that slides along the others hardly changes the mean squared distance of the pairs: only
-  // a motion that stands still counts as converged.
+  // A view that slides along the others hardly changes the mean squared distance of the pairs, so
+  // the fit counts as converged only when the motion itself no longer changes.
   icp.getConvergeCriteria()->setRelativeMSE(-1);
   icp.getConvergeCriteria()->setAbsoluteMSE(-1);
   icp.setTransformationEpsilon(1e-12);
@@ -200,20 +199,89 @@ Fit FitByIcp(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_dist
   const Eigen::Matrix4d matrix = icp.getFinalTransformation();
   fit.converged = icp.hasConverged() && matrix.allFinite();
   if (!fit.converged) return fit;
-  // A product of many rotations is one only to rounding.
+  // A product of many rotations is a rotation only up to rounding.
   fit.motion.linear() = Eigen::Quaterniond(matrix.topLeftCorner<3, 3>()).normalized().matrix();
   fit.motion.translation() = matrix.topRightCorner<3, 1>();
   return fit;
 }
 
-// All views but `left_out`, or of these the first `count` only.
-Cloud::Ptr Others(const std::vector<Cloud::Ptr>& views,
-                  const std::vector<Eigen::Isometry3d>& motions, size_t left_out, size_t count) {
+// The views of all cameras while they are registered to one another.
+struct Views {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::Matrix3Xd centroids;              // of each view, relative to the centre
+  std::vector<Cloud::Ptr> clouds;          // relative to the centre, by the given poses
+  std::vector<Eigen::Isometry3d> motions;  // of each cloud so far
+};
+
+Views MakeViews(const std::vector<Eigen::Matrix3Xd>& clouds, const Eigen::Matrix3Xd& positions,
+                int neighbours) {
+  Views views;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Index count = 0;
+  for (const Eigen::Matrix3Xd& cloud : clouds) {
+    sum += cloud.rowwise().sum();
+    count += cloud.cols();
+  }
+  views.center = sum / count;
+  views.centroids.resize(3, clouds.size());
+  for (size_t i = 0; i < clouds.size(); ++i) {
+    views.centroids.col(i) = clouds[i].rowwise().mean() - views.center;
+    views.clouds.push_back(ToPcl(clouds[i], views.center, positions.col(i), neighbours));
+  }
+  views.motions.assign(clouds.size(), Eigen::Isometry3d::Identity());
+  return views;
+}
+
+// The first `count` views without view `left_out`.
+Cloud::Ptr Others(const Views& views, size_t left_out, size_t count) {
   auto merged = std::make_shared<Cloud>();
   for (size_t i = 0; i < count; ++i) {
-    if (i != left_out) *merged += *Moved(*views[i], motions[i]);
+    if (i != left_out) *merged += *Moved(*views.clouds[i], views.motions[i]);
   }
   return merged;
+}
+
+PairDistance MeasureView(const Views& views, size_t i, size_t count,
+                         const AlignmentOptions& options) {
+  return MeasurePairs(Moved(*views.clouds[i], views.motions[i]), Others(views, i, count),
+                      options.max_distance, options.max_angle);
+}
+
+// Registers view i to the others once.
+void RegisterView(size_t i, int sweep, const AlignmentOptions& options, Views* views,
+                  CameraCorrection* correction) {
+  // Views with wrong poses would pull in wrong directions. In the first sweep, only those already
+  // registered count, provided that they overlap enough.
+  const size_t all = views->clouds.size();
+  size_t count = sweep == 0 ? i : all;
+  int pairs = MeasureView(*views, i, count, options).pairs;
+  if (pairs < options.min_pairs) pairs = MeasureView(*views, i, count = all, options).pairs;
+  if (pairs < options.min_pairs) {
+    correction->message =
+        fmt::format("not applied: {} pairs overlap, fewer than {}", pairs, options.min_pairs);
+    return;
+  }
+  const double max_distance =
+      std::max(std::ldexp(options.max_distance, -sweep), 0.25 * options.max_distance);
+  const Fit fit = FitByIcp(Moved(*views->clouds[i], views->motions[i]), Others(*views, i, count),
+                           max_distance, options);
+  if (!fit.converged) {
+    correction->message = "not applied: ICP did not converge";
+    return;
+  }
+  const Eigen::Isometry3d motion = fit.motion * views->motions[i];
+  const Eigen::Vector3d centroid = views->centroids.col(i);
+  const double distance = (motion * centroid - centroid).norm();
+  if (distance > options.max_distance) {
+    correction->message =
+        fmt::format("not applied: ICP would move the view by {:g} m, further than {:g} m", distance,
+                    options.max_distance);
+    return;
+  }
+  views->motions[i] = motion;
+  correction->applied = true;
+  correction->translation = distance;
+  correction->free_directions = fit.free_directions;
 }
 
 }  // namespace
@@ -221,79 +289,36 @@ Cloud::Ptr Others(const std::vector<Cloud::Ptr>& views,
 std::vector<CameraCorrection> AlignCameras(const std::vector<Eigen::Matrix3Xd>& clouds,
                                            const Eigen::Matrix3Xd& positions,
                                            const AlignmentOptions& options) {
-  CHECK_EQ(positions.cols(), static_cast<Eigen::Index>(clouds.size()));
-  std::vector<CameraCorrection> corrections(clouds.size());
+  const size_t count = clouds.size();
+  CHECK_EQ(positions.cols(), static_cast<Eigen::Index>(count));
+  std::vector<CameraCorrection> corrections(count);
   if (clouds.empty()) return corrections;
-  corrections[0].message = "stands still: the others are aligned to it";
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Index count = 0;
-  for (const Eigen::Matrix3Xd& cloud : clouds) {
-    if (cloud.cols() < options.neighbours) {
-      for (size_t i = 1; i < clouds.size(); ++i) {
-        corrections[i].message = "not applied: a camera sees too few points";
-      }
-      return corrections;
+  corrections[0].message = "keeps its pose: the others are aligned to it";
+  const bool sees_too_few = std::any_of(clouds.begin(), clouds.end(), [&](const auto& cloud) {
+    return cloud.cols() < options.neighbours;
+  });
+  if (sees_too_few) {
+    for (size_t i = 1; i < count; ++i) {
+      corrections[i].message = "not applied: a camera sees too few points";
     }
-    sum += cloud.rowwise().sum();
-    count += cloud.cols();
+    return corrections;
   }
-  const Eigen::Vector3d center = sum / count;
-
-  std::vector<Cloud::Ptr> views;
-  for (size_t i = 0; i < clouds.size(); ++i) {
-    views.push_back(ToPcl(clouds[i], center, positions.col(i), options.neighbours));
-  }
-  std::vector<Eigen::Isometry3d> motions(clouds.size(), Eigen::Isometry3d::Identity());
-  const auto measure = [&](size_t i, size_t count) {
-    return MeasurePairs(Moved(*views[i], motions[i]), Others(views, motions, i, count),
-                        options.max_distance, options.max_angle);
-  };
-  for (size_t i = 1; i < clouds.size(); ++i) {
-    corrections[i].rms_before = measure(i, clouds.size()).rms;
+  Views views = MakeViews(clouds, positions, options.neighbours);
+  for (size_t i = 1; i < count; ++i) {
+    corrections[i].rms_before = MeasureView(views, i, count, options).rms;
   }
   for (int sweep = 0; sweep < options.sweeps; ++sweep) {
-    const double max_distance =
-        std::max(std::ldexp(options.max_distance, -sweep), 0.25 * options.max_distance);
-    for (size_t i = 1; i < clouds.size(); ++i) {
-      CameraCorrection& correction = corrections[i];
-      // Views that stand wrongly themselves would pull: at first only those already fitted count,
-      // if they see enough in common.
-      size_t count = sweep == 0 ? i : clouds.size();
-      int pairs = measure(i, count).pairs;
-      if (pairs < options.min_pairs) pairs = measure(i, count = clouds.size()).pairs;
-      if (pairs < options.min_pairs) {
-        correction.message =
-            fmt::format("not applied: {} pairs overlap, fewer than {}", pairs, options.min_pairs);
-        continue;
-      }
-      const Fit fit = FitByIcp(Moved(*views[i], motions[i]), Others(views, motions, i, count),
-                               max_distance, options);
-      if (!fit.converged) {
-        correction.message = "not applied: ICP did not converge";
-        continue;
-      }
-      const Eigen::Isometry3d motion = fit.motion * motions[i];
-      const Eigen::Vector3d middle = clouds[i].rowwise().mean() - center;
-      const double moved = (motion * middle - middle).norm();
-      if (moved > options.max_distance) {
-        correction.message =
-            fmt::format("not applied: ICP would move the view by {:g} m, further than {:g} m",
-                        moved, options.max_distance);
-        continue;
-      }
-      motions[i] = motion;
-      correction.applied = true;
-      correction.translation = moved;
-      correction.free_directions = fit.free_directions;
+    for (size_t i = 1; i < count; ++i) {
+      RegisterView(i, sweep, options, &views, &corrections[i]);
     }
   }
-  for (size_t i = 1; i < clouds.size(); ++i) {
+  for (size_t i = 1; i < count; ++i) {
     CameraCorrection& correction = corrections[i];
     if (!correction.applied) continue;
-    correction.rms_after = measure(i, clouds.size()).rms;
-    correction.angle = Eigen::AngleAxisd(motions[i].linear()).angle();
+    correction.rms_after = MeasureView(views, i, count, options).rms;
+    correction.angle = Eigen::AngleAxisd(views.motions[i].linear()).angle();
     correction.correction =
-        Eigen::Translation3d(center) * motions[i] * Eigen::Translation3d(-center);
+        Eigen::Translation3d(views.center) * views.motions[i] * Eigen::Translation3d(-views.center);
     correction.message = "applied";
   }
   return corrections;

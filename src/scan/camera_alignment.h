@@ -1,4 +1,11 @@
-// Refines how synchronised cameras stand to one another, by the surface that they see in common.
+// Refines the poses of synchronised cameras relative to one another, using the surface that they
+// see in common.
+//
+// The cloud of each camera is registered to the clouds of all others by ICP (PCL), which minimises
+// the distance of mutually nearest points p, q along the sum of their normals,
+//   Σ ((p − q)·(n_p + n_q))²
+// (symmetric ICP, Rusinkiewicz 2019). Unlike the distance to a single tangent plane, this does not
+// push the views of a curved surface apart.
 #ifndef LACUNA_SCAN_CAMERA_ALIGNMENT_H_
 #define LACUNA_SCAN_CAMERA_ALIGNMENT_H_
 
@@ -10,37 +17,40 @@
 namespace lacuna {
 
 struct AlignmentOptions {
-  double max_distance = 0.01;  // m; pairs further apart do not count. Larger: bears larger errors
-                               // of the poses, but pairs points that are not the same surface
-  double max_angle = 0.8;      // rad between the normals of a pair; keeps thin sides apart
-  int neighbours = 16;         // for the normals; larger: less noise, edges rounded more
-  int sweeps = 4;              // each camera but the first is fitted to all others so often
-  int iterations = 40;         // of ICP in each fit
-  // Directions of motion (of six, rotations times the size of the overlap) along which the pairs'
-  // mean squared distance grows by less than this times the motion squared are left as they are.
-  // Larger: sliding is taken out less, and drifts less where the surface does not tell it.
+  // m; pairs further apart are ignored. Larger: tolerates larger errors of the poses, but may pair
+  // points of different surfaces.
+  double max_distance = 0.01;
+  double max_angle = 0.8;  // rad; pairs whose normals differ more are ignored, which keeps the two
+                           // sides of thin parts apart
+  int neighbours = 16;     // for the normals; larger: less noise, but edges are more rounded
+  int sweeps = 4;          // how often each camera but the first is registered to all others
+  int iterations = 40;     // of ICP in each registration
+  // A direction of motion (of six; rotations are multiplied by the size of the overlap) is left
+  // unchanged when the mean squared distance of the pairs grows by less than this factor times the
+  // square of the motion. Larger: corrects sliding motions less, and drifts less along directions
+  // that the surface does not determine.
   double min_stiffness = 0.003;
-  int min_pairs = 100;  // below: the overlap is too small to be trusted
+  int min_pairs = 100;  // with fewer pairs the overlap is too small to be trusted
 };
 
-// What the refinement did to one camera's pose: new world_from_camera = correction · old one.
+// What the refinement did to the pose of one camera.
 struct CameraCorrection {
   bool applied = false;
   std::string message = "not run";
+  // The new world_from_camera is correction · (the old one).
   Eigen::Isometry3d correction = Eigen::Isometry3d::Identity();
-  double angle = 0;         // of the correction, rad
-  double translation = 0;   // of the camera's cloud: how far its centroid moves, m
-  int free_directions = 0;  // of six, that the overlap does not pin down: left as given
-  double rms_before = -1;   // distance of the pairs along their normals, m; −1: none
-  double rms_after = -1;
+  double angle = 0;         // rad, of the correction
+  double translation = 0;   // m, how far the centroid of the camera's cloud moves
+  int free_directions = 0;  // of six, left unchanged because the overlap does not determine them
+  double rms_before = -1;   // m, root mean square distance of the pairs along their normals; −1:
+  double rms_after = -1;    // there are no pairs
 };
 
-// ICP (PCL) of each camera's cloud (3 × n, world frame, m) against all others; the first camera
-// stands still. It minimises the distance of mutually nearest points along the sum of both normals
-// (Rusinkiewicz 2019), which, unlike the distance to one plane, does not push the views of a curved
-// surface apart. `positions` (3 × cameras) orient the normals. A fit that does not converge, has
-// too few pairs or moves the cloud further than max_distance is not taken; a camera without any
-// stays where it was and the message says why.
+// Registers the cloud of each camera (3 × n, m, world frame) to all others; the first camera keeps
+// its pose. `positions` (3 × cameras, m, world frame) orient the normals. A registration is
+// rejected when it does not converge, has too few pairs or moves the cloud further than
+// max_distance. A camera without any accepted registration keeps its pose, and its message says
+// why; nothing is thrown.
 std::vector<CameraCorrection> AlignCameras(const std::vector<Eigen::Matrix3Xd>& clouds,
                                            const Eigen::Matrix3Xd& positions,
                                            const AlignmentOptions& options);

@@ -1,4 +1,4 @@
-// Tables of numbers in text files: CSV, TSV and columns separated by blanks.
+// Reads tables of numbers from text files: CSV, TSV and columns separated by blanks.
 #ifndef LACUNA_SCAN_DELIMITED_TABLE_H_
 #define LACUNA_SCAN_DELIMITED_TABLE_H_
 
@@ -12,31 +12,35 @@
 namespace lacuna {
 
 // Lines starting with '#' and empty lines are skipped. The first line is the header when one of
-// its entries is neither a number nor empty. The delimiter is the first of ';' ',' tab found in the
-// first line, else blanks.
+// its entries is neither a number nor empty. The delimiter is the first of ';', ',' and tab that
+// occurs in the first line, and otherwise any run of blanks.
 struct DelimitedTable {
   std::filesystem::path file;
-  std::vector<std::string> header;  // empty without one
+  std::vector<std::string> header;  // names of the columns; empty if the file has none
   Eigen::MatrixXd values;           // rows × columns; NaN for an empty entry and for "nan"
   std::vector<int> line;            // line of the file of each row, from 1
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number
-// or a row has another number of entries than the first.
+// or a row does not have as many entries as the first.
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file);
 
-// The column called `name`, or, where no header says so, the column number `name` counted from 1.
+// The column called `name` or, when the header has no such name, the column with the number `name`
+// counted from 1. Returns its index from 0, or nothing when there is no such column.
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name);
-// The same, required: the InputError lists the columns there are.
+
+// The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
 
-// `line` cut at the delimiter (' ' stands for any run of blanks), each entry without blanks around.
+// Cuts `line` at the delimiter (' ' stands for any run of blanks) and trims blanks around each
+// entry. The entries refer to the memory of `line`.
 std::vector<std::string_view> SplitFields(std::string_view line, char delimiter);
 
-// The number that fills `text` wholly (NaN for an empty text and for "nan"); none otherwise.
+// The number that `text` consists of (NaN for an empty text and for "nan"), or nothing when it is
+// not a number.
 std::optional<double> ParseNumber(std::string_view text);
 
-// The whole of a file with measurements. Throws InputError when it cannot be read or is empty.
+// The content of a file. Throws InputError when it cannot be read or is empty.
 std::string ReadFilledFile(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -5,9 +5,7 @@
 #include <png.h>
 
 #include <cmath>
-#include <csetjmp>
 #include <cstring>
-#include <string_view>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -19,8 +17,9 @@ namespace {
 
 constexpr int kMaxCount = 65535;
 
-// libpng reports errors by a call that must not return: here it throws through libpng's C frames,
-// which hold nothing to release but the read structure that our caller owns.
+// libpng reports errors through a callback that must not return. This one throws an exception
+// through the C frames of libpng, which hold no resource but the read structure that our caller
+// owns.
 struct PngProblem {
   std::string message;
 };

@@ -1,8 +1,10 @@
-// Depth images of a pinhole camera, their files and the points they stand for.
+// Depth images of a pinhole camera, their files, and the points that they measure.
 //
-// The camera looks along +z with x to the right and y down; pixel centres have whole coordinates:
-//   u = fx·x/z + cx,  v = fy·y/z + cy.
-// A depth is the z of the point (not its distance), m; 0 means "nothing measured".
+// The camera looks along +z, with x to the right and y down. The point (x, y, z) of the camera
+// frame appears at the pixel
+//   u = fx·x/z + cx,  v = fy·y/z + cy
+// (Hartley & Zisserman 2004, Eq. 6.3), whose centre has whole coordinates. Its depth is z, not its
+// distance, in m; 0 means that nothing was measured.
 #ifndef LACUNA_SCAN_DEPTH_IMAGE_H_
 #define LACUNA_SCAN_DEPTH_IMAGE_H_
 
@@ -21,21 +23,24 @@ struct Intrinsics {
 };
 
 struct Camera {
-  std::string name;
+  std::string name;  // for messages
   Intrinsics intrinsics;
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
 };
 
-using DepthImage = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // v, u
+// Depths in m; the row is v, the column u.
+using DepthImage = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Reads a 16-bit grey PNG; each count stands for `count_length` metres. Throws InputError naming
-// the file when it is absent, truncated or of another kind.
+// the file when it is absent, truncated or another kind of image.
 DepthImage ReadDepthPng(const std::filesystem::path& file, double count_length);
 
-// Depths are rounded to whole counts; those that do not fit in 16 bits are a mistake of ours.
+// Writes such a file atomically, with depths rounded to whole counts. All depths must fit in 16
+// bits. Throws InputError when the file cannot be written.
 void WriteDepthPng(const std::filesystem::path& file, const DepthImage& depth, double count_length);
 
-// The pixels with a depth in [min_depth, max_depth] as points of the world frame, row by row.
+// The points of the pixels with a depth in [min_depth, max_depth] (m), in the world frame and in
+// the order of the pixels, row by row.
 PointCloud BackProject(const DepthImage& depth, const Camera& camera, double min_depth,
                        double max_depth);
 

@@ -25,7 +25,7 @@ constexpr Eigen::Index kFewestPoints = 4;
 
 struct Points {
   PointCloud cloud;
-  Eigen::VectorXi seen_by;  // empty where unknown
+  Eigen::VectorXi seen_by;  // empty if unknown
 
   Points Select(const std::vector<int>& kept) const {
     Points selected;
@@ -71,7 +71,7 @@ void CheckVoxel(const Points& points, double voxel_size) {
   }
 }
 
-// The mean of each cube; its sensor is that of the point nearest to the mean.
+// Replaces the points in each cube by their mean, seen by the sensor of the point nearest to it.
 Points MergeByVoxel(const Points& points, const Eigen::Vector3d& center, double voxel_size) {
   CheckVoxel(points, voxel_size);
   pcl::VoxelGrid<pcl::PointNormal> grid;
@@ -112,13 +112,14 @@ Eigen::Matrix3Xd EstimateNormals(const PointCloud& cloud, const Eigen::Vector3d&
   return normals;
 }
 
-void CheckRest(const Points& points, Eigen::Index input_count) {
+void RequireEnoughPoints(const Points& points, Eigen::Index input_count) {
   if (points.cloud.Size() >= kFewestPoints) return;
   throw InputError(fmt::format("{} of {} points are left after filtering; expected at least {}",
                                points.cloud.Size(), input_count, kFewestPoints));
 }
 
-// Normals that are not finite or vanish (opposite ones averaged in a cube) take their point along.
+// Drops points whose normal is not finite or vanishes, as the mean of opposite normals in a cube
+// does.
 Points DropWithoutNormal(Points points) {
   std::vector<int> kept;
   for (int i = 0; i < points.cloud.Size(); ++i) {
@@ -140,19 +141,19 @@ FilterResult FilterCloud(const PointCloud& cloud, const Sensors& sensors,
   result.sensors.positions = sensors.positions;
   Points points{cloud, sensors.seen_by};
   if (options.renew_normals) points.cloud.normals.resize(3, 0);
-  CheckRest(points, result.input_count);
+  RequireEnoughPoints(points, result.input_count);
   const Eigen::Vector3d center = cloud.points.rowwise().mean();
 
   if (options.outlier_neighbours > 0) {
     points = RemoveOutliers(points, center, options);
     result.outlier_count = result.input_count - points.cloud.Size();
-    CheckRest(points, result.input_count);
+    RequireEnoughPoints(points, result.input_count);
   }
   if (options.voxel_size > 0) {
     const Eigen::Index before = points.cloud.Size();
     points = MergeByVoxel(points, center, options.voxel_size);
     result.merged_count = before - points.cloud.Size();
-    CheckRest(points, result.input_count);
+    RequireEnoughPoints(points, result.input_count);
   }
   const bool has_normals = points.cloud.HasNormals();
   if (!has_normals) {
@@ -161,12 +162,12 @@ FilterResult FilterCloud(const PointCloud& cloud, const Sensors& sensors,
   const Eigen::Index before = points.cloud.Size();
   points = DropWithoutNormal(std::move(points));
   result.degenerate_count = before - points.cloud.Size();
-  CheckRest(points, result.input_count);
+  RequireEnoughPoints(points, result.input_count);
 
   result.sensors.seen_by = points.seen_by;
   result.cloud = std::move(points.cloud);
   if (has_normals) {
-    result.orientation.by = OrientedBy::kGiven;
+    result.orientation.method = OrientationMethod::kGiven;
   } else {
     result.orientation = OrientNormals(result.cloud.points, result.sensors,
                                        options.normal_neighbours, &result.cloud.normals);

@@ -1,4 +1,4 @@
-// One moment of a recording: what the scanner saw, in SI and in the world frame.
+// A frame: what the scanner saw at one instant of a recording, in SI units and in the world frame.
 #ifndef LACUNA_SCAN_FRAME_H_
 #define LACUNA_SCAN_FRAME_H_
 
@@ -10,24 +10,25 @@
 
 namespace lacuna {
 
-// Where the points were seen from; it tells which side of a surface is outside.
+// From where the points were seen, which decides on which side of a surface is outside.
 struct Sensors {
-  Eigen::Matrix3Xd positions;  // 3 × c, m; 3 × 0 where unknown
-  Eigen::VectorXi seen_by;     // n, the sensor of each point; empty where unknown
+  Eigen::Matrix3Xd positions;  // 3 × c, m; 3 × 0 if unknown
+  Eigen::VectorXi seen_by;     // n, the sensor that saw each point, from 0; empty if unknown
 };
 
 struct Frame {
-  int index = 0;    // within the recording, from 0
-  double time = 0;  // s
-  std::vector<std::string> files;
+  int index = 0;                   // in the recording, from 0
+  double time = 0;                 // s
+  std::vector<std::string> files;  // it was read from
 
-  PointCloud cloud;            // only finite points
+  PointCloud cloud;            // n usable points
   Eigen::VectorXi source_row;  // n, the row (vertex, marker) of each point in its file, from 0;
-                               // empty where the points of several cameras are merged
-  Eigen::Matrix3Xi triangles;  // 3 × m into `cloud`; 3 × 0 without connectivity
+                               // empty for depth images, which have no rows
+  Eigen::Matrix3Xi triangles;  // 3 × m, points of `cloud`; 3 × 0 without connectivity
   Sensors sensors;
   Eigen::Index row_count = 0;      // points in the files
-  Eigen::Index dropped_count = 0;  // of these, not finite (NaN) or outside the depth range
+  Eigen::Index dropped_count = 0;  // of these, not finite (NaN), absurdly large or, in depth
+                                   // images, outside the depth range
 };
 
 }  // namespace lacuna

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <optional>
 #include <regex>
 #include <stdexcept>
 
@@ -14,7 +13,7 @@ namespace {
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-// Texts and runs of digits in turn: "a12.b" → "a", "12", ".b".
+// Splits a text into other characters and runs of digits, in turn: "a12.b" → "a", "12", ".b".
 std::vector<std::string> SplitDigits(const std::string& text) {
   std::vector<std::string> parts;
   for (size_t at = 0; at < text.size();) {
@@ -42,6 +41,13 @@ std::vector<std::string> ExpandWildcards(const std::string& pattern) {
 }
 
 }  // namespace
+
+std::vector<std::vector<std::filesystem::path>> OneFilePerFrame(
+    const std::vector<std::filesystem::path>& files) {
+  std::vector<std::vector<std::filesystem::path>> frames;
+  for (const std::filesystem::path& file : files) frames.push_back({file});
+  return frames;
+}
 
 std::string FillPattern(const std::string& pattern, int number) {
   static const std::regex placeholder("%(0?)([0-9]?)d");
@@ -125,7 +131,7 @@ std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
     }
     if (const std::optional<long> missing = FindMissingNumber(names)) {
       config.Fail("files", fmt::format("the frame numbered {} is missing among {} … {}; list the "
-                                       "files one by one if that is meant",
+                                       "files one by one if that is intended",
                                        *missing, names.front(), names.back()));
     }
     files.assign(names.begin(), names.end());

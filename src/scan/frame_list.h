@@ -1,8 +1,9 @@
-// Which files make up the frames of a recording, in their order.
+// Lists the files that the frames of a recording consist of, in the order of the frames.
 #ifndef LACUNA_SCAN_FRAME_LIST_H_
 #define LACUNA_SCAN_FRAME_LIST_H_
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,20 +11,27 @@
 
 namespace lacuna {
 
-// Reads either `files` (a list, or one text with the wildcards * and ?) or `pattern` with `first`
-// and `count` ("frames/points_%02d.csv"). Wildcards are sorted by the numbers in the names
-// (scan_9 before scan_10); a gap in evenly spaced numbers is a missing frame. Throws InputError
-// when a file is absent, naming file and frame.
+// Reads either `files` (a list, or one text with the wildcards * and ?) or `pattern`
+// ("frames/points_%02d.csv") with `first` and `count`. Names that match wildcards are sorted by the
+// numbers in them (scan_9 before scan_10); a gap in evenly spaced numbers means that a frame is
+// missing. Throws InputError (file, line, column and field) when a frame is missing, when a file
+// does not exist, and when both or neither of the two ways are used.
 std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
                                                   const std::filesystem::path& data_folder);
 
-// `pattern` with its one %d, %0Nd filled in. Throws std::invalid_argument when it has not one.
+// Arranges one file per frame as FileFrames::files.
+std::vector<std::vector<std::filesystem::path>> OneFilePerFrame(
+    const std::vector<std::filesystem::path>& files);
+
+// Fills `number` into the one %d or %0Nd of `pattern`. Throws std::invalid_argument when there is
+// not exactly one.
 std::string FillPattern(const std::string& pattern, int number);
 
-// Orders texts with runs of digits compared as numbers: "a9" before "a10".
+// Orders texts such that runs of digits compare as numbers: "a9" comes before "a10".
 bool NaturalLess(const std::string& a, const std::string& b);
 
-// The number missing from names that differ in one evenly stepped number ("a1", "a2", "a4" → 3).
+// The number that is missing from names that differ in one evenly spaced number ("a1", "a2", "a4"
+// → 3), or nothing when none is missing or the names are not of this form.
 std::optional<long> FindMissingNumber(const std::vector<std::string>& sorted_names);
 
 }  // namespace lacuna

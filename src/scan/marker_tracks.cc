@@ -150,7 +150,7 @@ MarkerTracks ReadTrc(const std::filesystem::path& file) {
     const size_t expected = 2 + 3 * tracks.names.size();
     const bool has_too_many = std::any_of(fields.begin() + std::min(expected, fields.size()),
                                           fields.end(), [](auto f) { return !f.empty(); });
-    // Writers leave off the empty entries behind the last marker that was seen.
+    // Some programs omit the empty entries behind the last marker that was seen.
     if (fields.size() < 2 || has_too_many) {
       throw InputError({file.string(), line_number, 1},
                        fmt::format("has {} entries; expected {}", fields.size(), expected));

@@ -1,4 +1,4 @@
-// Tracks of named markers, as motion capture records them: CSV, TRC and C3D.
+// Tracks of named markers, as motion-capture systems record them in CSV, TRC and C3D files.
 #ifndef LACUNA_SCAN_MARKER_TRACKS_H_
 #define LACUNA_SCAN_MARKER_TRACKS_H_
 
@@ -9,12 +9,20 @@
 
 namespace lacuna {
 
+// Named points in f frames.
 struct MarkerTracks {
   std::vector<std::string> names;           // m
-  Eigen::VectorXd times;                    // f, s, from the file; empty where it tells none
+  Eigen::VectorXd times;                    // f, s; empty when the file has none
   std::vector<Eigen::Matrix3Xd> positions;  // f matrices 3 × m, in the file's length unit;
                                             // NaN where a marker was not seen
-  std::string length_unit;                  // as the file says ("mm"); empty where it does not
+  std::string length_unit;                  // as the file says ("mm"); empty when it does not
+};
+
+// Points of a recording that are told apart by name, in its frames and in SI units.
+struct Markers {
+  std::vector<std::string> names;           // m
+  Eigen::Matrix3Xd places;                  // 3 × m, m, on the undeformed object; NaN if unknown
+  std::vector<Eigen::Matrix3Xd> positions;  // per frame 3 × m, m, world frame; NaN if not seen
 };
 
 // How a CSV names its columns. A star stands for the marker's name: "*_x" finds tip1_x, base1_x.
@@ -23,17 +31,20 @@ struct MarkerColumns {
   std::string x = "*_x", y = "*_y", z = "*_z";
 };
 
-// Reads .trc, .c3d, or a CSV with a header. Throws InputError naming the file (and line) when it is
-// absent, truncated, malformed, or its counts contradict one another.
+// Reads a file whose extension says what it is: .trc, .c3d, or else a CSV with a header. `columns`
+// matters for the CSV only. Throws InputError naming the file (and line) when it is absent,
+// truncated or malformed, when its counts contradict one another, or when its times do not ascend.
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns);
 MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns);
 MarkerTracks ReadTrc(const std::filesystem::path& file);
 
-// The 3-D points of a C3D file (c3d.org user guide): integer or floating-point data of Intel, DEC
-// and SGI/MIPS processors. A point with a negative residual was not seen.
+// Reads the 3-D points of a C3D file (The C3D File Format User Guide, https://www.c3d.org),
+// integers or floating-point numbers written on Intel, DEC or SGI/MIPS processors. A point with a
+// negative residual was not seen. Times start at 0.
 MarkerTracks ReadC3d(const std::filesystem::path& file);
 
-// Only the markers `names`, in that order. Throws InputError listing the markers there are.
+// The tracks of the markers `names`, in that order. Throws InputError naming `file` and listing its
+// markers when one of them does not exist.
 MarkerTracks SelectMarkers(const MarkerTracks& tracks, const std::vector<std::string>& names,
                            const std::filesystem::path& file);
 

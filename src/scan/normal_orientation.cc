@@ -45,9 +45,10 @@ NeighbourGraph BuildGraph(const Eigen::Matrix3Xd& points, int neighbours) {
   return graph;
 }
 
-// The cosine between the normal of `to` and that of `from` carried along the edge. On a circle the
-// reflection at the bisecting plane carries one normal exactly into the other. Edges much shorter
-// than the neighbourhood have a direction made of noise: their reflection fades out.
+// The cosine between the normal `to` and the normal `from` after it was reflected at the bisecting
+// plane of the edge. On a circle the reflection takes one normal exactly into the other. The
+// direction of an edge much shorter than the neighbourhood is mostly noise: there the reflection
+// fades out.
 double CarriedCosine(const Eigen::Vector3d& edge, double radius, const Eigen::Vector3d& from,
                      const Eigen::Vector3d& to) {
   const double damped = edge.squaredNorm() + 0.0625 * radius * radius;
@@ -57,18 +58,19 @@ double CarriedCosine(const Eigen::Vector3d& edge, double radius, const Eigen::Ve
   return length > 0 ? carried.dot(to) / length : 0;
 }
 
-// Signs along a minimum spanning tree (Prim) of each part; returns the part of each point.
+// Propagates signs along a minimum spanning tree (Prim) of each connected part of the graph.
+// Returns the number of the part of each point.
 std::vector<int> Propagate(const Eigen::Matrix3Xd& points, const NeighbourGraph& graph,
                            Eigen::Matrix3Xd* normals) {
   const int count = static_cast<int>(points.cols());
-  // Noise along the normal would tilt the edges: each point is first put on its tangent plane.
+  // Noise along the normal would tilt the edges, so each point is first moved to its tangent plane.
   Eigen::Matrix3Xd smooth = points;
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d n = normals->col(i);
     smooth.col(i) -= (points.col(i) - graph.mean.col(i)).dot(n) * n;
   }
   std::vector<int> part(count, kUnreached);
-  using Edge = std::tuple<double, int, int>;  // cost, from, to: ties go to the smaller numbers
+  using Edge = std::tuple<double, int, int>;  // cost, from, to; equal costs: smaller numbers first
   std::priority_queue<Edge, std::vector<Edge>, std::greater<>> open;
   const auto reach = [&](int i, int which) {
     part[i] = which;
@@ -100,7 +102,7 @@ std::vector<int> Propagate(const Eigen::Matrix3Xd& points, const NeighbourGraph&
   return part;
 }
 
-// How far each part already faces outward, in [−1, 1]: the nearest sensor tells.
+// How well each part faces outward, in [−1, 1], judged by the sensor nearest to each point.
 Eigen::VectorXd VoteBySensors(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals,
                               const Eigen::Matrix3Xd& sensors, const std::vector<int>& part,
                               int part_count) {
@@ -116,8 +118,8 @@ Eigen::VectorXd VoteBySensors(const Eigen::Matrix3Xd& points, const Eigen::Matri
   return vote.array() / weight.array().max(1e-300);
 }
 
-// The same without sensors: the point that lies furthest out in a direction faces that way. Parts
-// that are never outermost face away from the centre.
+// The same without sensors: the outermost point in a direction should face that direction, and a
+// part without outermost points should face away from the centre.
 Eigen::VectorXd VoteByExtremes(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& normals,
                                const std::vector<int>& part, int part_count) {
   constexpr int kDirections = 400;
@@ -149,7 +151,7 @@ Eigen::VectorXd VoteByExtremes(const Eigen::Matrix3Xd& points, const Eigen::Matr
 
 void FaceOwnSensor(const Eigen::Matrix3Xd& points, const Sensors& sensors,
                    const NeighbourGraph& graph, Eigen::Matrix3Xd* normals) {
-  constexpr double kGrazing = 0.17;  // cosine of 80°: noise of the normal may exceed what is left
+  constexpr double kGrazing = 0.17;  // cosine of 80°; below, noise may flip the sign
   std::vector<int> grazing;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d ray =
@@ -169,7 +171,8 @@ void FaceOwnSensor(const Eigen::Matrix3Xd& points, const Sensors& sensors,
   }
 }
 
-// The pairs that lie beside, not behind, one another and nearly parallel must agree.
+// Neighbours that lie side by side and are nearly parallel must agree; points on the two sides of a
+// thin sheet are behind one another and need not.
 double Disagreement(const Eigen::Matrix3Xd& points, const NeighbourGraph& graph,
                     const Eigen::Matrix3Xd& normals) {
   int64_t pairs = 0, opposite = 0;
@@ -195,7 +198,7 @@ Orientation OrientNormals(const Eigen::Matrix3Xd& points, const Sensors& sensors
   if (points.cols() == 0) return result;
   const NeighbourGraph graph = BuildGraph(points, neighbours);
   if (sensors.seen_by.size() == points.cols()) {
-    result.by = OrientedBy::kSensorOfEachPoint;
+    result.method = OrientationMethod::kSensorOfEachPoint;
     FaceOwnSensor(points, sensors, graph, normals);
     result.disagreement = Disagreement(points, graph, *normals);
     return result;
@@ -203,11 +206,11 @@ Orientation OrientNormals(const Eigen::Matrix3Xd& points, const Sensors& sensors
   const std::vector<int> part = Propagate(points, graph, normals);
   result.component_count = 1 + *std::max_element(part.begin(), part.end());
   const bool has_sensors = sensors.positions.cols() > 0;
-  result.by = has_sensors ? OrientedBy::kSensorsAround : OrientedBy::kPropagation;
+  result.method = has_sensors ? OrientationMethod::kSensorsAround : OrientationMethod::kPropagation;
   const Eigen::VectorXd vote =
       has_sensors ? VoteBySensors(points, *normals, sensors.positions, part, result.component_count)
                   : VoteByExtremes(points, *normals, part, result.component_count);
-  constexpr double kClear = 0.2;  // of 1
+  constexpr double kClear = 0.2;  // on the scale of `vote`, from 0 to 1
   for (const double v : vote) result.doubtful_component_count += std::abs(v) < kClear;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     if (vote[part[i]] < 0) normals->col(i) *= -1;

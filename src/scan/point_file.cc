@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-// PCL prints what goes wrong; here the exception tells it instead.
+// Keeps PCL from printing errors, because an exception reports them.
 class SilentPcl {
  public:
   SilentPcl() : level_(pcl::console::getVerbosityLevel()) {
@@ -33,7 +33,7 @@ class SilentPcl {
   throw InputError({file.string()}, message);
 }
 
-// PCL reads a word in a text body as 0 or NaN; we refuse it.
+// PCL would read a word in a text body as 0 or NaN.
 void RefuseWords(const std::filesystem::path& file, std::string_view content, size_t body) {
   int line_number = 1 + static_cast<int>(std::count(content.begin(), content.begin() + body, '\n'));
   for (size_t at = body; at < content.size(); ++line_number) {
@@ -50,7 +50,7 @@ void RefuseWords(const std::filesystem::path& file, std::string_view content, si
   }
 }
 
-// Where the body begins behind the line that starts with `last_line`, and that line; npos without.
+// The position behind the line that starts with `last_line`, and that line; npos if there is none.
 size_t FindBody(std::string_view content, std::string_view last_line, std::string_view* line) {
   for (size_t at = 0; at < content.size();) {
     const size_t end = content.find('\n', at);
@@ -64,7 +64,7 @@ size_t FindBody(std::string_view content, std::string_view last_line, std::strin
   return std::string_view::npos;
 }
 
-// The number behind `key` in a header, 0 without.
+// The number behind `key` in a header; 0 if there is none.
 double AnnouncedCount(std::string_view header, std::string_view key) {
   const size_t at = header.find(key);
   if (at == std::string_view::npos) return 0;
@@ -73,7 +73,7 @@ double AnnouncedCount(std::string_view header, std::string_view key) {
   return fields.empty() ? 0 : ParseNumber(fields[0]).value_or(0);
 }
 
-// What PCL would pass over in silence or allocate without need.
+// Refuses files that PCL would accept silently or for which it would allocate excessive memory.
 void CheckHeader(const std::filesystem::path& file, bool is_ply) {
   const std::string content = ReadFilledFile(file);
   std::string_view line;

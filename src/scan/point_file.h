@@ -1,4 +1,4 @@
-// Point clouds from files: PLY, PCD, XYZ and text tables.
+// Reads and writes files with point clouds: PLY, PCD and text tables such as XYZ and CSV.
 #ifndef LACUNA_SCAN_POINT_FILE_H_
 #define LACUNA_SCAN_POINT_FILE_H_
 
@@ -10,20 +10,22 @@
 
 namespace lacuna {
 
-// The columns of a text table that hold a point: names of the header, or numbers counted from 1.
-// Left empty, the columns are x, y, z of the header, or the only three (or six) there are.
+// The columns of a text table that contain a point: names in the header, or numbers counted from 1.
+// When they are left empty, the header must name x, y, z (and may name nx, ny, nz), or the table
+// must have exactly three columns, or six of which the last three are unit vectors.
 struct PointColumns {
   std::array<std::string, 3> position;
   std::array<std::string, 3> normal;
 };
 
-// The points of `file` in its own length unit, row by row, rows with NaN included. The format is
-// told by the extension: .ply and .pcd (text or binary, float or double, with or without normals),
-// everything else is a text table (delimited_table.h). Throws InputError naming the file when it
-// is absent, truncated, malformed, or its columns are not clear.
+// The points of `file` in its own length unit, row by row, including rows with NaN. The extension
+// decides on the format: .ply and .pcd (text or binary, float or double, with or without normals);
+// everything else is a text table (delimited_table.h). Throws InputError naming the file when it is
+// absent, truncated or malformed, or when it is unclear which columns are the coordinates.
 PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns);
 
-// Binary little-endian PLY of doubles, with normals if the cloud has them; written atomically.
+// Writes a binary little-endian PLY of doubles, with normals if the cloud has them. Atomic. Throws
+// InputError when the file cannot be written.
 void WritePointFile(const std::filesystem::path& file, const PointCloud& cloud);
 
 }  // namespace lacuna

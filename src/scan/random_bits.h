@@ -1,4 +1,6 @@
-// Random numbers without a state: each is a function of a few whole numbers alone.
+// Random numbers without a state: each is a function of a few whole numbers, e.g. of a seed, a
+// frame and a pixel. They can therefore be drawn in any order and by any thread with the same
+// result.
 #ifndef LACUNA_SCAN_RANDOM_BITS_H_
 #define LACUNA_SCAN_RANDOM_BITS_H_
 
@@ -8,7 +10,8 @@
 
 namespace lacuna {
 
-// The finaliser of SplitMix64 (Steele, Lea & Flood 2014) over each key in turn.
+// 64 uniformly distributed bits: the finaliser of SplitMix64 (Steele, Lea & Flood 2014) applied to
+// one key after another.
 inline uint64_t RandomBits(std::initializer_list<uint64_t> keys) {
   uint64_t state = 0;
   for (const uint64_t key : keys) {
@@ -20,10 +23,10 @@ inline uint64_t RandomBits(std::initializer_list<uint64_t> keys) {
   return state;
 }
 
-// Uniform in (0, 1).
+// A number uniformly distributed in the open interval (0, 1).
 inline double Uniform(uint64_t bits) { return (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52; }
 
-// Normal with mean 0 and deviation 1 (Box & Muller 1958).
+// A normally distributed number with mean 0 and standard deviation 1 (Box & Muller 1958).
 inline double Normal(uint64_t bits) {
   const double radius = std::sqrt(-2 * std::log(Uniform(bits)));
   return radius * std::cos(2 * M_PI * Uniform(RandomBits({bits, 1})));

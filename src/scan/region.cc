@@ -8,14 +8,15 @@
 
 #include "core/npy.h"
 #include "scan/delimited_table.h"
+#include "scan/yaml_format.h"
 
 namespace lacuna {
 namespace {
 
-// Rounding must not decide whether a node on the border of a region belongs to it.
+// Rounding must not decide whether a node on the border of a region belongs to the region.
 constexpr double kBorder = 1e-9;  // m
 
-std::vector<int> AscendingOnce(std::vector<int> nodes) {
+std::vector<int> SortedUnique(std::vector<int> nodes) {
   std::sort(nodes.begin(), nodes.end());
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   return nodes;
@@ -33,7 +34,7 @@ std::vector<int> ReadNodeFile(const std::filesystem::path& file) {
     nodes.push_back(static_cast<int>(number));
   }
   if (nodes.empty()) throw InputError({file.string()}, "lists no node");
-  return AscendingOnce(std::move(nodes));
+  return SortedUnique(std::move(nodes));
 }
 
 BoxRegion ReadBox(const Config& config) {
@@ -69,9 +70,7 @@ struct Contains {
 std::string Triple(const Eigen::Vector3d& v) {
   return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z());
 }
-std::string Lengths(const Eigen::Vector3d& v) {
-  return fmt::format("[{} m, {} m, {} m]", v.x(), v.y(), v.z());
-}
+std::string Lengths(const Eigen::Vector3d& v) { return FormatVector(v, "m"); }
 
 }  // namespace
 
@@ -94,7 +93,7 @@ Region ReadRegion(const Config& config, const std::filesystem::path& data_folder
     ++shapes;
   }
   if (config.Has("nodes")) {
-    region.shape = NodeRegion{AscendingOnce(config.Integers("nodes", 0)), {}};
+    region.shape = NodeRegion{SortedUnique(config.Integers("nodes", 0)), {}};
     ++shapes;
   }
   if (config.Has("nodes_file")) {

@@ -1,4 +1,5 @@
-// Parts of an object that are held, gripped or pushed, told by shape or by node numbers.
+// Regions: the parts of an object that are fixed, gripped or loaded, described by a simple shape or
+// by the numbers of nodes.
 #ifndef LACUNA_SCAN_REGION_H_
 #define LACUNA_SCAN_REGION_H_
 
@@ -13,7 +14,8 @@
 
 namespace lacuna {
 
-// Shapes in the world frame, m, laid over the undeformed reference shape. Borders belong to them.
+// Shapes in the world frame, m. A region consists of those nodes of the undeformed reference shape
+// that lie inside or on the border.
 struct BoxRegion {
   Eigen::AlignedBox3d box;
 };
@@ -21,14 +23,14 @@ struct SphereRegion {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
 };
-// The points x with (x − point)·normal ≥ 0: the side that the normal points to.
+// The points x with (x − point)·normal ≥ 0, i.e. the side that the normal points to.
 struct HalfSpaceRegion {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit length
 };
 struct NodeRegion {
-  std::vector<int> nodes;      // of the reference mesh, 0-based, ascending, each once
-  std::filesystem::path file;  // they came from; empty: from the YAML itself
+  std::vector<int> nodes;      // of the reference mesh, from 0, ascending, without duplicates
+  std::filesystem::path file;  // that lists them; empty when recording.yaml does
 };
 
 struct Region {
@@ -37,16 +39,17 @@ struct Region {
 };
 
 // Reads exactly one of `box: {min, max}`, `sphere: {center, radius}`, `half_space: {point,
-// normal}`, `nodes: [..]`, `nodes_file: FILE` (.npy, or a text of whole numbers; relative to
-// `data_folder`) and `name` (default: `default_name`).
+// normal}`, `nodes: [..]`, `nodes_file: FILE` (.npy or text with whole numbers; relative to
+// `data_folder`), and `name` (default: `default_name`). Throws InputError (file, line, column and
+// field) when there is not exactly one, or naming the file of nodes when that is malformed.
 Region ReadRegion(const Config& config, const std::filesystem::path& data_folder,
                   const std::string& default_name);
 
-// The nodes (columns of `nodes`, 3 × n, m) inside the region, ascending. Throws InputError with the
-// region's name when there is none or a listed node does not exist.
+// The numbers of the nodes (columns of `nodes`, 3 × n, m) in the region, ascending. Throws
+// InputError with the name of the region when there is none or a listed node does not exist.
 std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes);
 
-// "box from (0, 0, 0) to (0.03, 0.1, 0.03) m"
+// The shape in words, e.g. "box from (0, 0, 0) to (0.03, 0.1, 0.03) m".
 std::string DescribeRegion(const Region& region);
 
 // The region as a YAML flow mapping that ReadRegion reads back to the same numbers.

@@ -31,7 +31,8 @@ std::string ReadLengthUnit(const Config& config, const std::string& default_unit
 }
 
 std::optional<Eigen::Matrix3d> RotationUpToRounding(const Eigen::Matrix3d& matrix) {
-  constexpr double kRounding = 1e-4;  // of matrices written with five or more digits
+  // Accepts matrices written with five or more digits.
+  constexpr double kRounding = 1e-4;
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
   if (!((rotation - matrix).norm() <= kRounding) || rotation.determinant() < 0) return std::nullopt;
@@ -64,10 +65,12 @@ Similarity ReadSimilarity(const Config& config, double length_unit) {
   return similarity;
 }
 
-std::optional<Similarity> ReadTransform(const Config& config, double length_unit) {
+Similarity ReadWorldFromFile(const Config& config, double length_unit) {
   const std::optional<Config> transform = config.OptionalChild("transform");
-  if (!transform) return std::nullopt;
-  return ReadSimilarity(*transform, length_unit);
+  if (transform) return ReadSimilarity(*transform, length_unit);
+  Similarity scaling;
+  scaling.scale = length_unit;
+  return scaling;
 }
 
 }  // namespace lacuna

@@ -1,4 +1,4 @@
-// Scale, rotation and translation: how a file's coordinates lie in the world.
+// Similarity transforms, which take the coordinates in a file to the world frame.
 #ifndef LACUNA_SCAN_SIMILARITY_H_
 #define LACUNA_SCAN_SIMILARITY_H_
 
@@ -21,21 +21,24 @@ struct Similarity {
   }
 };
 
-// The metres of one "m", "mm", "cm", "um" or "in".
+// The length of one `unit` in metres, for "m", "mm", "cm", "um" and "in"; 0 for any other unit.
 double LengthOf(const std::string& unit);
 
-// Reads `length_unit`, one of those; required where `default_unit` is empty.
+// Reads `length_unit`, which must be one of those. It is required when `default_unit` is empty.
 std::string ReadLengthUnit(const Config& config, const std::string& default_unit);
 
 // Reads `scale` (a plain number, multiplied by `length_unit`, m), the rotation as `axis` with
 // `angle` or as `matrix` of nine numbers row by row, and `translation`. All are optional. A matrix
-// that is not a rotation to 1e-4 is refused; a smaller rounding is taken out.
+// is replaced by the nearest rotation, which removes its rounding. Throws InputError (file, line,
+// column and field) when it is further than 1e-4 from a rotation or when the rotation is given
+// twice.
 Similarity ReadSimilarity(const Config& config, double length_unit);
 
-// The same for the mapping `transform`, where there is one.
-std::optional<Similarity> ReadTransform(const Config& config, double length_unit);
+// Reads the mapping `transform` as above. Without one the result only scales by `length_unit`, m.
+Similarity ReadWorldFromFile(const Config& config, double length_unit);
 
-// The nearest rotation to `matrix`; nothing when it is further than 1e-4 from one or a reflection.
+// The rotation nearest to `matrix`, or nothing when `matrix` is a reflection or further than 1e-4
+// (Frobenius norm) from every rotation.
 std::optional<Eigen::Matrix3d> RotationUpToRounding(const Eigen::Matrix3d& matrix);
 
 }  // namespace lacuna

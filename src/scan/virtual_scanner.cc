@@ -28,7 +28,7 @@ Eigen::Vector3d Ray(const Intrinsics& k, double u, double v) {
   return {(u - k.cx) / k.fx, (v - k.cy) / k.fy, 1};
 }
 
-// The exact hit of each pixel's ray within the triangle's bounding box on the image.
+// Intersects the rays of all pixels in the bounding box of the triangle's image with the triangle.
 void DrawTriangle(const std::array<Eigen::Vector3d, 3>& corners, const VirtualCamera& camera,
                   RenderedView* view) {
   const Intrinsics& k = camera.camera.intrinsics;
@@ -48,8 +48,9 @@ void DrawTriangle(const std::array<Eigen::Vector3d, 3>& corners, const VirtualCa
   const int v_first = static_cast<int>(std::max(0.0, std::ceil(v_min)));
   const int u_last = static_cast<int>(std::min<double>(camera.width - 1, std::floor(u_max)));
   const int v_last = static_cast<int>(std::min<double>(camera.height - 1, std::floor(v_max)));
-  // A ray is inside when it passes the three edges on the same side: signs of the triple products
-  // of the ray with two corners (borders belong to both triangles, so that no pixel falls between).
+  // A ray hits the triangle when it passes all three edges on the same side, i.e. when its triple
+  // products with the corners of each edge have the same sign. Borders belong to both triangles, so
+  // that no pixel falls between them.
   const std::array<Eigen::Vector3d, 3> edges = {
       corners[0].cross(corners[1]), corners[1].cross(corners[2]), corners[2].cross(corners[0])};
   for (int v = v_first; v <= v_last; ++v) {
@@ -68,8 +69,8 @@ void DrawTriangle(const std::array<Eigen::Vector3d, 3>& corners, const VirtualCa
   }
 }
 
-// The depth behind which a flying pixel may lie: the farthest of the four neighbours, or nothing
-// at all; returns a negative value away from edges.
+// The far depth at an edge, up to which a flying pixel may lie: the largest of the four neighbours,
+// infinite if one of them sees nothing. Negative away from edges.
 double FarDepth(const DepthImage& depth, Eigen::Index v, Eigen::Index u, double edge_jump) {
   constexpr double kNothing = std::numeric_limits<double>::infinity();
   double far = -1;

@@ -74,7 +74,7 @@ EvaluationLog::EvaluationLog(const std::filesystem::path& file, const std::strin
   size_t sound = 0;
   for (int line = 1; sound < text.size(); ++line) {
     const size_t end = text.find('\n', sound);
-    if (end == std::string::npos) break;  // torn while it was written
+    if (end == std::string::npos) break;  // incomplete last line
     const std::string whole = text.substr(sound, end + 1 - sound);
     if (whole.size() <= kHashDigits + 2 ||
         Signed(whole.substr(kHashDigits + 1, whole.size() - kHashDigits - 2)) != whole) {

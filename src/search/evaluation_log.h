@@ -1,10 +1,10 @@
-// An append-only file of evaluations, from which a stopped search goes on.
+// An append-only file of evaluations, from which an interrupted search resumes.
 //
-// A search is a function of its inputs and of the outcomes so far, so that the log is all the state
-// there is: called again with the same log, the search starts afresh, is given the outcomes of the
-// file in their order, and goes on where the file ends. Each line carries the hash of its content,
-// and numbers are written exactly; a last line that was torn by a crash is dropped. Lines reach the
-// system one by one, the disk when the system writes them there.
+// A search is a function of its inputs and of the outcomes so far, so the log is its entire state:
+// called again with the same log, the search starts from the beginning, receives the outcomes from
+// the file in order, and continues with new evaluations where the file ends. Each line contains the
+// hash of its content, and numbers are written exactly. An incomplete last line, left by a crash,
+// is removed. Each line is handed to the operating system at once, but not synced to the disk.
 #ifndef LACUNA_SEARCH_EVALUATION_LOG_H_
 #define LACUNA_SEARCH_EVALUATION_LOG_H_
 
@@ -19,15 +19,15 @@ namespace lacuna {
 
 class EvaluationLog {
  public:
-  // Opens or begins the log of the search named by `key`. Throws InputError naming the file, and
-  // the line where there is one, when it cannot be written, is damaged, or belongs to another
-  // search.
+  // Opens or creates the log of the search identified by `key`. Throws InputError with the file
+  // (and line) if it cannot be written, is damaged, or belongs to another search.
   EvaluationLog(const std::filesystem::path& file, const std::string& key, int variable_count,
                 int constraint_count);
 
-  // What stood in the file when it was opened.
+  // The evaluations that were in the file when it was opened.
   const std::vector<SearchStep>& steps() const { return steps_; }
 
+  // Writes one evaluation. Throws InputError if that fails.
   void Append(const SearchStep& step);
 
  private:

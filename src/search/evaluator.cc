@@ -22,7 +22,7 @@ void AppendBits(const Eigen::VectorXd& numbers, std::string* text) {
   }
 }
 
-// Failures have one form, whatever the objective returned.
+// Turns values that are not finite into failures, and gives all failures the same form.
 Evaluation Normalised(Evaluation outcome, int constraint_count) {
   if (outcome.value) {
     CHECK_EQ(outcome.constraints.size(), constraint_count);
@@ -69,7 +69,7 @@ Evaluator::Evaluator(const SearchProblem& problem, const SearchControl& control,
 SearchStatus Evaluator::StopReason() const {
   if (evaluation_count() >= control_.max_evaluations) return SearchStatus::kEvaluations;
   if (log_ && evaluation_count() < static_cast<int>(log_->steps().size())) {
-    return SearchStatus::kNotRun;  // reading back costs nothing
+    return SearchStatus::kNotRun;  // reading from the log takes no time
   }
   if (control_.interrupted && control_.interrupted()) return SearchStatus::kInterrupted;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
@@ -83,7 +83,7 @@ SearchStep Evaluator::Evaluate(Eigen::VectorXd x) {
     const SearchStep& step = log_->steps()[index];
     if (step.x != x) {
       throw InputError({control_.log.string(), index + 2},
-                       "the search does not come by this point: the log is of another version");
+                       "the search does not visit this point: another version wrote the log");
     }
     return step;
   }

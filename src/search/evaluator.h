@@ -1,4 +1,4 @@
-// The one door between a search and its objective: cache, log, budget, bounds and the best point.
+// The interface between a search and its objective: cache, log, budget, bounds and best point.
 #ifndef LACUNA_SEARCH_EVALUATOR_H_
 #define LACUNA_SEARCH_EVALUATOR_H_
 
@@ -13,12 +13,13 @@
 
 namespace lacuna {
 
-// Fixed variables (lower == upper) are left out of everything a search sees: `lower`, `upper`,
-// `start` and the points of At() hold the free ones only.
+// A search sees only the free variables: `lower`, `upper`, `start` and the points of At() omit the
+// fixed ones (lower == upper).
 class Evaluator {
  public:
-  // `method` names the search and its options; with the problem and control.log_key it is the key
-  // of the log.
+  // `method` describes the search and its options. Together with the problem and control.log_key it
+  // forms the key of the log. CHECKs that the problem is consistent; throws InputError for a bad
+  // log.
   Evaluator(const SearchProblem& problem, const SearchControl& control, const std::string& method);
 
   int n() const { return static_cast<int>(free_.size()); }
@@ -27,24 +28,26 @@ class Evaluator {
   const Eigen::VectorXd& upper() const { return upper_; }
   const Eigen::VectorXd& start() const { return start_; }
 
-  // The outcome at `x`, which lies within the bounds: from memory where it has been evaluated, else
-  // from the log or the objective. Null once the search has to stop; the pointer stays valid.
+  // The outcome at `x`, which must lie within the bounds: from memory if it has been evaluated
+  // before, else from the log or the objective. Null once the search must stop. The pointer stays
+  // valid as long as the evaluator.
   const Evaluation* At(const Eigen::VectorXd& x);
 
-  // ∂f/∂x of the free variables at an `x` whose outcome has a value; NaN where the problem does not
-  // tell.
+  // ∂f/∂x for the free variables at an `x` whose outcome has a value; NaN if the problem does not
+  // provide it.
   Eigen::VectorXd GradientAt(const Eigen::VectorXd& x) const;
 
   double feasibility_tolerance() const { return control_.feasibility_tolerance; }
   bool stopped() const { return status_ != SearchStatus::kNotRun; }
   int evaluation_count() const { return static_cast<int>(result_.trace.size()); }
-  // Index of the best point so far in the trace; -1 if there is none.
+  // The index in the trace of the best point so far; -1 if there is none.
   int best() const { return result_.best.value_or(-1); }
-  // The free variables and the outcome of a step of the trace.
+  // The free variables and the outcome of one step of the trace.
   Eigen::VectorXd PointOf(int index) const;
   const Evaluation& OutcomeOf(int index) const { return result_.trace[index].outcome; }
 
-  // The result, with `status` unless a stop rule has spoken. Call once, last.
+  // Returns the result. A stopping rule that has applied takes precedence over `status`. Call it
+  // once, at the end.
   SearchResult Finish(SearchStatus status, const std::string& message = "");
 
  private:

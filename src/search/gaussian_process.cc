@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// k of the squared distance of points that have been divided by their lengths.
+// The kernel k as a function of the squared distance of points scaled by the lengths.
 double Matern(double squared) {
   const double r = std::sqrt(5 * squared);
   return (1 + r + r * r / 3) * std::exp(-r);
@@ -25,7 +25,8 @@ double SquaredDistance(const double* a, const double* b, int n) {
   return sum;
 }
 
-// Columns j of `u` become row j of the Cholesky factor, from the entries on and above the diagonal.
+// Overwrites the upper triangle of `u` with the transposed Cholesky factor: column j becomes row j
+// of L. Returns false if the matrix is not positive definite.
 bool FactorInPlace(MatrixXd* u) {
   const int size = static_cast<int>(u->rows());
   for (int j = 0; j < size; ++j) {
@@ -45,7 +46,7 @@ bool FactorInPlace(MatrixXd* u) {
   return true;
 }
 
-// L⁻¹ b with L the transpose of `u`.
+// Returns L⁻¹ b, where L is the transpose of `u`.
 VectorXd SolveLower(const MatrixXd& u, VectorXd b) {
   for (int j = 0; j < b.size(); ++j) {
     const double* column = u.col(j).data();

@@ -1,4 +1,4 @@
-// Regression with a Gaussian process, for few points of few variables.
+// Gaussian process regression for small numbers of points and variables.
 //
 //   y = f(x) + ε,   f ~ GP(0, s² k),   ε ~ N(0, s² η)
 //   k(x, x') = (1 + r + r²/3) exp(-r),   r² = 5 Σ_i ((x_i - x'_i) / l_i)²      (Matérn 5/2)
@@ -21,17 +21,17 @@ class GaussianProcess {
  public:
   struct Prediction {
     double mean = 0;
-    double deviation = 0;  // of f, without the noise
+    double deviation = 0;  // standard deviation of f, without the noise
   };
 
-  // `points` n × N, `values` N.
+  // `points`: n × N; `values`: N.
   GaussianProcess(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                   const GaussianProcessScales& scales);
 
   Prediction At(const Eigen::VectorXd& x) const;
 
-  // ln p(values | scales) with s² at its best value, up to a constant; -∞ where the matrix of the
-  // covariances is not positive definite in double precision.
+  // ln p(values | scales), maximised over s², up to a constant. -∞ if the covariance matrix is not
+  // positive definite in double precision; At() must then not be called.
   double LogLikelihood() const { return log_likelihood_; }
 
  private:
@@ -45,8 +45,9 @@ class GaussianProcess {
   double log_likelihood_ = 0;
 };
 
-// The scales that maximise the likelihood times a weak prior: ln l_i ~ N(ln ½, 1), within
-// 0.05 <= l_i <= 10 and 1e-8 <= η <= 1. Starts at `first`; `evaluations` likelihoods at most.
+// The scales that maximise the likelihood times a weak prior, ln l_i ~ N(ln ½, 1), within
+// 0.05 <= l_i <= 10 and 1e-8 <= η <= 1. Starts at `first` and evaluates the likelihood at most
+// `evaluations` times.
 GaussianProcessScales FitScales(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                 const GaussianProcessScales& first, int evaluations);
 

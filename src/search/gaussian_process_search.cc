@@ -22,14 +22,14 @@ using Eigen::VectorXd;
 
 constexpr std::array<int, 10> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
 
-// Halton's sequence (1960): the digits of `index` mirrored at the point.
+// The Halton sequence (1960): the digits of `index` in this base, reflected at the radix point.
 double Halton(int index, int base) {
   double value = 0, digit = 1.0 / base;
   for (; index > 0; index /= base, digit /= base) value += digit * (index % base);
   return value;
 }
 
-// SplitMix64 (Steele, Lea and Flood 2014), a number in [0, 1) per step.
+// The generator SplitMix64 (Steele, Lea and Flood 2014). Uniform() is in [0, 1).
 class Random {
  public:
   explicit Random(uint64_t seed) : state_(seed) {}
@@ -39,7 +39,7 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
   }
-  // Of mean 0 and standard deviation 1: the sum of twelve uniform numbers.
+  // Approximately normal with mean 0 and standard deviation 1: a sum of twelve uniform numbers.
   double Normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += Uniform();
@@ -50,11 +50,12 @@ class Random {
   uint64_t state_;
 };
 
-// ln of the expected improvement over `least`, in units of the values.
+// The logarithm of the expected improvement below `least`.
 double LogImprovement(const GaussianProcess::Prediction& prediction, double least) {
   const double deviation = std::max(prediction.deviation, 1e-12);
   const double z = (least - prediction.mean) / deviation;
-  if (z < -6) return std::log(deviation) - 0.5 * z * z - 2 * std::log(-z) - 0.919;  // its tail
+  // Asymptotic expansion for large -z, where the formula below would underflow.
+  if (z < -6) return std::log(deviation) - 0.5 * z * z - 2 * std::log(-z) - 0.919;
   const double density = 0.3989422804014327 * std::exp(-0.5 * z * z);
   return std::log(deviation * (z * 0.5 * std::erfc(-z * 0.7071067811865476) + density));
 }
@@ -95,7 +96,7 @@ class GaussianProcessSearch {
     values_.push_back(outcome->value);
   }
 
-  // Values of mean 0 and variance 1.
+  // The values of all points, standardised to mean 0 and variance 1.
   VectorXd Values() const {
     std::vector<double> sorted;
     for (const std::optional<double>& value : values_) {

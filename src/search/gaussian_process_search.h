@@ -1,10 +1,11 @@
-// A search for few variables and a noisy or stepped objective: expected improvement on a Gaussian
-// process.
+// Bayesian optimisation of few variables with a noisy or stepped objective: expected improvement on
+// a Gaussian process.
 //
 // D. R. Jones, M. Schonlau and W. J. Welch, "Efficient global optimization of expensive black-box
-// functions", 1998, eq. 15; under noise the improvement is counted from the least posterior mean at
-// the points evaluated so far. Each evaluation costs a fit to all points before: O(N³) per
-// likelihood, about 10 ms at N = 100, which an objective of seconds does not notice.
+// functions", 1998, eq. 15. Because of the noise, the improvement is measured from the least
+// posterior mean at the evaluated points. Each evaluation requires a fit to all earlier points,
+// O(N³) per likelihood or about 10 ms at N = 100, which is negligible for an objective that takes
+// seconds.
 #ifndef LACUNA_SEARCH_GAUSSIAN_PROCESS_SEARCH_H_
 #define LACUNA_SEARCH_GAUSSIAN_PROCESS_SEARCH_H_
 
@@ -15,16 +16,18 @@
 namespace lacuna {
 
 struct GaussianProcessSearchOptions {
-  // Points spread over the box before the first fit, the start among them; 0: n + 2.
+  // Points spread over the box before the first fit, including the start; 0 means n + 2.
   int initial_points = 0;
-  int candidates = 600;  // tried per evaluation, half of them near the best; more: a surer maximum
-  int likelihoods = 60;  // evaluated per fit of the length scales
-  uint64_t seed = 1;     // of the candidates
+  // Points per evaluation at which the expected improvement is computed, half of them near the best
+  // one. Raising it finds its maximum more reliably.
+  int candidates = 600;
+  int likelihoods = 60;  // evaluations of the likelihood per fit of the length scales
+  uint64_t seed = 1;     // seed of the random candidates
 };
 
-// For bounded problems without constraints, of up to ten free variables. Spends the whole budget of
-// `control`. A failed evaluation is taken for a value at the upper quartile of those that
-// succeeded.
+// Minimises a bounded problem without constraints and with at most ten free variables (CHECK).
+// Always uses the whole budget of `control`. A failed evaluation enters the regression with the
+// upper quartile of the successful values.
 SearchResult MinimiseByGaussianProcess(const SearchProblem& problem, const SearchControl& control,
                                        const GaussianProcessSearchOptions& options);
 

@@ -11,13 +11,14 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kShortStep = 0.1;  // of the resolution
-constexpr double kPoorRatio = 0.1;  // of the predicted reduction: the radius shrinks below,
-constexpr double kGoodRatio = 0.7;  // and may grow above
-constexpr double kSnap = 1.5;       // a trust radius below this multiple of the resolution is it
-constexpr double kLongEdge = 2;     // of the trust radius: a vertex farther away is too far
+constexpr double kShortStep = 0.1;  // a step below this multiple of the resolution is short
+constexpr double kPoorRatio = 0.1;  // actual over predicted reduction below which Δ shrinks
+constexpr double kGoodRatio = 0.7;  // the same ratio above which Δ may grow
+constexpr double kSnap = 1.5;       // Δ below this multiple of the resolution is set equal to it
+constexpr double kLongEdge = 2;  // a vertex farther from the pole than this multiple of Δ is moved
 
-// The next resolution: a tenth far from the end, and then in steps that meet it.
+// The next resolution: a tenth of the present one while it is far from the final radius, and then
+// such that it reaches the final radius in two steps.
 double NextResolution(double rho, double final_radius) {
   const double ratio = rho / final_radius;
   if (ratio > 250) return 0.1 * rho;
@@ -70,13 +71,14 @@ class ModernDescent {
     return true;
   }
 
-  // Solves the trust-region problem at the best vertex, with a penalty that makes its solution a
-  // descent of the merit. Raising the penalty may change the best vertex, at most n + 1 times.
+  // Solves the trust-region problem at the best vertex and raises the penalty until the solution
+  // reduces the merit. That may change the best vertex, at most n + 1 times. Returns false if the
+  // simplex is degenerate.
   bool RaisePenalty() {
     for (int round = 0; round <= simplex_.n() + 1; ++round) {
       if (!simplex_.MovePole(penalty_)) return false;
       const VectorXd pole = simplex_.Vertex(simplex_.pole());
-      const LinearModel& model = simplex_.model();
+      const LinearInterpolant& model = simplex_.model();
       trial_ =
           SolveTrustRegion(model, evaluator_.lower() - pole, evaluator_.upper() - pole, delta_);
       violation_reduction_ =
@@ -91,7 +93,8 @@ class ModernDescent {
     return true;
   }
 
-  // False where the step is too short, fails, gains nothing or has no place in the simplex.
+  // Evaluates the trial step. Returns false if it is too short, fails, brings no reduction, or
+  // cannot replace a vertex.
   bool TryStep() {
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
     last_length_ = std::min(delta_, OrderedNorm(trial_.step));
@@ -170,7 +173,7 @@ class ModernDescent {
     return false;
   }
 
-  // The step that was too short to go on with may still be the best.
+  // Evaluates the last step that was too short to be tried, since it may still be the best point.
   void TakeLastStep() {
     if (!is_short_ || last_length_ <= 1e-3 * rho_) return;
     const VectorXd pole = simplex_.Vertex(simplex_.pole());

@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// What the library's two callbacks share. An exception of the objective waits here while the
-// library's C code returns.
+// The state shared by NLopt's two callbacks. It holds an exception of the objective until NLopt's C
+// code has returned.
 class Bridge {
  public:
   Bridge(Evaluator* evaluator, nlopt_opt optimiser)

@@ -1,10 +1,11 @@
-// The COBYLA and BOBYQA of the library NLopt behind the seam of this module, as references.
+// The COBYLA and BOBYQA of the library NLopt behind this module's interface, as references.
 //
-// Bounds, budget, log and the rule of the best point are ours, and no point is evaluated twice. The
-// library knows no failure: it is given a value that exceeds the worst one so far by the range of
-// all, or 1 if there is none. A search that asks 1000 times in a row for points that are known is
-// ended; one that loops without asking for any, as NLopt's COBYLA is reported to do without a
-// tolerance, cannot be: give it a final radius well above rounding.
+// Bounds, budget, log and the choice of the best point are those of the other searches, and no
+// point is evaluated twice. NLopt does not know failed evaluations: they get a value that exceeds
+// the worst one so far by the range of all, or 1 if there is none. A search that requests known
+// points 1000 times in a row is stopped. A search that loops without requesting any point, as is
+// reported of NLopt's COBYLA without a tolerance, cannot be stopped, so choose a final radius well
+// above rounding.
 #ifndef LACUNA_SEARCH_NLOPT_SEARCH_H_
 #define LACUNA_SEARCH_NLOPT_SEARCH_H_
 
@@ -13,9 +14,8 @@
 namespace lacuna {
 
 enum class NloptAlgorithm {
-  kCobyla,  // its variant of Powell 1994; constraints as they come
-  kBobyqa,  // Powell 2009, quadratic models; problems without constraints, two free variables at
-            // least
+  kCobyla,  // NLopt's variant of Powell 1994
+  kBobyqa,  // Powell 2009, quadratic models; no constraints, at least two free variables (CHECK)
 };
 
 struct NloptOptions {
@@ -24,6 +24,7 @@ struct NloptOptions {
   double final_radius = 1e-3;
 };
 
+// Minimises the objective. An exception of the objective is thrown on after NLopt has returned.
 SearchResult MinimiseByNlopt(const SearchProblem& problem, const SearchControl& control,
                              const NloptOptions& options);
 

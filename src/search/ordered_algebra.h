@@ -1,9 +1,10 @@
-// Sums in one written order, so that a search takes the same path whatever the compiler made of it.
+// Linear algebra with a fixed order of summation, so that a search takes the same path however it
+// is compiled.
 //
-// Eigen's reductions and products add in an order that depends on the width of the vector
-// instructions they were compiled for, and a search turns a last bit into another path. A loop over
-// doubles may not be reordered by a compiler that follows the standard; the module is compiled
-// without contraction (-ffp-contract=off), and refuses to be compiled with -ffast-math.
+// Eigen's reductions and products sum in an order that depends on the width of the vector
+// instructions, and a difference in the last bit can change the path of a search. A compiler that
+// follows the standard must not reorder a loop over doubles. The module is compiled without
+// contraction (-ffp-contract=off) and cannot be compiled with -ffast-math.
 #ifndef LACUNA_SEARCH_ORDERED_ALGEBRA_H_
 #define LACUNA_SEARCH_ORDERED_ALGEBRA_H_
 
@@ -17,6 +18,7 @@
 
 namespace lacuna {
 
+// a · b, summed from the first entry to the last.
 template <typename A, typename B>
 double OrderedDot(const A& a, const B& b) {
   double sum = 0;
@@ -29,15 +31,16 @@ double OrderedNorm(const A& a) {
   return std::sqrt(OrderedDot(a, a));
 }
 
-// a > b by more than rounding. Lengths in a simplex are often equal by construction (every full
-// step has the length of the radius), and a choice between equals must not hang on their last bits.
+// Whether a > b by more than rounding. Lengths in a simplex are often equal by construction (every
+// full step has the length of the radius), and a choice between equal ones must not depend on their
+// last bits.
 inline bool ClearlyGreater(double a, double b) { return a > b + 1e-10 * std::abs(b); }
 
-// M x.
+// The product of a matrix and a vector.
 Eigen::VectorXd OrderedProduct(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector);
 
-// The inverse of a square matrix by elimination with row pivots; none where a pivot falls below
-// 1e-14 of the largest entry of its column.
+// The inverse of a square matrix by Gauss-Jordan elimination with row pivoting; none if a pivot is
+// below 1e-14 of the largest entry of its column.
 std::optional<Eigen::MatrixXd> OrderedInverse(Eigen::MatrixXd matrix);
 
 }  // namespace lacuna

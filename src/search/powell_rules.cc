@@ -26,8 +26,8 @@ bool IsAcceptable(const Simplex& simplex, double rho) {
   return true;
 }
 
-// The vertex to be moved by a geometry step: the farthest if it is too far, else the one nearest to
-// its face (eq. 15 and 16).
+// The vertex that a geometry step moves: the farthest if it is too far, else the one nearest to its
+// opposite face (eq. 15 and 16).
 int VertexToMove(const Simplex& simplex, double rho) {
   int worst = -1;
   for (int j = 0; j < simplex.n(); ++j) {
@@ -42,8 +42,8 @@ int VertexToMove(const Simplex& simplex, double rho) {
   return worst;
 }
 
-// The vertex that the trial point replaces (eq. 19 to 22); -1 for none. Of equally far ones, which
-// are frequent and which the paper leaves open, the one of less merit.
+// The vertex that the trial point replaces (eq. 19 to 22); -1 if none. Among equally distant
+// vertices, a frequent case that the paper leaves open, the one with the lower merit is chosen.
 int VertexToDrop(const Simplex& simplex, const VectorXd& step, double rho, double penalty,
                  bool is_better) {
   int dropped = -1;
@@ -83,7 +83,7 @@ struct Prediction {
   double change_of_value = 0;
 };
 
-Prediction Predict(const LinearModel& model, const VectorXd& step) {
+Prediction Predict(const LinearInterpolant& model, const VectorXd& step) {
   const VectorXd constraints = model.constraints + OrderedProduct(model.jacobian, step);
   return {Violation(model.constraints) - Violation(constraints), OrderedDot(model.gradient, step)};
 }
@@ -125,7 +125,7 @@ class PowellDescent {
   }
 
  private:
-  // kPoor where there is no room, or the evaluation fails on both sides and nearer.
+  // Returns kPoor if the bounds leave no room or if all three evaluations fail.
   Outcome MoveVertex() {
     const int moved = VertexToMove(simplex_, rho_);
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
@@ -143,7 +143,7 @@ class PowellDescent {
   }
 
   Outcome TryStep() {
-    const LinearModel& model = simplex_.model();
+    const LinearInterpolant& model = simplex_.model();
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
     const TrustRegionStep trial =
         SolveTrustRegion(model, evaluator_.lower() - pole, evaluator_.upper() - pole, rho_);
@@ -173,7 +173,7 @@ class PowellDescent {
     return reduction > 0 && reduction >= 0.1 * expected ? Outcome::kGood : Outcome::kPoor;
   }
 
-  // Section 2, after eq. 9: true if another vertex has become the best.
+  // Section 2, after eq. 9. Returns true if another vertex has become the best.
   bool RaisePenalty(const Prediction& predicted) {
     const double needed = predicted.reduction_of_violation > 0
                               ? predicted.change_of_value / predicted.reduction_of_violation
@@ -196,8 +196,8 @@ class PowellDescent {
     return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
   }
 
-  // Not a rule of 1994: a last step that was too short to be tried is tried where it may be the one
-  // that makes the result feasible.
+  // Not a rule of 1994: the last step that was too short to be tried is evaluated if the best
+  // vertex is infeasible, because it may be feasible.
   SearchStatus Converged() {
     if (short_trial_ && simplex_.violation(simplex_.pole()) > evaluator_.feasibility_tolerance()) {
       evaluator_.At(*short_trial_);
@@ -217,7 +217,7 @@ class PowellDescent {
   Evaluator& evaluator_;
   double rho_;
   double penalty_ = 0;
-  std::optional<VectorXd> short_trial_;  // the latest trial point, if it was too near to be tried
+  std::optional<VectorXd> short_trial_;  // the latest trial point, if its step was too short
 };
 
 }  // namespace

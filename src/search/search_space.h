@@ -1,4 +1,4 @@
-// The variables of a search as a user knows them, and the unit cube in which it takes place.
+// The mapping between the variables of a search in SI units and the unit cube in which it runs.
 #ifndef LACUNA_SEARCH_SEARCH_SPACE_H_
 #define LACUNA_SEARCH_SEARCH_SPACE_H_
 
@@ -12,12 +12,12 @@ namespace lacuna {
 
 enum class SearchScale {
   kLinear,
-  kLogarithmic,  // equal ratios are equal steps: for moduli and volumes over several decades
+  kLogarithmic,  // equal ratios become equal steps, for moduli and volumes over several decades
 };
 
 struct SearchVariable {
   std::string name;
-  double lower = 0, upper = 1;               // in SI units; equal: the variable stays at `start`
+  double lower = 0, upper = 1;               // in SI units; equal for a fixed variable
   double start = 0.5;                        // within the bounds
   SearchScale scale = SearchScale::kLinear;  // logarithmic needs lower > 0
 };
@@ -28,17 +28,17 @@ class SearchSpace {
 
   const std::vector<SearchVariable>& variables() const { return variables_; }
 
-  // Unit coordinates u in [0, 1] and back:
+  // Convert between x (n, SI) and unit coordinates u (n) in [0, 1]:
   //   x = lower + u (upper - lower)     or     x = lower (upper / lower)^u.
-  // u = 0 and u = 1 give the bounds exactly, and no x lies outside of them.
+  // u = 0 and u = 1 give the bounds exactly, and x never lies outside of them.
   Eigen::VectorXd ToUnit(const Eigen::VectorXd& x) const;
   Eigen::VectorXd FromUnit(const Eigen::VectorXd& u) const;
 
-  // dx_i/du_i at u; 0 for fixed variables.
+  // dx_i/du_i at u; 0 for a fixed variable.
   Eigen::VectorXd SlopeAt(const Eigen::VectorXd& u) const;
 
-  // The problem in unit coordinates of an objective of the variables and, where it has one, its
-  // gradient (SearchProblem).
+  // The search problem in unit coordinates for an objective of x and, optionally, its gradient with
+  // respect to x.
   SearchProblem ProblemOf(
       std::function<Evaluation(const Eigen::VectorXd& x)> evaluate, int constraint_count = 0,
       std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> gradient = {}) const;

@@ -1,8 +1,8 @@
-// The simplex of n + 1 evaluated points and its linear interpolation, shared by both sets of rules.
+// The simplex of n + 1 evaluated points and its linear interpolant, shared by both sets of rules.
 //
-// Powell's notation (1994): the best vertex is the pole x⁰, the others x⁰ + s_j; row j of the
-// inverse of (s_1 … s_n) is the gradient of the Lagrange function of vertex j, its reciprocal
-// length σ_j the distance of vertex j from the opposite face, and η_j = ‖s_j‖.
+// The notation is that of Powell 1994: the best vertex is the pole x⁰ and the others are x⁰ + s_j.
+// Row j of the inverse of (s_1 … s_n) is the gradient of the Lagrange function of vertex j; its
+// reciprocal length σ_j is the distance of vertex j from the opposite face, and η_j = ‖s_j‖.
 #ifndef LACUNA_SEARCH_SIMPLEX_H_
 #define LACUNA_SEARCH_SIMPLEX_H_
 
@@ -16,12 +16,12 @@ namespace lacuna {
 
 class Simplex {
  public:
-  // Evaluates `start` and one neighbour along each axis, at a distance `step` from the best value
-  // so far: on the upper side if `step` is positive, else on the lower one, unless the bounds leave
-  // more room on the other. A neighbour that fails is tried on the other side and then nearer;
-  // after that a value worse than all others stands in for it. A start that fails is replaced by
-  // the first point around it that does not. None when the search has to stop, when all of
-  // these fail, or when the bounds lie too near to each other for a second point.
+  // Evaluates `start` and one neighbour along each axis, at a distance |step| from the best point
+  // so far: on the upper side for a positive `step`, else on the lower one, unless the bounds leave
+  // more room on the other side. A neighbour that fails is tried on the other side and then nearer;
+  // if it still fails, it gets a value worse than all others. A start that fails is replaced by the
+  // first point around it that succeeds. Returns none if the search must stop, if all points around
+  // the start fail, or if the bounds are too close together for a second point.
   static std::optional<Simplex> Around(const Eigen::VectorXd& start, double step,
                                        Evaluator* evaluator);
 
@@ -35,30 +35,30 @@ class Simplex {
   // f + penalty · max(0, max_i -c_i) at vertex j.
   double Merit(int j, double penalty) const { return values_[j] + penalty * violations_[j]; }
 
-  // Makes the vertex of least merit the pole. False where the simplex has become flat: then none of
-  // what follows may be called.
+  // Makes the vertex of least merit the pole. Returns false if the simplex is degenerate; the
+  // functions below must then not be called.
   bool MovePole(double penalty);
 
-  const LinearModel& model() const { return model_; }
+  const LinearInterpolant& model() const { return model_; }
   Eigen::VectorXd Offset(int j) const { return offsets_.col(j); }
   double EdgeLength(int j) const { return edge_lengths_[j]; }      // η_j
   double FaceDistance(int j) const { return face_distances_[j]; }  // σ_j
   Eigen::VectorXd FaceNormal(int j) const { return inverse_.row(j) * face_distances_[j]; }
-  // Value of the Lagrange function of vertex j < n at x⁰ + step.
+  // The value of the Lagrange function of vertex j < n at x⁰ + step.
   double Lagrange(int j, const Eigen::VectorXd& step) const;
 
-  // Puts an evaluated point in the place of vertex j, which may be the pole.
+  // Replaces vertex j, which may be the pole, by an evaluated point.
   void Replace(int j, const Eigen::VectorXd& x, const Evaluation& outcome);
 
-  // A point at `length` from the pole along the normal of the face opposite to vertex j, to the
-  // side that the linear model prefers (merit with `penalty`), or to the other one where the bounds
-  // cut more than half of that. Equal to the pole where there is no room at all.
+  // The point at the distance `length` from the pole along the normal of the face opposite to
+  // vertex j, on the side with the better predicted merit, or on the other side if the bounds would
+  // cut off more than half of the step. Equal to the pole if there is no room at all.
   Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
                                 const Evaluator& evaluator) const;
 
-  // The range of f over the vertices, divided by the least range of a constraint among those that
-  // are violated at one vertex or come near it: an upper limit on a sensible penalty (Powell 1994,
-  // eq. 12 and 13); 0 where there is no such constraint.
+  // An upper limit on a sensible penalty (Powell 1994, eq. 12 and 13): the range of f over the
+  // vertices, divided by the least range of a constraint among those that are violated, or nearly
+  // so, at some vertex. 0 if there is no such constraint.
   double PenaltyLimit() const;
 
  private:
@@ -70,7 +70,7 @@ class Simplex {
   Eigen::MatrixXd constraints_;  // m × (n+1)
   Eigen::MatrixXd offsets_, inverse_;
   Eigen::VectorXd edge_lengths_, face_distances_;
-  LinearModel model_;
+  LinearInterpolant model_;
 };
 
 }  // namespace lacuna

@@ -13,14 +13,14 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Rows normal·d >= bound + rate·τ, each normal of length one.
+// A constraint normal·d >= bound + rate·τ with a unit normal.
 struct Row {
   VectorXd normal;
   double bound = 0;
   double rate = 0;
 };
 
-// Orthonormal basis Q and triangle R of the normals of the active rows: N = Q R.
+// The QR decomposition N = Q R of the normals of the active rows.
 struct Basis {
   std::vector<VectorXd> q;
   MatrixXd r;
@@ -30,7 +30,8 @@ struct Basis {
     r = MatrixXd::Zero(k, k);
     for (int j = 0; j < k; ++j) {
       VectorXd normal = rows[active[j]].normal;
-      for (int pass = 0; pass < 2; ++pass) {  // the second removes the rounding of the first
+      for (int pass = 0; pass < 2;
+           ++pass) {  // the second pass removes rounding errors of the first
         for (int i = 0; i < j; ++i) {
           const double part = OrderedDot(q[i], normal);
           r(i, j) += part;
@@ -51,7 +52,7 @@ struct Basis {
     return vector;
   }
 
-  // R⁻¹ u.
+  // Returns R⁻¹ u.
   VectorXd SolveUpper(VectorXd u) const {
     for (int i = size() - 1; i >= 0; --i) {
       for (int j = i + 1; j < size(); ++j) u[i] -= r(i, j) * u[j];
@@ -60,7 +61,7 @@ struct Basis {
     return u;
   }
 
-  // R⁻ᵀ u.
+  // Returns R⁻ᵀ u.
   VectorXd SolveLower(VectorXd u) const {
     for (int i = 0; i < size(); ++i) {
       for (int j = 0; j < i; ++j) u[i] -= r(j, i) * u[j];
@@ -69,7 +70,7 @@ struct Basis {
     return u;
   }
 
-  // y with N y nearest to `vector`.
+  // The y that minimises |N y − vector|.
   VectorXd Coordinates(const VectorXd& vector) const {
     VectorXd u(size());
     for (int i = 0; i < size(); ++i) u[i] = OrderedDot(q[i], vector);
@@ -79,7 +80,7 @@ struct Basis {
 
 enum class PathEnd { kParameter, kRadius, kBlocked };
 
-// The shortest d of: minimise ½‖d‖² + τ h·d over the rows, followed as τ grows.
+// Follows the minimiser d of ½‖d‖² + τ h·d subject to the rows as τ grows.
 class Path {
  public:
   Path(int n, double radius) : radius_(radius), d_(VectorXd::Zero(n)) {}
@@ -88,7 +89,7 @@ class Path {
   const VectorXd& d() const { return d_; }
   double parameter() const { return parameter_; }
 
-  // Makes the rows as they are at the present parameter stand still, and starts counting afresh.
+  // Fixes the rows at the current parameter τ and resets τ to 0.
   void Freeze() {
     for (Row& row : rows_) {
       row.bound += row.rate * parameter_;
@@ -174,7 +175,7 @@ class Path {
     multipliers_.erase(multipliers_.begin() + position);
   }
 
-  // False where the row contradicts the active ones.
+  // Makes row j active. Returns false if it contradicts the active rows.
   bool Add(int j, const Basis& basis) {
     double multiplier = 0;
     if (OrderedNorm(basis.WithoutNormals(rows_[j].normal)) < 1e-9) {
@@ -208,7 +209,7 @@ class Path {
 
 }  // namespace
 
-TrustRegionStep SolveTrustRegion(const LinearModel& model, const VectorXd& lower,
+TrustRegionStep SolveTrustRegion(const LinearInterpolant& model, const VectorXd& lower,
                                  const VectorXd& upper, double radius) {
   const int n = static_cast<int>(model.gradient.size());
   const int m = static_cast<int>(model.constraints.size());
@@ -221,7 +222,7 @@ TrustRegionStep SolveTrustRegion(const LinearModel& model, const VectorXd& lower
     const double length = OrderedNorm(normal);
     const double constraint = model.constraints[i];
     if (length == 0 || length * radius <= 1e-15 * std::abs(constraint)) {
-      attainable = std::max(attainable, -constraint);  // no step within the radius changes it
+      attainable = std::max(attainable, -constraint);  // no step within the radius can change it
       continue;
     }
     path.rows().push_back({normal / length, (-constraint - violation) / length, 1 / length});

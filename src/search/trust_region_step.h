@@ -8,10 +8,10 @@
 namespace lacuna {
 
 // f(x + d) ≈ value + gradient·d and c(x + d) ≈ constraints + jacobian d.
-struct LinearModel {
+struct LinearInterpolant {
   double value = 0;
   Eigen::VectorXd gradient;     // n
-  Eigen::VectorXd constraints;  // m, feasible where >= 0
+  Eigen::VectorXd constraints;  // m, feasible if >= 0
   Eigen::MatrixXd jacobian;     // m × n
 };
 
@@ -20,15 +20,16 @@ struct TrustRegionStep {
   bool on_boundary = false;  // ‖step‖ = radius
 };
 
-// Within ‖d‖ <= radius and lower <= d <= upper (0 lies between them), the d that
-//   1. makes the largest violation max(0, max_i -(c + J d)_i) least,
-//   2. among those, makes g·d least,
-//   3. among those, is shortest.
-// The three together are the end of one piecewise linear path: for a falling violation, and then
-// for a growing weight on the objective, the shortest d is followed from one change of its active
-// constraints to the next (parametric quadratic programming). At most 100 (m + 2 n + 1) such
-// changes are made in each of the two parts.
-TrustRegionStep SolveTrustRegion(const LinearModel& model, const Eigen::VectorXd& lower,
+// Among the steps with ‖d‖ <= radius and lower <= d <= upper (which must include 0), returns the
+// one that
+//   1. minimises the largest violation max(0, max_i -(c + J d)_i),
+//   2. then minimises g·d,
+//   3. then is shortest.
+// It is the end of a piecewise linear path: for a decreasing violation, and then for an increasing
+// weight on the objective, the shortest d is followed from one change of its active constraints to
+// the next (parametric quadratic programming). Each of the two parts makes at most
+// 100 (m + 2 n + 1) changes.
+TrustRegionStep SolveTrustRegion(const LinearInterpolant& model, const Eigen::VectorXd& lower,
                                  const Eigen::VectorXd& upper, double radius);
 
 }  // namespace lacuna

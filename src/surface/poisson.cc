@@ -13,8 +13,8 @@
 namespace lacuna {
 namespace {
 
-// PCL complains on standard output, which belongs to our own results: while this lives, what is
-// written there goes to standard error.
+// Redirects standard output to standard error during the lifetime of an object. PCL prints messages
+// on standard output, which is reserved for our results.
 class StandardOutputToError {
  public:
   StandardOutputToError() {
@@ -53,7 +53,7 @@ TriMesh PoissonIsoSurface(const PointCloud& oriented, const PoissonOptions& opti
     cloud->push_back(point);
   }
 
-  // PCL's octree draws its nodes from one allocator shared by the whole process.
+  // PCL's octree allocates its nodes from one global allocator.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   pcl::Poisson<pcl::PointNormal> poisson;

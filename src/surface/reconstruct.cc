@@ -37,7 +37,7 @@ int DepthForSpacing(const PointCloud& cloud, double spacing) {
   return std::clamp(static_cast<int>(std::ceil(std::log2(cube / spacing))), kMinDepth, kMaxDepth);
 }
 
-// Told before the memory is gone: mostly a length unit that is not the file's.
+// Refuses an edge length that would exhaust the memory. The usual cause is a wrong length unit.
 void RefuseTooManyTriangles(const TriMesh& surface, double edge_length) {
   constexpr double kMost = 4e6;
   const double area = TriangleAreas(surface).sum();
@@ -49,7 +49,7 @@ void RefuseTooManyTriangles(const TriMesh& surface, double edge_length) {
       edge_length, area, triangles, kMost));
 }
 
-// Drops the triangles that reach farther than `distance` from all points.
+// Removes the triangles with a vertex farther than `distance` from all points.
 TriMesh TrimToPoints(const TriMesh& mesh, const Eigen::Matrix3Xd& points, double distance) {
   const Eigen::VectorXd gap = PointSearch(points).Nearest(mesh.vertices).distance.row(0);
   std::vector<int> kept;
@@ -73,7 +73,7 @@ void Append(std::vector<std::string>& notes, const std::vector<std::string>& mor
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-// Judges the result, with its report already filled in.
+// Sets status and message of the result from its report.
 void Conclude(const SurfaceOptions& options, Surface& surface) {
   SurfaceReport judged = surface.report;
   if (!options.closed) {
@@ -88,7 +88,7 @@ void Conclude(const SurfaceOptions& options, Surface& surface) {
 
 double TypicalSpacing(const Eigen::Matrix3Xd& points) {
   const int k = static_cast<int>(std::min<Eigen::Index>(8, points.cols() - 1));
-  // The nearest point to each is itself.
+  // The nearest neighbour of each point is the point itself, hence k + 1.
   Eigen::VectorXd reach = PointSearch(points).Nearest(points, k + 1).distance.row(k);
   std::nth_element(reach.begin(), reach.begin() + reach.size() / 2, reach.end());
   return std::sqrt(std::numbers::pi / k) * reach(reach.size() / 2);
@@ -98,7 +98,7 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
   RefuseUnusable(oriented);
   Surface surface;
   surface.spacing = TypicalSpacing(oriented.points);
-  if (!(surface.spacing > 0)) throw InputError("most points repeat others");
+  if (!(surface.spacing > 0)) throw InputError("most points coincide with others");
   surface.depth = options.depth > 0 ? std::clamp(options.depth, kMinDepth, kMaxDepth)
                                     : DepthForSpacing(oriented, surface.spacing);
 

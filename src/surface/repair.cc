@@ -39,7 +39,7 @@ SurfaceMesh MeshFromSoup(const TriMesh& mesh, Notes& notes) {
   processing::repair_polygon_soup(points, triangles);
   const auto report = [&](size_t now, Eigen::Index before, const char* what) {
     if (static_cast<Eigen::Index>(now) < before) {
-      notes.push_back(fmt::format("dropped {} {}", before - static_cast<Eigen::Index>(now), what));
+      notes.push_back(fmt::format("removed {} {}", before - static_cast<Eigen::Index>(now), what));
     }
   };
   report(points.size(), mesh.vertices.cols(), "repeated or unused vertices");
@@ -48,7 +48,7 @@ SurfaceMesh MeshFromSoup(const TriMesh& mesh, Notes& notes) {
   const size_t joined = points.size();
   processing::orient_polygon_soup(points, triangles);
   if (points.size() > joined) {
-    notes.push_back(fmt::format("parted the surface at {} non-manifold or misoriented vertices",
+    notes.push_back(fmt::format("split the surface at {} non-manifold or misoriented vertices",
                                 points.size() - joined));
   }
   SurfaceMesh surface;
@@ -68,14 +68,14 @@ void KeepLargestComponent(SurfaceMesh& surface, Notes& notes) {
     const size_t largest = std::max_element(area.begin(), area.end()) - area.begin();
     const auto before = surface.number_of_faces();
     processing::keep_connected_components(surface, std::array{largest}, component);
-    notes.push_back(fmt::format("dropped {} small components of {} triangles in all", count - 1,
+    notes.push_back(fmt::format("removed {} small components with {} triangles", count - 1,
                                 before - surface.number_of_faces()));
   }
   surface.remove_property_map(component);
 }
 
-// Caps have an angle above 160°, needles a shortest edge of less than a quarter of the longest;
-// needles shorter than a fifth of the mean edge are collapsed, caps are flipped away.
+// Caps are triangles with an angle above 160°; they are removed by edge flips. Needles have an edge
+// ratio above 4; those shorter than a fifth of the mean edge are collapsed.
 void RemoveSlivers(SurfaceMesh& surface, Notes& notes) {
   constexpr double kCapCosine = -0.94, kNeedleRatio = 4, kCollapsed = 0.2;
   const auto before = surface.number_of_faces();
@@ -128,11 +128,10 @@ void RemoveSelfIntersections(SurfaceMesh& surface, Notes& notes) {
   surface.collect_garbage();
   const auto before = FindSelfIntersections(FromSurfaceMesh(surface));
   if (before.empty()) return;
-  // Where a good part of the surface crosses itself there is none to be saved, and trying takes
-  // minutes.
+  // If a large part of the surface intersects itself, repair is hopeless and would take minutes.
   constexpr double kHopeless = 0.05;
   if (static_cast<double>(before.size()) > kHopeless * surface.number_of_faces()) {
-    notes.push_back(fmt::format("left {} self-intersections: too many to mend", before.size()));
+    notes.push_back(fmt::format("kept {} self-intersections: too many to repair", before.size()));
     return;
   }
   processing::experimental::remove_self_intersections(surface);
@@ -149,7 +148,7 @@ void OrientOutward(SurfaceMesh& surface, Notes& notes) {
   if (surface.is_empty() || !CGAL::is_closed(surface)) return;
   const double before = processing::volume(surface);
   processing::orient_to_bound_a_volume(surface);
-  if (before < 0) notes.push_back("turned the surface inside out: its normals pointed inward");
+  if (before < 0) notes.push_back("reversed the orientation: the normals pointed inward");
 }
 
 }  // namespace

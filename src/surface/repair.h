@@ -1,4 +1,4 @@
-// Mending triangle meshes, and evening their triangles.
+// Repair and isotropic remeshing of triangle meshes, by CGAL.
 #ifndef LACUNA_SURFACE_REPAIR_H_
 #define LACUNA_SURFACE_REPAIR_H_
 
@@ -11,42 +11,46 @@
 namespace lacuna {
 
 struct RepairOptions {
-  // Drop all but the component of the largest area.
+  // Keep only the component with the largest area.
   bool keep_largest_component = true;
-  // Flip or collapse triangles with an angle above 160° or edges in a ratio above 4, which may
-  // shift the surface by a fraction of its mean edge. Exact shapes, such as CAD, do better without.
+  // Flip or collapse triangles with an angle above 160° or an edge ratio above 4. This may shift
+  // the surface by a fraction of the mean edge length, so exact shapes such as CAD models are
+  // better off without it.
   bool remove_slivers = true;
-  // Holes with a perimeter up to this are filled, m. Raising it closes larger gaps by guesswork.
+  // Holes are filled up to this perimeter, m. Raising it closes larger gaps with invented surface.
   double max_hole_perimeter = std::numeric_limits<double>::infinity();
-  // Leave the longest boundary loop open: the edge of an open surface.
+  // Keep the longest boundary loop, the rim of an open surface.
   bool keep_longest_boundary = false;
-  // Cut out triangles that cross others and close the cuts.
+  // Cut out triangles that cross others and close the resulting holes.
   bool remove_self_intersections = true;
 };
 
 struct RepairedSurface {
   TriMesh mesh;
-  std::vector<std::string> notes;  // what was changed, one sentence each; empty: nothing
+  std::vector<std::string> notes;  // every change, one sentence each
 };
 
-// Merges vertices in one place, drops repeated, degenerate and sliver triangles, parts non-manifold
-// edges and vertices, orients the rest consistently (a closed one outward), fills holes and removes
-// self-intersections, all by CGAL. What could not be mended is left as it is: the caller checks the
-// result with CheckSurface. `mesh` may be any soup with indices in range and finite vertices.
+// Merges coincident vertices, removes repeated, degenerate and sliver triangles, splits
+// non-manifold edges and vertices, orients the triangles consistently (a closed surface outward),
+// fills holes and removes self-intersections. Faults that cannot be repaired remain, so the caller
+// should check the result with CheckSurface. `mesh` may be any set of triangles with indices in
+// range and finite vertices.
 RepairedSurface RepairSurface(const TriMesh& mesh, const RepairOptions& options = {});
 
 struct RemeshOptions {
-  // The length that edges approach, m.
+  // The target edge length, m.
   double edge_length = 0;
-  // Raising it makes triangles more even, at proportional cost.
+  // Number of passes. Raising it makes the triangles more uniform in proportionally more time.
   int iterations = 4;
-  // Edges that turn by more than this stay sharp, rad. π keeps none.
+  // Edges with a larger angle between the normals of their triangles stay sharp, rad. A value of π
+  // or more keeps no sharp edges.
   double feature_angle = 3.15;
 };
 
-// Splits, collapses and flips edges, and shifts vertices along the surface, until edges are about
-// `edge_length` long (Botsch & Kobbelt 2004, by CGAL). Vertices come to lie on the given surface.
-// The mesh must be manifold and consistently oriented; throws InputError with the fault otherwise.
+// Splits, collapses and flips edges and moves vertices along the surface until edges are about
+// `edge_length` long (M. Botsch and L. Kobbelt, SGP 2004, by CGAL). The new vertices lie on the
+// given surface. Throws InputError with the fault if the mesh is empty, not manifold, not
+// consistently oriented, or has degenerate triangles.
 TriMesh RemeshIsotropic(const TriMesh& mesh, const RemeshOptions& options);
 
 }  // namespace lacuna

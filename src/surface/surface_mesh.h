@@ -1,5 +1,6 @@
-// Between our triangle mesh and a halfedge structure with the interface of CGAL::Surface_mesh,
-// whose header the including file chooses.
+// Conversion between TriMesh and a halfedge mesh with the interface of CGAL::Surface_mesh.
+//
+// The type is a template parameter, so that this header shows nothing of CGAL.
 #ifndef LACUNA_SURFACE_SURFACE_MESH_H_
 #define LACUNA_SURFACE_SURFACE_MESH_H_
 
@@ -9,7 +10,8 @@
 
 namespace lacuna {
 
-// `mesh` must be manifold and consistently oriented. Vertices keep their numbers.
+// Converts to a halfedge mesh. `mesh` must be manifold and consistently oriented; otherwise
+// triangles are missing in the result. Vertices keep their numbers.
 template <typename SurfaceMesh>
 SurfaceMesh ToSurfaceMesh(const TriMesh& mesh) {
   using Vertex = typename SurfaceMesh::Vertex_index;
@@ -23,7 +25,8 @@ SurfaceMesh ToSurfaceMesh(const TriMesh& mesh) {
   return result;
 }
 
-// Vertices that no triangle uses are dropped; the rest keeps its order.
+// Converts from a halfedge mesh. Vertices without triangles are dropped; the others keep their
+// order.
 template <typename SurfaceMesh>
 TriMesh FromSurfaceMesh(const SurfaceMesh& surface) {
   std::vector<int> number(surface.number_of_vertices() + surface.number_of_removed_vertices(), -1);

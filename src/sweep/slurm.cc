@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The program of this name that a shell would run.
+// The program of this name in PATH.
 fs::path FindProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path == nullptr ? "" : path);
@@ -35,14 +35,14 @@ fs::path FindProgram(const std::string& name) {
                   name));
 }
 
-// In single quotes, for a shell.
+// `text` in single quotes for a shell.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
-// What a program prints; its standard error stays ours.
+// Runs a program and returns its standard output. Its standard error is that of this process.
 std::string OutputOf(std::vector<std::string> arguments, int* status) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -113,10 +113,11 @@ std::string SubmitToSlurm(const fs::path& given_folder, const SlurmOptions& opti
   int status = 0;
   std::string job = OutputOf(arguments, &status);
   job = job.substr(0, job.find_first_of(";\n"));  // "id;cluster"
-  // With --wait, sbatch ends as the tasks did; a case that failed says so in its outcome.
+  // With --wait, sbatch returns the exit status of the tasks. A failed case is not an error here:
+  // its outcome says so.
   const bool refused = !WIFEXITED(status) || (WEXITSTATUS(status) != 0 && !options.wait);
   if (refused || job.empty())
-    throw InputError(fmt::format("sbatch has not taken {}; its message is above", script.string()));
+    throw InputError(fmt::format("sbatch refused {}; its message is above", script.string()));
   return job;
 }
 

@@ -1,4 +1,4 @@
-// Hands the cases of a sweep to Slurm as a job array.
+// Submission of the cases of a sweep to Slurm as a job array.
 #ifndef LACUNA_SWEEP_SLURM_H_
 #define LACUNA_SWEEP_SLURM_H_
 
@@ -9,22 +9,22 @@
 namespace lacuna {
 
 struct SlurmOptions {
-  std::filesystem::path program;     // lacuna, where the nodes find it
-  std::vector<int> numbers;          // of the cases, ascending; one task each
-  int at_a_time = 0;                 // tasks that may run at once; 0: as many as Slurm allows
-  bool retry_failed = false;         // given to the tasks
-  bool wait = false;                 // return when all tasks have ended
-  std::vector<std::string> options;  // further ones of sbatch: "--partition=short"
+  std::filesystem::path program;     // the path of lacuna on the compute nodes
+  std::vector<int> numbers;          // the cases to run, ascending; one task for each
+  int at_a_time = 0;                 // tasks that may run at once; 0 for Slurm's own limit
+  bool retry_failed = false;         // passed on to the tasks
+  bool wait = false;                 // return only after all tasks have ended
+  std::vector<std::string> options;  // further options of sbatch: "--partition=short"
 };
 
-// "1-3,7": what sbatch --array wants.
+// The case numbers in the format of `sbatch --array`: "1-3,7".
 std::string ArrayOf(const std::vector<int>& numbers);
 
-// The job script: task K runs `lacuna sweep run FOLDER --case K` with the cores it was given.
+// The job script: task K runs `lacuna sweep run FOLDER --case K` with the cores allotted to it.
 std::string SlurmScript(const std::filesystem::path& folder, const SlurmOptions& options);
 
-// Writes <folder>/slurm/job.sh and submits it; what tasks say goes to <folder>/slurm, too. Returns
-// the job's id. Throws InputError when there is no sbatch in PATH, or when it refuses.
+// Writes <folder>/slurm/job.sh and submits it; the output of the tasks goes to <folder>/slurm, too.
+// Returns the id of the job. Throws InputError if there is no sbatch in PATH or if it refuses.
 std::string SubmitToSlurm(const std::filesystem::path& folder, const SlurmOptions& options);
 
 }  // namespace lacuna

@@ -3,19 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_number.h"
 
 namespace lacuna {
 namespace {
 
 constexpr int kSchemaVersion = 1;
 
-// Reads a file of ours; whatever is wrong with it names the file.
+// Reads a JSON file of a sweep. All errors name the file.
 template <typename Read>
 auto ReadJson(const std::filesystem::path& file, const Read& read) {
   std::ifstream stream(file);
@@ -55,8 +55,8 @@ SweepIdentity LoadIdentity(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "sweep.json";
   if (!std::filesystem::exists(file))
     throw InputError({folder.string()},
-                     "is no sweep (it has no sweep.json); `lacuna sweep plan` "
-                     "makes one");
+                     "is not a sweep (it has no sweep.json); `lacuna sweep plan` "
+                     "creates one");
   return ReadJson(file, [&](const auto& json) {
     const std::string command = json.at("command");
     for (const auto& [name, value] : SweepCommands())
@@ -99,7 +99,7 @@ std::vector<SweepCase> LoadCases(const std::filesystem::path& folder) {
 void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder) {
   nlohmann::ordered_json numbers = nlohmann::ordered_json::object(), words = numbers;
   for (const auto& [name, value] : outcome.numbers)
-    numbers[name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+    numbers[name] = NumberOrNull<nlohmann::ordered_json>(value);
   for (const auto& [name, text] : outcome.words) words[name] = text;
   Write(case_folder / "outcome.json", {{"schema_version", kSchemaVersion},
                                        {"done", outcome.done},
@@ -117,8 +117,7 @@ std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder)
     outcome.done = json.at("done");
     outcome.message = json.at("message");
     for (const auto& [name, value] : json.at("numbers").items())
-      outcome.numbers.emplace_back(name,
-                                   value.is_null() ? kNotMeasured : value.template get<double>());
+      outcome.numbers.emplace_back(name, NumberOr(value));
     for (const auto& [name, text] : json.at("words").items())
       outcome.words.emplace_back(name, text);
     outcome.seconds = json.at("seconds");

@@ -1,11 +1,11 @@
-// A sweep's folder: one folder a case, with its own experiment and what came of it.
+// The folder of a sweep, with a folder for each case that contains its experiment and its results.
 //
 //   <sweep>/sweep.json                     name and command
-//   <sweep>/0001-1a2b3c4d/case.json        which experiment, and what was changed in it
-//   <sweep>/0001-1a2b3c4d/experiment.yaml  complete; of a table1 case: experiments/*.yaml
-//   <sweep>/0001-1a2b3c4d/claimed          locked by the process that works on it
-//   <sweep>/0001-1a2b3c4d/log.txt          what that process said
-//   <sweep>/0001-1a2b3c4d/run/             its results
+//   <sweep>/0001-1a2b3c4d/case.json        the experiment and the values changed in it
+//   <sweep>/0001-1a2b3c4d/experiment.yaml  self-contained; for a table1 case experiments/*.yaml
+//   <sweep>/0001-1a2b3c4d/claimed          locked by the process that works on the case
+//   <sweep>/0001-1a2b3c4d/log.txt          the output of that process
+//   <sweep>/0001-1a2b3c4d/run/             the results
 //   <sweep>/0001-1a2b3c4d/outcome.json     written last
 #ifndef LACUNA_SWEEP_SWEEP_CASE_H_
 #define LACUNA_SWEEP_SWEEP_CASE_H_
@@ -27,12 +27,12 @@ struct CaseChange {
 
 struct SweepCase {
   int number = 0;          // from 1
-  std::string name;        // of its folder: the number and a hash of what follows
-  std::string experiment;  // as the sweep file names it
+  std::string name;        // name of its folder: the number and a hash of the rest
+  std::string experiment;  // as named in the sweep file
   std::vector<CaseChange> changes;
   SweepSettings settings;
 };
-// "bend.yaml with mesh.max_volume = 150 mm^3"
+// The case in words: "bend.yaml with mesh.max_volume = 150 mm^3".
 std::string Describe(const SweepCase& entry);
 
 struct SweepIdentity {
@@ -40,16 +40,18 @@ struct SweepIdentity {
   SweepCommand command = SweepCommand::kReconstruct;
 };
 
+// The functions below write files atomically and throw InputError if that fails.
+
 void SaveIdentity(const SweepIdentity& identity, const std::filesystem::path& folder);
-// Throws InputError where the folder is no sweep's.
+// Throws InputError if the folder is not that of a sweep.
 SweepIdentity LoadIdentity(const std::filesystem::path& folder);
 
 void SaveCase(const SweepCase& entry, const std::filesystem::path& case_folder);
-// All cases, by number. Throws InputError for a damaged one.
+// All cases, sorted by number. Throws InputError for a damaged case.
 std::vector<SweepCase> LoadCases(const std::filesystem::path& folder);
 
 void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_folder);
-// Nothing where the case has not ended. Throws InputError for a damaged file.
+// The outcome; none if the case has not ended. Throws InputError for a damaged file.
 std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder);
 
 }  // namespace lacuna

@@ -49,12 +49,13 @@ CaseOutcome Fit(const Config& experiment, Progress* progress) {
   outcome.done = record.usable;
   if (!record.usable) outcome.message = record.message;
   auto& numbers = outcome.numbers;
-  numbers = {{"rms_in_noise", record.rms}, {"start_rms_in_noise", record.start_rms}};
+  numbers = {{"rms_over_sigma", record.rms}, {"start_rms_over_sigma", record.start_rms}};
   for (const FittedRecording& recording : record.recordings) {
     const auto add = [&](const char* kind, const MisfitMeasure& measure) {
       if (measure.frames == 0) return;
       numbers.emplace_back(fmt::format("{}.{}_rms_m", recording.name, kind), measure.rms);
-      numbers.emplace_back(fmt::format("{}.{}_in_noise", recording.name, kind), measure.in_noise);
+      numbers.emplace_back(fmt::format("{}.{}_rms_over_sigma", recording.name, kind),
+                           measure.in_noise);
     };
     add("fitted", recording.in_fit);
     add("held_out", recording.held_out);
@@ -118,7 +119,7 @@ CaseOutcome OuterSearch(const Config& experiment, const std::filesystem::path& f
   return outcome;
 }
 
-// The files of a table1 case, as that command orders them.
+// The files of a table1 case in the order of that command.
 std::vector<Config> ByRow(std::vector<Config> files) {
   std::vector<std::pair<int, size_t>> order;
   for (size_t k = 0; k < files.size(); ++k) order.emplace_back(files[k].Integer("row", 1, 1000), k);

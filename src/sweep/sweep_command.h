@@ -1,4 +1,4 @@
-// What a case of a sweep can do: a command of the program, called as a function.
+// The commands that the cases of a sweep can run, called as functions.
 #ifndef LACUNA_SWEEP_SWEEP_COMMAND_H_
 #define LACUNA_SWEEP_SWEEP_COMMAND_H_
 
@@ -16,35 +16,37 @@ namespace lacuna {
 enum class SweepCommand {
   kReconstruct,  // lacuna reconstruct
   kFit,          // lacuna fit
-  kOuterSearch,  // the search of one file of a table1 folder, from its own `seed`
+  kOuterSearch,  // the parameter search of one file of a table1 folder, with the file's own `seed`
   kTable1,       // lacuna table1
 };
+// All commands with their names in the sweep file.
 const std::vector<std::pair<std::string, SweepCommand>>& SweepCommands();
 std::string NameOf(SweepCommand command);
 
-// Of table1 cases (Table1Options).
+// Settings of table1 cases (see Table1Options).
 struct SweepSettings {
   int seeds = 1;
   int turns = 0;
 };
 
 struct CaseOutcome {
-  bool done = false;    // false: it failed, `message` says why
-  std::string message;  // a failure's reason
-  // In the order in which they are to be read; names end with the SI unit. NaN: not measured.
+  bool done = false;    // false if the case failed
+  std::string message;  // the reason for a failure
+  // Results in the order of the table's columns. Names end with the SI unit; NaN: not measured.
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, std::string>> words;
-  double seconds = 0;  // of the process that ended the case
+  double seconds = 0;  // wall time of the process that finished the case
 };
 
-// File's name within the case's folder → its YAML.
+// The files of a case: name within its folder → YAML.
 using CaseFiles = std::map<std::string, std::string>;
 
-// Reads the files as the command will, before they are written into `folder`. Throws InputError.
+// Reads the files like the command does, before they are written into `folder`. Throws InputError
+// if the command would refuse them.
 void CheckCase(SweepCommand command, const CaseFiles& files, const std::filesystem::path& folder);
 
-// Runs the case that lies in `folder`, or goes on with it. Throws InputError and Interrupted; a
-// numerical failure is an outcome that is not done.
+// Runs or resumes the case in `folder`. Throws InputError for bad input and Interrupted; a
+// numerical failure gives an outcome that is not done.
 CaseOutcome RunCommand(SweepCommand command, const SweepSettings& settings,
                        const std::filesystem::path& folder, Progress* progress);
 

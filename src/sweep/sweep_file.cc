@@ -13,8 +13,8 @@ constexpr size_t kMostCases = 100'000;
 using Changes = std::vector<RequestedChange>;
 
 void RefuseOwnFields(const Config& config, const std::string& field) {
-  if (field == "output") config.Fail(field, "cannot be set: every case has results of its own");
-  if (field == "use") config.Fail(field, "cannot be set; name the entries that it would bring");
+  if (field == "output") config.Fail(field, "cannot be set: every case has its own output folder");
+  if (field == "use") config.Fail(field, "cannot be set; set the entries of that file instead");
 }
 
 // All combinations, the first field varying slowest.
@@ -25,7 +25,7 @@ std::vector<Changes> Grid(const Config& vary) {
     const std::vector<std::string> values = vary.Texts(field);
     if (values.empty()) vary.Fail(field, "has no values; expected a list");
     if (grid.size() > kMostCases / values.size())
-      vary.Fail(field, fmt::format("makes it more than {} cases", kMostCases));
+      vary.Fail(field, fmt::format("would give more than {} cases", kMostCases));
     std::vector<Changes> finer;
     for (const Changes& coarse : grid) {
       for (size_t k = 0; k < values.size(); ++k) {
@@ -70,7 +70,7 @@ std::vector<Changes> ReadChanges(const Config& config) {
     if (known.insert(KeyOf(all[k])).second) continue;
     const size_t listed = all.size() - items.size();
     if (k < listed) vary->Fail("", "has the same value twice");
-    config.FailAtItem("cases", k - listed, "is there already");
+    config.FailAtItem("cases", k - listed, "repeats another case");
   }
   return all;
 }

@@ -1,4 +1,4 @@
-// The YAML file that describes a sweep (docs/sweep.md).
+// Reading of the YAML file that describes a sweep (docs/sweep.md).
 #ifndef LACUNA_SWEEP_SWEEP_FILE_H_
 #define LACUNA_SWEEP_SWEEP_FILE_H_
 
@@ -14,24 +14,24 @@ namespace lacuna {
 
 struct RequestedChange {
   CaseChange change;
-  // Throws InputError at the place of the sweep file where the value stands.
+  // Throws InputError with `message` at the position of the value in the sweep file.
   std::function<void(const std::string& message)> refuse;
 };
 
 struct RequestedCase {
-  std::string experiment;                // as the file names it
-  std::filesystem::path path;            // of the experiment file, or of a table1 folder
-  std::vector<RequestedChange> changes;  // by field
+  std::string experiment;                // as named in the sweep file
+  std::filesystem::path path;            // the experiment file, or the folder for table1
+  std::vector<RequestedChange> changes;  // sorted by field
 };
 
 struct SweepFile {
   SweepIdentity identity;
   SweepSettings settings;
-  std::vector<RequestedCase> cases;  // of each experiment: the grid, then the list
+  std::vector<RequestedCase> cases;  // for each experiment the grid, then the listed cases
 };
 
-// Throws InputError: also for a field that is given no value or that a case sets itself (output),
-// for the same case twice, and for a grid of more than 100 000 cases.
+// Throws InputError with the position for bad input, among it a field without values or one that
+// the sweep sets itself (output, use), a repeated case, and a grid of more than 100 000 cases.
 SweepFile ReadSweepFile(const Config& config);
 
 }  // namespace lacuna

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr char kLockName[] = ".planning";
 
-// Entries of an experiment that are paths, relative to the file they stand in.
+// The keys of an experiment whose values are paths, relative to the file that contains them.
 const std::set<std::string>& PathKeys() {
   static const std::set<std::string> keys = {"output",       "recording", "scene",
                                              "true_forces",  "true_mesh", "true_positions",
@@ -29,7 +29,7 @@ const std::set<std::string>& PathKeys() {
   return keys;
 }
 
-// What makes two cases the same.
+// The hash of everything that identifies a case.
 std::string HashOf(const SweepCase& entry, SweepCommand command) {
   std::string text = NameOf(command) + "\n" + entry.experiment + "\n";
   for (const CaseChange& change : entry.changes) text += change.field + "\n" + change.value + "\n";
@@ -38,14 +38,14 @@ std::string HashOf(const SweepCase& entry, SweepCommand command) {
   return HashBytes(text);
 }
 
-// The experiment's files as they will lie in the case's folder.
+// The experiment's files: name in the folder of the case → source.
 std::map<std::string, fs::path> FilesOf(SweepCommand command, const fs::path& experiment) {
   if (command != SweepCommand::kTable1) return {{"experiment.yaml", experiment}};
   std::map<std::string, fs::path> files;
   for (const auto& entry : fs::directory_iterator(experiment))
     if (entry.path().extension() == ".yaml")
       files["experiments/" + entry.path().filename().string()] = entry.path();
-  if (files.empty()) throw InputError({experiment.string()}, "holds no .yaml file");
+  if (files.empty()) throw InputError({experiment.string()}, "contains no .yaml file");
   return files;
 }
 
@@ -65,8 +65,8 @@ CaseFiles Compose(SweepCommand command, const SweepCase& entry, const RequestedC
   return composed;
 }
 
-// The part of a message that is about this field, or about a mapping that was made for it:
-// "mesh.max_volume: got …" → "got …".
+// The part of a message that concerns this field, or a mapping around it that had to be added:
+// "mesh.max_volume: got …" → "got …". Empty if the message concerns something else.
 std::string MessageAbout(const std::string& field, const std::string& message) {
   for (std::string named = field; !named.empty();) {
     for (size_t at = message.find(named); at != std::string::npos;
@@ -83,7 +83,8 @@ std::string MessageAbout(const std::string& field, const std::string& message) {
   return "";
 }
 
-// Says at the sweep file what is wrong with a case: at the change that it is about, if it is.
+// Throws an error about a case at the position of the change that it concerns, or else for the
+// sweep file as a whole.
 [[noreturn]] void Refuse(const RequestedCase& request, const SweepCase& entry,
                          const Config& sweep_file, const std::string& message) {
   for (auto change = request.changes.rbegin(); change != request.changes.rend(); ++change) {
@@ -97,13 +98,14 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
   if (fs::exists(folder / "sweep.json")) {
     const SweepIdentity known = LoadIdentity(folder);
     if (known.command != identity.command)
-      throw InputError({folder.string()},
-                       fmt::format("holds a sweep of `{}`; choose another", NameOf(known.command)));
+      throw InputError(
+          {folder.string()},
+          fmt::format("contains a sweep of `{}`; choose another folder", NameOf(known.command)));
     return;
   }
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().filename() != kLockName)
-      throw InputError({folder.string()}, "is no sweep and not empty; choose another");
+      throw InputError({folder.string()}, "is neither empty nor a sweep; choose another folder");
 }
 
 fs::path PartialFolder(const fs::path& folder, const SweepCase& entry) {
@@ -128,7 +130,7 @@ SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
   const SweepFile file = ReadSweepFile(sweep_file);
   const SweepCommand command = file.identity.command;
   MakeFolder(given_folder);
-  // Paths in the cases are relative, and must not lead through a symbolic link.
+  // Paths in the cases are relative and must not pass through a symbolic link.
   const fs::path folder = fs::canonical(given_folder);
   RefuseForeignFolder(folder, file.identity);
   const Claim claim(folder / kLockName);

@@ -1,4 +1,4 @@
-// Lays out the cases of a sweep.
+// Planning of a sweep: creation of the folders of its cases.
 #ifndef LACUNA_SWEEP_SWEEP_PLAN_H_
 #define LACUNA_SWEEP_SWEEP_PLAN_H_
 
@@ -12,17 +12,17 @@
 namespace lacuna {
 
 struct SweepPlan {
-  std::vector<SweepCase> cases;     // all of the folder, by number
-  int added = 0;                    // of them, now
-  std::vector<std::string> absent;  // planned before, and no longer in the file; they stay
+  std::vector<SweepCase> cases;     // all cases in the folder, by number
+  int added = 0;                    // number of cases that this call has added
+  std::vector<std::string> absent;  // cases planned earlier that the file no longer has; kept
 };
 
-// Writes a folder for every case of the sweep file that has none yet, and cases.csv. A case keeps
-// its name and its files for ever: its number and the hash of its experiment's name and changes.
-// Everything is checked before anything is written. Throws InputError: told at the value of the
-// sweep file that is wrong, if it is one; for a folder that holds something else or a sweep of
-// another command; and for a case whose experiment would now have other contents than when it was
-// planned.
+// Writes cases.csv and a folder for each case of the sweep file that has none yet. A case never
+// changes its files or its name, which consists of its number and the hash of its experiment's name
+// and changes. Everything is checked before anything is written. Throws InputError for a bad case,
+// if possible at the position of the wrong value in the sweep file; for a folder that contains
+// something else or a sweep of another command; and if the contents of an experiment have changed
+// since its case was planned.
 SweepPlan PlanSweep(const Config& sweep_file, const std::filesystem::path& folder);
 
 }  // namespace lacuna

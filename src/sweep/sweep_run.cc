@@ -27,7 +27,7 @@ bool IsToRun(const fs::path& case_folder, bool retry_failed) {
   return !outcome || (retry_failed && !outcome->done);
 }
 
-// Standard output and error of this process, from now on.
+// Redirects standard output and standard error of this process to `file`.
 void SpeakInto(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor < 0 || dup2(descriptor, STDOUT_FILENO) < 0 || dup2(descriptor, STDERR_FILENO) < 0)
@@ -40,7 +40,7 @@ std::string EndOf(const SweepCase& entry, const CaseOutcome& outcome) {
   return fmt::format("{} failed: {}\n", entry.name, outcome.message);
 }
 
-// In a process of its own.
+// Runs one case, in a process of its own.
 void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::path& case_folder,
              bool retry_failed) {
   const Claim claim(case_folder / "claimed");
@@ -65,15 +65,15 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
   close(terminal);
 }
 
-// Of a case whose process crashed; unless another one has taken it up. A case that is tried again
-// has a failure of before, which this one replaces.
+// Saves the outcome of a case whose process crashed, unless another process is working on it. For a
+// case that was run again it replaces the earlier failure.
 void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::string& reason,
                bool retries) {
   const Claim claim(case_folder / "claimed");
   const auto before = LoadOutcome(case_folder);
   if (!claim.holds() || (before && (before->done || !retries))) return;
   CaseOutcome outcome;
-  outcome.message = reason + "; log.txt has its last words";
+  outcome.message = reason + "; log.txt has its last output";
   SaveOutcome(outcome, case_folder);
   fmt::print(stderr, "{}", EndOf(entry, outcome));
 }

@@ -1,4 +1,4 @@
-// Runs the cases of a sweep that have no outcome yet.
+// Running the cases of a sweep that have no outcome yet.
 #ifndef LACUNA_SWEEP_SWEEP_RUN_H_
 #define LACUNA_SWEEP_SWEEP_RUN_H_
 
@@ -9,19 +9,20 @@ namespace lacuna {
 
 struct SweepRunOptions {
   int workers = 1;                // processes at a time, one case each
-  int threads = 1;                // of each; results do not depend on it
-  std::vector<int> numbers = {};  // of the cases to run; empty: all
-  bool retry_failed = false;      // failed cases, too
+  int threads = 1;                // threads of each process; results do not depend on it
+  std::vector<int> numbers = {};  // numbers of the cases to run; all if empty
+  bool retry_failed = false;      // run failed cases again
 };
 
-// Several calls, on several machines that share the folder, divide the cases among themselves: each
-// is claimed by a lock that its process loses when it ends. A case goes on from what it has; its
-// outcome is written last. A line on standard error tells the end of each. Returns how many of the
-// cases have not ended well. Throws InputError, and Interrupted when it was asked to stop.
+// Runs the cases, each in a process of its own. Several calls, also on machines that share the
+// folder, divide the cases among themselves: a process claims a case by a lock, which is released
+// when the process ends. A case resumes from its earlier results; its outcome is written last. The
+// end of each case is reported by a line on standard error. Returns the number of cases that are
+// not done. Throws InputError, and Interrupted after a signal.
 int RunSweep(const std::filesystem::path& folder, const SweepRunOptions& options);
 
-// Numbers of the cases that a call with these options would run. Throws InputError where one of
-// options.numbers is no case.
+// The numbers of the cases that RunSweep would run with these options. Throws InputError if one of
+// options.numbers does not exist.
 std::vector<int> UnfinishedCases(const std::filesystem::path& folder,
                                  const SweepRunOptions& options);
 

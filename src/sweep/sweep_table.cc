@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/claim.h"
+#include "core/json_number.h"
 #include "core/text_layout.h"
 #include "record/csv_text.h"
 
@@ -16,9 +17,9 @@ namespace {
 
 constexpr size_t kNumbersInWords = 6;
 
-using Cells = std::vector<std::vector<std::string>>;  // rows, the first with the columns' names
+using Cells = std::vector<std::vector<std::string>>;  // rows; the first one holds the column names
 
-// "" where there is none.
+// The value of the entry of this name as text; empty if there is none.
 template <typename Value>
 std::string Find(const std::vector<std::pair<std::string, Value>>& entries,
                  const std::string& name) {
@@ -31,10 +32,10 @@ void Remember(const std::string& name, std::vector<std::string>* names) {
   if (std::find(names->begin(), names->end(), name) == names->end()) names->push_back(name);
 }
 
-// Names in the order of their first appearance.
+// The columns of the table, in the order of their first appearance in the rows.
 struct Columns {
   std::vector<std::string> fields, numbers, words;
-  bool experiments = false;  // not all the same
+  bool experiments = false;  // whether the rows have different experiments
 };
 
 Columns ColumnsOf(const std::vector<SweepRow>& rows) {
@@ -144,7 +145,7 @@ nlohmann::ordered_json JsonOf(const SweepTable& table) {
       entry["numbers"] = nlohmann::ordered_json::object();
       entry["words"] = nlohmann::ordered_json::object();
       for (const auto& [name, value] : row.outcome->numbers)
-        entry["numbers"][name] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+        entry["numbers"][name] = NumberOrNull<nlohmann::ordered_json>(value);
       for (const auto& [name, text] : row.outcome->words) entry["words"][name] = text;
     }
     json["cases"].push_back(entry);
@@ -200,7 +201,7 @@ std::string TableInWords(const SweepTable& table) {
       text += fmt::format("{} {}: {}\n", row.entry.name, NameOf(row.status), row.note);
   if (table.Unfinished() > 0)
     text +=
-        fmt::format("{} unfinished; `lacuna sweep run` goes on with them\n", table.Unfinished());
+        fmt::format("{} unfinished; `lacuna sweep run` continues with them\n", table.Unfinished());
   return text;
 }
 

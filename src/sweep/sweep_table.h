@@ -1,4 +1,4 @@
-// What has come of the cases of a sweep, as a table.
+// The results of all cases of a sweep as a table.
 #ifndef LACUNA_SWEEP_SWEEP_TABLE_H_
 #define LACUNA_SWEEP_SWEEP_TABLE_H_
 
@@ -17,8 +17,8 @@ std::string NameOf(CaseStatus status);
 struct SweepRow {
   SweepCase entry;
   CaseStatus status = CaseStatus::kPlanned;
-  std::string note;                    // of a running case its process, of a failed one the reason
-  std::optional<CaseOutcome> outcome;  // done or failed
+  std::string note;                    // the process of a running case, the reason of a failed one
+  std::optional<CaseOutcome> outcome;  // of a case that is done or failed
 };
 
 struct SweepTable {
@@ -26,21 +26,22 @@ struct SweepTable {
   std::vector<SweepRow> rows;  // by number
 
   int Count(CaseStatus status) const;
-  // Neither done nor failed.
+  // The number of cases that are neither done nor failed.
   int Unfinished() const { return Count(CaseStatus::kPlanned) + Count(CaseStatus::kRunning); }
 };
 
-// Reads the folder and changes nothing. Throws InputError.
+// Reads the folder without changing it. Throws InputError if it is not a sweep or is damaged.
 SweepTable CollectSweep(const std::filesystem::path& folder);
 
-// The varied values, the status and the first six numbers of each case; below it what is unfinished
-// and why cases have failed.
+// A text table with the changed values, the status and the first six numbers of each case, followed
+// by the unfinished cases and the reasons of failures.
 std::string TableInWords(const SweepTable& table);
-// table.txt, table.csv and table.json in the folder, with all numbers and words. The same outcomes
-// give the same bytes.
+// Writes table.txt (as above), table.csv and table.json (with all numbers and words) into the
+// folder. The same outcomes give the same bytes.
 void SaveTable(const SweepTable& table, const std::filesystem::path& folder);
 
-// number,case,experiment and a column for each field that some case changes.
+// A CSV table with the columns number, case and experiment and one for each field that some case
+// changes.
 std::string CasesAsCsv(const std::vector<SweepCase>& cases);
 
 }  // namespace lacuna

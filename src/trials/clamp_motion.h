@@ -1,4 +1,9 @@
-// How the clamp of a sealed case moves, which its recording tells.
+// The motion of the clamp in a sealed case. It is part of the recording, so the model knows it.
+//
+// The bar first swings freely. Then the clamp rotates, so that gravity acts in another direction
+// relative to the bar and effects fixed to the object separate from effects fixed in space; and it
+// shakes, so that the second bending mode is excited and the bar moves with and against the
+// surroundings.
 #ifndef LACUNA_TRIALS_CLAMP_MOTION_H_
 #define LACUNA_TRIALS_CLAMP_MOTION_H_
 
@@ -7,16 +12,15 @@
 
 namespace lacuna {
 
-// Once the bar has swung freely the clamp turns, so that weight acts another way and what is fixed
-// to the object parts from what is fixed in space; and it shakes, so that the second mode takes
-// part and the bar moves with and against what stands still.
+// x = exp([rotation]×) X + shift.
 struct ClampMotion {
-  Eigen::Vector3d turn, shift;  // rotation vector about the origin, rad; m
+  Eigen::Vector3d rotation;  // rotation vector about the origin, rad
+  Eigen::Vector3d shift;     // m
 
   Eigen::Isometry3d Place() const;
 };
 
-// Of a case's recording 0 or 1 at a time, s.
+// The motion in recording 0 or 1 of a case at a time, s; zero until the clamp starts to move.
 ClampMotion ClampMotionAt(int recording, double time);
 
 }  // namespace lacuna

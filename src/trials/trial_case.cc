@@ -6,21 +6,24 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <variant>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 #include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {
 
-// A stream of draws.
+// A stream of random numbers. Draw number n depends on the seed, the stream and n alone.
 class Draws {
  public:
   Draws(uint64_t seed, uint64_t stream) : seed_(seed), stream_(stream) {}
+  void SkipTo(uint64_t number) { count_ = number; }
   double Between(double low, double high) { return low + (high - low) * Uniform(Next()); }
   double LogBetween(double low, double high) { return low * std::pow(high / low, Uniform(Next())); }
   double Sign() { return Next() % 2 == 0 ? 1 : -1; }
@@ -40,6 +43,37 @@ void SetVector(const std::string& name, const Eigen::Vector3d& vector,
     (*values)[fmt::format("{}_{}", name, "xyz"[axis])] = vector[axis];
 }
 
+// The streams of draws of a case, and the number of the first draw of an axis among those of a
+// hidden effect. The numbers before it belong to the place (0) and to the cards' settings (1 to 5).
+constexpr uint64_t kCaseStream = 1, kHiddenStream = 2;
+constexpr uint64_t kAxisDraw = 6;
+
+// Sets the parameter if its card says how trials choose it.
+void DrawSetting(const ParameterCard& parameter, const TrialCase& trial, uint64_t seed,
+                 std::map<std::string, double>* drawn) {
+  const TrialSetting& setting = parameter.trial;
+  if (setting.share_of_length > 0)
+    (*drawn)[parameter.name] = setting.share_of_length * trial.size[0];
+  if (!setting.IsDrawn()) return;
+  Draws draws(seed, kHiddenStream);
+  draws.SkipTo(static_cast<uint64_t>(setting.draw));
+  (*drawn)[parameter.name] = parameter.log_scale ? draws.LogBetween(setting.min, setting.max)
+                                                 : draws.Between(setting.min, setting.max);
+}
+
+// A plane beside the bar at the distance `gap` (m). A bar that is pulled to one side and released
+// swings about as far to the other side, where the plane stands.
+void PlacePlane(const TrialCase& trial, double gap, std::map<std::string, double>* drawn) {
+  Eigen::Vector3d side = trial.hold_forces.front();
+  side.x() = 0;
+  side.normalize();
+  const double half =
+      0.5 * (std::abs(side.y()) * trial.size.y() + std::abs(side.z()) * trial.size.z());
+  SetVector("normal", side, drawn);
+  (*drawn)["stiffness"] = 3e3 * trial.young_modulus;  // Pa/m
+  (*drawn)["offset"] = -half - gap;
+}
+
 nlohmann::json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d VectorOf(const nlohmann::json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
@@ -55,7 +89,9 @@ bool IsLaw(const HiddenEffect& hidden) {
   return FindEntry(hidden.type)->kind == CatalogueEntry::Kind::kMaterial;
 }
 
-bool IsKnown(const std::string& type) { return type == "gravity" || type == "stiffness_damping"; }
+bool IsInEveryModel(const std::string& type) {
+  return FindEntry(type)->card->trial.is_in_every_model;
+}
 
 bool TrialCase::Hides(const std::string& type) const {
   return std::any_of(hidden.begin(), hidden.end(),
@@ -77,7 +113,7 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   trial.recordings = recordings;
   trial.is_scanned = is_scanned;
   trial.nuisance = nuisance;
-  Draws draws(seed, 1);
+  Draws draws(seed, kCaseStream);
   trial.young_modulus = draws.LogBetween(6e4, 2e5);
   trial.poisson_ratio = draws.Between(0.38, 0.46);
   trial.size = {draws.Between(0.07, 0.09), draws.Between(0.016, 0.022),
@@ -85,11 +121,11 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   for (int axis = 0; axis < 3; ++axis)
     trial.true_size[axis] = trial.size[axis] * (1 + 0.002 * draws.Between(-1, 1));
   const NuisanceTrial wrong = trial.Disturbance();
-  // Drawn in any case, so that the further draws of a seed are the same with and without it.
+  // Drawn in any case, so that the further draws of a seed do not depend on the nuisance.
   const double edge =
       draws.Between(wrong.least_clamp_error, wrong.largest_clamp_error) * draws.Sign();
   if (wrong.largest_clamp_error > 0) trial.clamp_error = edge;
-  // A force that bends the bar by about a sixth of its length.
+  // The force deflects the end of the bar by about a sixth of its length.
   const double inertia = trial.size[1] * std::pow(trial.size[2], 3) / 12;
   const double force =
       3 * trial.young_modulus * inertia / std::pow(trial.size[0], 3) * trial.size[0] / 6;
@@ -98,7 +134,7 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
     direction.x() *= 0.3;
     direction.normalize();
     if (r == 1) {
-      // Not along the first one.
+      // The second force must not be parallel to the first one.
       const Eigen::Vector3d first = trial.hold_forces[0].normalized();
       direction = (direction - 0.8 * direction.dot(first) * first).normalized();
     }
@@ -115,45 +151,25 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
 }
 
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed) {
-  Draws draws(seed, 2);
+  Draws draws(seed, kHiddenStream);
   HiddenEffect hidden;
   hidden.type = type;
   const EffectCard& card = *FindEntry(type)->card;
   const Eigen::Vector3d place(trial.size[0] * draws.Between(0.25, 0.95), 0, 0);
-  std::map<std::string, double> drawn = {
-      {"young_modulus", trial.young_modulus},
-      {"poisson_ratio", trial.poisson_ratio},
-      {"relaxation_time", draws.LogBetween(0.02, 0.3)},
-      {"yield_strain", draws.LogBetween(0.005, 0.03)},
-      {"softening_strain", draws.LogBetween(0.03, 0.2)},
-      {"azimuth", draws.Between(-1.2, 1.2)},
-      {"inclination", draws.Between(-1.2, 1.2)},
-      {"length", trial.size[0]},
-      {"radius", type == "inclusion" ? 0.15 * trial.size[0] : 0.005}};
-  SetVector("centre", place, &drawn);
+  std::map<std::string, double> drawn = {{"young_modulus", trial.young_modulus},
+                                         {"poisson_ratio", trial.poisson_ratio}};
+  for (const ParameterCard& parameter : card.parameters)
+    DrawSetting(parameter, trial, seed, &drawn);
+  SetVector(std::holds_alternative<TriedAsSupports>(card.tried_at) ? "point" : "centre", place,
+            &drawn);
   SetVector("origin", Eigen::Vector3d(0.5 * trial.size[0], 0, 0), &drawn);
-  const bool along = type == "active_contraction" || type.ends_with("gradient");
-  SetVector("axis", along ? Eigen::Vector3d::UnitX() : draws.Direction(), &drawn);
-  SetVector("gravity", {0, 0, -9.80665}, &drawn);
-  if (type == "plane_contact") {
-    // A bar that is pulled to one side and let go swings to the other, about as far.
-    Eigen::Vector3d side = trial.hold_forces.front();
-    side.x() = 0;
-    side.normalize();
-    const double half =
-        0.5 * (std::abs(side.y()) * trial.size.y() + std::abs(side.z()) * trial.size.z());
-    const double gap = draws.Between(0.02, 0.08) * trial.size.x();
-    SetVector("normal", side, &drawn);
-    drawn["stiffness"] = 3e3 * trial.young_modulus;  // Pa/m
-    drawn["offset"] = -half - gap;
-  }
-  if (type == "elastic_support" || type == "slipping_support") {
-    SetVector("point", place, &drawn);
-    drawn["radius"] = 0.1 * trial.size[0];
-    drawn["slip_distance"] = draws.LogBetween(2e-4, 2e-3);
-  }
-  const bool has_size = !IsLaw(hidden) && type != "plane_contact";
-  const bool is_vector = card.parameters[0].name.ends_with("_x");
+  draws.SkipTo(kAxisDraw);
+  SetVector("axis", card.trial.axis_along_bar ? Eigen::Vector3d::UnitX() : draws.Direction(),
+            &drawn);
+  SetVector(kGravitySetting, {0, 0, -kStandardGravity}, &drawn);
+  if (IsContact(card)) PlacePlane(trial, draws.Between(0.02, 0.08) * trial.size.x(), &drawn);
+  const bool has_size = !IsLaw(hidden) && !IsContact(card);
+  const bool is_vector = SizeParameters(card).size() == 3;
   const Eigen::Vector3d direction = draws.Direction();
   const double sign = draws.Sign();
   for (size_t k = 0; k < card.parameters.size(); ++k) {

@@ -1,4 +1,8 @@
-// A sealed case: a recording of a soft bar whose physics is known to its maker alone.
+// A sealed case: synthetic recordings of a soft bar whose true physics is kept from the diagnosis.
+//
+// A case is drawn from a seed. Its model lacks one or several hidden effects, or it is a control
+// that lacks none. The bar lies along x, is clamped at x = 0, deflected by a hand at its free end
+// and released. truth.json keeps the case, and is opened after the diagnosis only.
 #ifndef LACUNA_TRIALS_TRIAL_CASE_H_
 #define LACUNA_TRIALS_TRIAL_CASE_H_
 
@@ -18,59 +22,64 @@ namespace lacuna {
 // An effect that the truth has and the model lacks.
 struct HiddenEffect {
   std::string type;
-  std::map<std::string, double> parameters;  // all of the card's, SI, at the size that is hidden
-  // Those that make its size; none where nothing does: of a plane that is met, or of an elasticity
-  // law, which stands in the place of the model's.
+  std::map<std::string, double> parameters;  // all parameters of the card, SI, as hidden
+  // The parameters that make its size. Empty for an effect without a size: a contact with a plane,
+  // and an elasticity law, which replaces the law of the model.
   std::vector<std::string> amplitude;
-  double factor = 0;  // of its detectable size; without a size: what it changes is that many times
-                      // what can be detected, or more
+  // The size as a multiple of the detectable size. An effect without a size changes the recording
+  // by at least this multiple of the detectable change.
+  double factor = 0;
 };
 std::shared_ptr<const Effect> MakeHidden(const HiddenEffect& hidden);
+// Whether the hidden effect is an elasticity law.
 bool IsLaw(const HiddenEffect& hidden);
-// What the model has of itself, unless it is what is hidden.
-bool IsKnown(const std::string& type);
+// Whether the model of every case contains the effect unless it is hidden.
+bool IsInEveryModel(const std::string& type);
 
 struct TrialCase {
   std::string name;
-  // "control", "hard_control", "one_effect", "pair" or "removed": the last hides an effect that the
-  // library is then not allowed to name.
+  // "control", "hard_control", "one_effect", "pair" or "removed"; the last hides an effect and
+  // removes it from the library of the diagnosis.
   std::string group;
   uint64_t seed = 0;
   int recordings = 1;
-  bool is_scanned = false;  // by depth cameras; else markers are tracked
-  // NuisanceTrial::control of the nuisance that a hard control has; empty: none.
+  bool is_scanned = false;  // true: depth cameras; false: markers
+  // The nuisance of a hard control, by the name that its card has for that
+  // (NuisanceTrial::control); empty: none.
   std::string nuisance;
   std::vector<HiddenEffect> hidden;
 
   // Drawn from the seed.
   double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
-  double damping = 0;                                // s, of the stiffness, as soft rubber has it
-  Eigen::Vector3d size{0.08, 0.02, 0.02};            // m, as the model has it
-  Eigen::Vector3d true_size = size;                  // m
-  double clamp_error = 0;                            // m
-  std::vector<Eigen::Vector3d> hold_forces;          // N, per recording
-  double noise = 1e-4;                // m, of a marker's coordinate or along a depth camera's ray
-  double noise_correlation_time = 0;  // s
+  double damping = 0;                        // s, stiffness-proportional, typical of soft rubber
+  Eigen::Vector3d size{0.08, 0.02, 0.02};    // m, in the model
+  Eigen::Vector3d true_size = size;          // m
+  double clamp_error = 0;                    // m, along x
+  std::vector<Eigen::Vector3d> hold_forces;  // N, of the hand before the release, per recording
+  double noise = 1e-4;                       // m, standard deviation of a marker's coordinate, or
+                                             // along the ray of a depth camera
+  double noise_correlation_time = 0;         // s
 
   bool Hides(const std::string& type) const;
   // What is wrong with the experiment of a hard control; by default nothing.
   NuisanceTrial Disturbance() const;
 };
 
-// Without a hidden effect yet.
+// Draws all that depends on the seed, without hidden effects.
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance);
 
-// An effect with places, directions and times drawn from the seed, of size 1 in its plausible
-// direction; the factor is still to be applied. A plane lies beside the bar, on the side to which
-// it swings.
+// Draws the place, direction and times of an effect from the seed, as its card says. Its size is 1
+// unit of its parameter, with a plausible sign; the caller scales it. A plane of contact stands
+// beside the bar, on the side to which it swings. `type` must be in the catalogue.
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed);
 
-// truth.json
+// Write and read truth.json. Both throw InputError if the file cannot be used.
 void SaveCase(const TrialCase& trial, const std::filesystem::path& file);
 TrialCase LoadCase(const std::filesystem::path& file);
 
-// The folders of a suite's cases, by name. Throws InputError where there is no such folder.
+// The folders of the cases of a suite, sorted by name. Throws InputError if the suite has no
+// folder.
 std::vector<std::filesystem::path> CasesIn(const std::filesystem::path& folder);
 
 }  // namespace lacuna

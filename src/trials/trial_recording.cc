@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/text_file.h"
 #include "geometry/embedding.h"
+#include "scan/marker_frames.h"
 #include "scan/random_bits.h"
 #include "scan/scan_writer.h"
 #include "trials/clamp_motion.h"
@@ -42,20 +43,22 @@ void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3X
   }
 }
 
-// One frame shifted and turned.
+// Moves one frame of a hard control with such a nuisance by a random rigid motion, as a failed
+// registration would.
 void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
   const NuisanceTrial wrong = trial.Disturbance();
   if (wrong.frame_shift == 0 && wrong.frame_rotation == 0) return;
   const size_t bad = 20 + RandomBits({trial.seed, 60}) % (frames->size() - 25);
-  Eigen::Vector3d shift, turn;
+  Eigen::Vector3d shift, rotation;
   for (int axis = 0; axis < 3; ++axis) {
     shift[axis] = wrong.frame_shift * Gauss(trial, 61, axis, recording);
-    turn[axis] = wrong.frame_rotation * Gauss(trial, 62, axis, recording);
+    rotation[axis] = wrong.frame_rotation * Gauss(trial, 62, axis, recording);
   }
-  for (auto place : (*frames)[bad].colwise()) place += shift + turn.cross(Eigen::Vector3d(place));
+  for (auto place : (*frames)[bad].colwise())
+    place += shift + rotation.cross(Eigen::Vector3d(place));
 }
 
-// The shape as the model has it.
+// The shape of the body in the model.
 void WriteBox(const TrialCase& trial, const std::filesystem::path& file) {
   std::string box = "OFF\n8 12 0\n";
   for (int corner = 0; corner < 8; ++corner)
@@ -75,13 +78,13 @@ void WriteClampPath(int recording, const std::filesystem::path& file) {
     const ClampMotion motion = ClampMotionAt(recording, time);
     path += fmt::format("{}", time);
     for (const double coordinate : motion.shift) path += fmt::format(",{:.9f}", coordinate);
-    for (const double angle : motion.turn) path += fmt::format(",{:.9f}", angle);
+    for (const double angle : motion.rotation) path += fmt::format(",{:.9f}", angle);
     path += "\n";
   }
   WriteFileAtomically(file, path);
 }
 
-// Of recording.yaml, what tells the shape and the clamp.
+// The part of recording.yaml that describes the shape and the clamp.
 std::string ShapeAndClamp() {
   return fmt::format(
       "gripped:\n  - {{name: clamp, half_space: {{point: [{} m, 0 m, 0 m], normal: [-1, 0, 0]}}, "
@@ -91,7 +94,7 @@ std::string ShapeAndClamp() {
       kTrialFace);
 }
 
-void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motion,
                   const std::filesystem::path& folder) {
   const TetMesh& mesh = motion.body->mesh;
   const Embedding at = Embed(mesh, MarkerPlaces(trial.true_size));
@@ -100,29 +103,22 @@ void WriteMarkers(const TrialCase& trial, int recording, const FilmedMotion& mot
     frames.push_back(PointsAt(at, mesh, position));
   AddNoise(trial, recording, &frames);
   SpoilFrame(trial, recording, &frames);
-  std::string csv = "t";
-  for (int m = 0; m < kMarkers; ++m) csv += fmt::format(",m{0}_x,m{0}_y,m{0}_z", m);
-  for (size_t f = 0; f < frames.size(); ++f) {
-    csv += fmt::format("\n{}", kTrialSpacing * static_cast<double>(f));
-    for (const double coordinate : frames[f].reshaped()) csv += fmt::format(",{:.9f}", coordinate);
-  }
-  WriteFileAtomically(folder / "markers.csv", csv + "\n");
-  std::string yaml = fmt::format(
-      "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n"
-      "  kind: markers\n  file: markers.csv\n  columns: {{time: t}}\n  marker_places:\n",
-      recording + 1, kTrialDensity);
-  const Eigen::Matrix3Xd places = MarkerPlaces(trial.size);
+  std::vector<double> times;
+  for (size_t f = 0; f < frames.size(); ++f)
+    times.push_back(kTrialSpacing * static_cast<double>(f));
+  Markers markers{{}, MarkerPlaces(trial.size), frames};
   for (int m = 0; m < kMarkers; ++m) {
-    Eigen::Vector3d place = places.col(m);
+    markers.names.push_back(fmt::format("m{}", m));
     for (int axis = 0; axis < 3; ++axis)
-      place[axis] += kTrialPlaceError * Gauss(trial, 30, m, axis);
-    yaml += fmt::format("    - {{name: m{}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n", m,
-                        place.x(), place.y(), place.z());
+      markers.places(axis, m) += kTrialPlaceError * Gauss(trial, 30, m, axis);
   }
+  const std::string yaml = fmt::format(
+      "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n{}",
+      recording + 1, kTrialDensity, WriteMarkerFrames(folder, times, markers));
   WriteFileAtomically(folder / "recording.yaml", yaml + ShapeAndClamp());
 }
 
-void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
                 const std::filesystem::path& folder) {
   std::vector<Eigen::Matrix3Xd> frames = motion.positions;
   SpoilFrame(trial, recording, &frames);
@@ -134,7 +130,7 @@ void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motio
   }
   CameraRing ring;
   ring.center = {0.5 * trial.size[0], 0, 0};
-  ring.up = Eigen::Vector3d::UnitX();  // so that both ends are seen
+  ring.up = Eigen::Vector3d::UnitX();  // so that both ends are visible
   ring.radius = 0.3;
   ring.elevation = 0.6;
   ring.width = 120;
@@ -143,10 +139,10 @@ void WriteScans(const TrialCase& trial, int recording, const FilmedMotion& motio
   ScannerOptions scanner;
   scanner.noise = trial.noise;
   scanner.seed = RandomBits({trial.seed, 70, static_cast<uint64_t>(recording)});
-  ScannedObject object;
-  object.name = fmt::format("recording {}", recording + 1);
+  RecordedObject object;
   object.density = kTrialDensity;
-  WriteScan(folder, object, surfaces, times, PlaceCameras(ring), scanner, ScanOutput::kPoints);
+  WriteScan(folder, fmt::format("recording {}", recording + 1), object,
+            {surfaces, times, PlaceCameras(ring), scanner}, WritePointFrames);
   std::filesystem::remove_all(folder / "truth");
   const std::filesystem::path description = folder / "recording.yaml";
   WriteFileAtomically(description, ReadWholeFile(description) + ShapeAndClamp());
@@ -158,7 +154,7 @@ double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
   return Normal(RandomBits({trial.seed, stream, i, j}));
 }
 
-void WriteRecording(const TrialCase& trial, int recording, const FilmedMotion& motion,
+void WriteRecording(const TrialCase& trial, int recording, const TrueMotion& motion,
                     const std::filesystem::path& folder) {
   MakeFolder(folder);
   WriteBox(trial, folder / "box.off");

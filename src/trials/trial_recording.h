@@ -1,5 +1,5 @@
-// What measures the bar of a sealed case, and the recording that comes of it: a motion-capture
-// system with markers whose noise is correlated in time, or four noisy depth cameras.
+// The measurement of the bar of a sealed case: a motion-capture system with eight markers, whose
+// noise is correlated in time, or four depth cameras with noise along their rays.
 #ifndef LACUNA_TRIALS_TRIAL_RECORDING_H_
 #define LACUNA_TRIALS_TRIAL_RECORDING_H_
 
@@ -16,21 +16,25 @@ namespace lacuna {
 inline constexpr int kTrialFrames = 60;
 inline constexpr double kTrialSpacing = 0.01;     // s
 inline constexpr double kTrialDensity = 1000;     // kg/m³
-inline constexpr double kTrialFace = 1e-5;        // m: clamp and hand hold the faces at the ends
-inline constexpr double kTrialPlaceError = 1e-4;  // m, per axis, of what is told of a marker
-inline constexpr double kTrialShapeError = 2e-4;  // m, of a body that is 0.2 % off
+inline constexpr double kTrialFace = 1e-5;        // m: the clamp and the hand hold the nodes within
+                                                  // this distance of the end faces
+inline constexpr double kTrialPlaceError = 1e-4;  // m: standard deviation, per axis, of the
+                                                  // recorded place of a marker
+inline constexpr double kTrialShapeError = 2e-4;  // m: deviation of a body whose size is 0.2 % off
 
-// The true bar in every frame.
-struct FilmedMotion {
+// The motion of the true bar.
+struct TrueMotion {
   std::shared_ptr<const Body> body;
-  std::vector<Eigen::Matrix3Xd> positions;  // of its nodes, m
+  std::vector<Eigen::Matrix3Xd> positions;  // for each frame: 3 × nodes, m
 };
 
-// Draws from the case's seed: number (i, j) of a stream, normally distributed.
+// Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
+// these three numbers alone.
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j);
 
-// Writes recording.yaml and all that it names. Throws InputError where that fails.
-void WriteRecording(const TrialCase& trial, int recording, const FilmedMotion& motion,
+// Writes recording.yaml and all files that it refers to into the folder. `recording`: 0 or 1.
+// Throws InputError if a file cannot be written.
+void WriteRecording(const TrialCase& trial, int recording, const TrueMotion& motion,
                     const std::filesystem::path& folder);
 
 }  // namespace lacuna

@@ -34,18 +34,18 @@ const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
   return nullptr;
 }
 
-// The estimated standard deviation in true ones; of scans, whose noise along the normal depends on
-// the view, 1.
-double InTrueNoise(const TrialCase& trial, const CalibrationProblem& problem) {
+// The estimated standard deviation of the noise over the true one. 1 for scans, whose noise along
+// the normal depends on the view.
+double EstimatedOverTrueNoise(const TrialCase& trial, const CalibrationProblem& problem) {
   return trial.is_scanned ? 1 : problem.noise() / trial.noise;
 }
 
-// How the hidden effect fared.
+// Compares the fit of the first hidden effect with the truth.
 void Compare(const TrialCase& trial, const CalibrationProblem& problem,
              const Eigen::VectorXd& values, const Diagnosis& diagnosis, TrialOutcome* outcome) {
   const HiddenEffect& hidden = trial.hidden.front();
   const RankedEffect* effect = Find(diagnosis, hidden.type);
-  if (effect == nullptr || hidden.amplitude.empty()) return;  // no size to be compared
+  if (effect == nullptr || hidden.amplitude.empty()) return;  // there is no size to compare
   std::vector<ParameterEstimate> sizes = effect->sizes;
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
@@ -60,7 +60,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
     return;
   }
   outcome->has_truth = true;
-  outcome->error_after = in_noise * InTrueNoise(trial, problem);
+  outcome->error_after = in_noise * EstimatedOverTrueNoise(trial, problem);
   double difference = 0, size = 0;
   for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
     const ParameterEstimate& estimate = sizes[k];
@@ -84,7 +84,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   const CalibrationProblem problem(study, reference.mesh);
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
-  // Only which effect is to be kept from the library is known of the truth before.
+  // Before the diagnosis, the truth tells only which effects are removed from the library.
   const std::filesystem::path without = folder / "without.txt";
   if (std::filesystem::exists(without)) {
     std::ifstream stream(without);
@@ -100,7 +100,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   outcome.left = diagnosis.left_in_noise;
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
-    // A refit counts for more than first order does.
+    // Effects that were refitted rank before those that have a first-order score only.
     const bool usable = effect.refitted && effect.refit_message.empty();
     order.emplace_back(
         usable ? effect.evidence : std::min(-1.0, effect.scored.score.evidence - 100),
@@ -114,7 +114,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 
   const TrialCase trial = LoadCase(folder / "truth.json");
-  const double unit = InTrueNoise(trial, problem);
+  const double unit = EstimatedOverTrueNoise(trial, problem);
   outcome.error_before = diagnosis.errors.without_nuisances * unit;
   if (!outcome.named.empty())
     if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))

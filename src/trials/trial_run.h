@@ -1,4 +1,4 @@
-// Diagnoses sealed cases, and keeps what came of each beside it.
+// Diagnoses sealed cases and keeps the outcome of each in its folder.
 #ifndef LACUNA_TRIALS_TRIAL_RUN_H_
 #define LACUNA_TRIALS_TRIAL_RUN_H_
 
@@ -10,36 +10,42 @@
 
 namespace lacuna {
 
-// What a diagnosis made of a case, and how its hidden effect fared when it was fitted.
+// The diagnosis of a case, and the fit of its hidden effect compared with the truth. Held-out
+// errors are root mean squares in multiples of the noise of the case.
 struct TrialOutcome {
   std::string verdict;
-  std::vector<std::string> named;  // effects and nuisances of the verdict, the first the best
-  std::vector<std::string>
-      ranked;               // all effects, by evidence (that of the refit where there is one)
-  double error_before = 0;  // held out, in multiples of the case's noise
-  double error_best = 0;    // with the first one named; 0: none was
+  std::vector<std::string> named;   // effects and nuisances of the verdict, the best one first
+  std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
+  double error_before = 0;          // held-out, of the model without any of them
+  double error_best = 0;            // held-out, with the first one named; 0: none is named
+  // Evidence (natural logarithm of the odds against the model as it is) of the first two ranked
+  // effects, and the one that a twentieth of the controls without an effect exceeds; `left`: the
+  // remaining rms residual over the noise. All as the Diagnosis has them.
   double evidence = 0, second_evidence = 0, control = 0, left = 0;
-  // Of the first hidden effect, fitted; false where it is not in the library, has no size, or its
-  // fit failed.
+  // Whether the first hidden effect was fitted, so that the following values hold. False if it is
+  // not in the library, has no size, or could not be fitted.
   bool has_truth = false;
-  double error_after = 0;  // held out, in multiples of the noise
-  // |estimate − truth| / |truth|, each component in units of its detectable size: weight along a
-  // bar, say, hardly shows, and need not be known.
+  double error_after = 0;  // held-out, with the hidden effect fitted
+  // |estimate − truth| / |truth|, each component in units of its detectable size, so that a
+  // component that hardly shows (such as weight along a bar) hardly counts.
   double relative_error = 0;
-  std::vector<char> covered;  // per amplitude: the 95 % interval holds the truth
-  double seconds = 0;
+  std::vector<char> covered;  // for each amplitude: whether the 95 % interval contains the truth
+  double seconds = 0;         // wall time of fit and diagnosis
 };
 
-// Fits and diagnoses <folder>/<case> as its experiment says, and writes diagnosis.json there. The
-// truth is opened only afterwards.
+// Fits and diagnoses the case in `folder` as its experiment.yaml says and writes diagnosis.json
+// there. The truth is opened only afterwards. Throws InputError if the case cannot be read or
+// fitted.
 TrialOutcome RunCase(const std::filesystem::path& folder);
 
-// outcome.json
+// Write and read outcome.json. Both throw InputError if the file cannot be used.
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);
 TrialOutcome LoadOutcome(const std::filesystem::path& file);
 
-// All cases of a folder that have no outcome yet, `workers` at a time, each in a process of its
-// own; a case is claimed by locking a file in it, so that several calls may share the folder.
+// Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a
+// time. A case is claimed by a lock on a file in its folder, so that several calls may share the
+// suite. A case that fails gets the reason in failed.txt. Returns the result of ShareOut
+// (core/workers.h).
 int RunTrials(const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna

@@ -20,16 +20,17 @@
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
+#include "effects/stiffness_damping.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/random_bits.h"
-#include "trials/trial_film.h"
+#include "trials/trial_simulation.h"
 
 namespace lacuna {
 namespace {
 
-// Draws of a case until its effect is plausible in the size that it must have to be seen.
+// Number of draws of a case until the detectable size of its effect is plausible.
 constexpr int kMostAttempts = 8;
 
 TrialCase DrawEffectCase(const std::string& name, const std::string& group,
@@ -52,7 +53,7 @@ TrialCase EffectCase(const TrialSuite& suite, const std::string& group,
                         factor, recordings, suite.is_scanned, RandomBits({suite.seed, number}));
 }
 
-// The same case of another seed.
+// The same case with the next seed.
 TrialCase DrawnAgain(const TrialCase& trial) {
   std::vector<std::string> types;
   for (const HiddenEffect& hidden : trial.hidden) types.push_back(hidden.type);
@@ -60,7 +61,7 @@ TrialCase DrawnAgain(const TrialCase& trial) {
                         trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
 }
 
-// What the hidden effect, as drawn, changes of the misfit.
+// The change of the residuals, m, that the hidden effect causes as drawn.
 Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& problem,
                          const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
   CandidateEffect candidate;
@@ -74,57 +75,77 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   return with.residual - misfit.residual;
 }
 
-// The smallest amount of a hidden effect, as drawn, that stands out from the noise of its case and
-// from what a grip, dimensions or a clock that are off, a drift of the camera, an unknown force of
-// the hand and the discretisation could do.
-double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
-                  const std::filesystem::path& folder) {
-  TrialCase without = trial;
-  without.hidden.clear();
-  if (IsKnown(hidden.type)) {
-    // The model must not have what is hidden; its absence is no effect of its own here.
-    without.hidden.push_back(hidden);
-    for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
-  }
-  FilmCase(without, folder, /*rough=*/true);
-  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
-  const ReferenceBody reference = MakeReferenceBody(study);
-  const CalibrationProblem problem(study, reference.mesh);
+// The true values of the fitted parameters, in their order.
+Eigen::VectorXd TrueValues(const TrialCase& trial, const TrialCase& without,
+                           const PredictionStudy& study, const CalibrationProblem& problem) {
   Eigen::VectorXd values = problem.Start();
   values[0] = trial.young_modulus;
   values[1] = trial.poisson_ratio;
   const Eigen::Index of_body = static_cast<Eigen::Index>(study.fitted.size());
-  if (!without.Hides("stiffness_damping")) values[2] = trial.damping;
+  if (!without.Hides(StiffnessDampingCard().type)) values[2] = trial.damping;
   for (size_t r = 0; r < trial.hold_forces.size(); ++r)
     values.segment<3>(of_body + 3 * static_cast<Eigen::Index>(r)) = trial.hold_forces[r];
   CHECK_EQ(values.size(), of_body + 3 * trial.recordings);
+  return values;
+}
 
+// The directions of the sizes of the hidden effect, at its null value.
+std::vector<MisfitDirection> SizeDirections(const HiddenEffect& hidden) {
   HiddenEffect none = hidden;
   const EffectCard& card = *FindEntry(hidden.type)->card;
-  std::vector<MisfitDirection> directions;
-  Eigen::VectorXd amount(static_cast<Eigen::Index>(hidden.amplitude.size()));
-  for (size_t k = 0; k < hidden.amplitude.size(); ++k) {
-    amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
+  for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     none.parameters[hidden.amplitude[k]] = card.parameters[k].null_value;
-  }
   const std::shared_ptr<const Effect> effect = MakeHidden(none);
+  std::vector<MisfitDirection> directions;
   for (size_t k = 0; k < hidden.amplitude.size(); ++k)
     directions.push_back({.perturbation = {.effect = effect, .parameter = static_cast<int>(k)}});
-  const GripMotions grips = MakeGripMotions(problem);
-  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
-  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
-  if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
-  // A depth camera's is that along its rays.
-  if (!trial.is_scanned)
-    for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
-  const Eigen::Index known = values.size();
-  const Eigen::MatrixXd grip_columns =
-      misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+  return directions;
+}
+
+// The nuisances of the measurement that a hidden effect must stand out from. `grip_columns`: the
+// columns of the directions of `grips`.
+std::vector<NuisanceCandidate> CaseNuisances(const CalibrationProblem& problem,
+                                             const Eigen::VectorXd& values,
+                                             const LinearisedMisfit& misfit,
+                                             const GripMotions& grips,
+                                             const Eigen::MatrixXd& grip_columns) {
   std::vector<NuisanceCandidate> nuisances = GripNuisances(grips, grip_columns);
   for (NuisanceCandidate& nuisance : ModelNuisances({problem, values, misfit, grips, grip_columns}))
     nuisances.push_back(std::move(nuisance));
   for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual))
     nuisances.push_back(std::move(nuisance));
+  std::erase_if(nuisances, [](const NuisanceCandidate& nuisance) {
+    return !nuisance.card.trial.limits_detection;
+  });
+  return nuisances;
+}
+
+// The smallest multiple of a hidden effect, as drawn, that is detectable above the noise of its
+// case and that the nuisances of the measurement (grip, dimensions, clock, drift of the camera,
+// force of the hand, discretisation) cannot explain. Infinity if they explain all of it.
+double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
+                  const std::filesystem::path& folder) {
+  TrialCase without = trial;
+  without.hidden.clear();
+  if (IsInEveryModel(hidden.type)) {
+    // The model must lack the effect. With size zero its absence is not an error of the model yet.
+    without.hidden.push_back(hidden);
+    for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
+  }
+  SimulateCase(without, folder, /*rough=*/true);
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  const ReferenceBody reference = MakeReferenceBody(study);
+  const CalibrationProblem problem(study, reference.mesh);
+  const Eigen::VectorXd values = TrueValues(trial, without, study, problem);
+  std::vector<MisfitDirection> directions = SizeDirections(hidden);
+  const GripMotions grips = MakeGripMotions(problem);
+  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
+  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
+  // The noise of a depth camera is that along its rays and stays as estimated.
+  if (!trial.is_scanned)
+    for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
+  const Eigen::Index known = values.size();
   Eigen::MatrixXd columns = misfit.by.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
   const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
@@ -132,14 +153,20 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     columns.rightCols(more.cols()) = more;
     priors.insert(priors.end(), its_priors.begin(), its_priors.end());
   };
-  for (const NuisanceCandidate& nuisance : nuisances)
-    if (nuisance.card.trial.limits_detection) add(nuisance.columns, nuisance.priors);
+  const Eigen::Index of_grips = static_cast<Eigen::Index>(grips.directions.size());
+  for (const NuisanceCandidate& nuisance :
+       CaseNuisances(problem, values, misfit, grips, misfit.by.rightCols(of_grips)))
+    add(nuisance.columns, nuisance.priors);
   const int own = static_cast<int>(columns.cols());
-  if (hidden.amplitude.empty())
+  if (hidden.amplitude.empty()) {
     add(ChangeBy(hidden, problem, values, misfit), {{}});
-  else
+  } else {
+    Eigen::VectorXd amount(static_cast<Eigen::Index>(hidden.amplitude.size()));
+    for (size_t k = 0; k < hidden.amplitude.size(); ++k)
+      amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
     add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
-  const LinearModel model(
+  }
+  const LinearGaussianModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),
       WhitenedRows(columns, misfit, trial.noise_correlation_time, false), priors);
   std::vector<int> taken(own);
@@ -159,16 +186,17 @@ bool IsPlausible(const HiddenEffect& hidden) {
   return true;
 }
 
-void Film(const TrialCase& trial, const std::filesystem::path& folder) {
-  FilmCase(trial, folder);
+void SimulateAndSeal(const TrialCase& trial, const std::filesystem::path& folder) {
+  SimulateCase(trial, folder);
   if (trial.group != "removed") return;
   std::string types;
   for (const HiddenEffect& hidden : trial.hidden) types += hidden.type + "\n";
   WriteFileAtomically(folder / "without.txt", types);
 }
 
-// Gives the hidden effects their sizes and films the case. Returns why it cannot; empty: it did.
-std::string SizeAndFilm(TrialCase* trial, const std::filesystem::path& folder) {
+// Determines the sizes of the hidden effects and simulates the case. Returns the reason of a
+// failure; empty: it succeeded.
+std::string SizeAndSimulate(TrialCase* trial, const std::filesystem::path& folder) {
   try {
     for (HiddenEffect& hidden : trial->hidden) {
       const double size = hidden.factor * Detectable(*trial, hidden, folder);
@@ -177,7 +205,7 @@ std::string SizeAndFilm(TrialCase* trial, const std::filesystem::path& folder) {
       if (!std::isfinite(size) || !IsPlausible(hidden) || !is_seen)
         return fmt::format("{} would have to be {:g} times its unit", hidden.type, size);
     }
-    Film(*trial, folder);
+    SimulateAndSeal(*trial, folder);
   } catch (const InputError& problem) {
     return problem.what();
   }
@@ -253,13 +281,14 @@ bool MakeCase(TrialCase trial, const std::filesystem::path& folder) {
   if (std::filesystem::exists(own / "skipped.txt")) return false;
   MakeFolder(own);
   if (std::filesystem::exists(own / "truth.json")) {
-    // Where only that was kept, it is filmed again as it was.
-    if (!std::filesystem::exists(own / "experiment.yaml")) Film(LoadCase(own / "truth.json"), own);
+    // If only the truth was kept, the recordings are simulated again.
+    if (!std::filesystem::exists(own / "experiment.yaml"))
+      SimulateAndSeal(LoadCase(own / "truth.json"), own);
     return true;
   }
   std::string reasons;
   for (int attempt = 1;; ++attempt) {
-    const std::string reason = SizeAndFilm(&trial, own);
+    const std::string reason = SizeAndSimulate(&trial, own);
     if (reason.empty()) break;
     reasons += reason + "\n";
     if (trial.hidden.empty() || attempt == kMostAttempts) {

@@ -1,5 +1,5 @@
-// A suite of sealed cases: controls, single hidden effects at multiples of what the recording can
-// show, pairs, and effects that the library is not allowed to name.
+// A suite of sealed cases: controls, single hidden effects at multiples of their detectable sizes,
+// pairs of effects, and effects that are removed from the library of the diagnosis.
 #ifndef LACUNA_TRIALS_TRIAL_SUITE_H_
 #define LACUNA_TRIALS_TRIAL_SUITE_H_
 
@@ -16,27 +16,32 @@ namespace lacuna {
 
 struct TrialSuite {
   std::string name;
-  uint64_t seed = 0;  // of tuning and of reported suites never the same
-  int controls = 0, hard_controls = 0;
-  std::vector<std::string> effects;  // hidden one at a time,
-  std::vector<int> factors;          // at these multiples of their detectable sizes,
-  std::vector<int> recordings;       // seen in so many recordings
-  bool is_scanned = false;           // by depth cameras; else markers are tracked
-  std::vector<std::string> removed;  // hidden at the largest factor, and taken from the library
-  int pairs = 0;                     // of two effects, at the largest factor each
+  // Suites that tune the diagnosis and suites that are reported must have different seeds.
+  uint64_t seed = 0;
+  int controls = 0, hard_controls = 0;  // numbers of cases without a hidden effect
+  std::vector<std::string> effects;     // hidden one at a time
+  std::vector<int> factors;             // sizes of the hidden effects, in detectable sizes
+  std::vector<int> recordings;          // numbers of recordings per case
+  bool is_scanned = false;              // true: depth cameras; false: markers
+  std::vector<std::string> removed;     // hidden at the largest factor and removed from the library
+  int pairs = 0;                        // number of cases with two effects, at the largest factor
 };
+// Throws InputError at the key that is wrong; also for an effect that the catalogue does not have.
 TrialSuite ReadTrialSuite(const Config& config);
 
-// The cases, their hidden effects' kinds and factors drawn, sizes not yet.
+// The cases of a suite with the types and factors of their hidden effects, whose sizes are not
+// determined yet. The same suite gives the same cases.
 std::vector<TrialCase> CasesOf(const TrialSuite& suite);
 
-// Makes a case in <folder>/<case>: sizes its hidden effects, films it and writes truth.json last. A
-// case that is there already stays; one of which only truth.json is there is filmed again as it
-// was. Where an effect would have to be larger than is plausible to be
-// seen the case is drawn again; after some draws it is given up (skipped.txt) and false returned.
+// Makes a case in <folder>/<case>: determines the sizes of its hidden effects, simulates the
+// recordings and writes truth.json last. An existing case is kept; if only its truth.json exists,
+// its recordings are simulated again as they were. If a detectable effect would be implausibly
+// large the case is drawn again; after eight draws it is abandoned (skipped.txt) and false is
+// returned.
 bool MakeCase(TrialCase trial, const std::filesystem::path& folder);
 
-// All cases of a suite that are not there yet. Returns what ShareOut does.
+// Makes all cases of a suite that do not exist yet, in `workers` processes. Returns the result of
+// ShareOut (core/workers.h).
 int MakeTrials(const TrialSuite& suite, const std::filesystem::path& folder, int workers);
 
 }  // namespace lacuna

@@ -17,8 +17,8 @@ Eigen::MatrixXd Random(int rows, int columns, std::mt19937* random) {
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(*random); });
 }
 
-TEST(LinearModel, HasTheEvidenceOfItsGaussian) {
-  // ln N(r; −A m, v I + A P Aᵀ) less that of no parameters, from dense matrices.
+TEST(LinearGaussianModel, HasTheEvidenceOfItsGaussian) {
+  // ln N(r; −A m, v I + A P Aᵀ) minus that without parameters, from dense matrices.
   std::mt19937 random(3);
   const Eigen::MatrixXd A = Random(kRows, 3, &random);
   const Eigen::VectorXd r = Random(kRows, 1, &random);
@@ -26,7 +26,7 @@ TEST(LinearModel, HasTheEvidenceOfItsGaussian) {
   const Eigen::Vector3d mean(0.2, -0.5, 0), deviation(0.5, 2, 0.1);
   std::vector<LinearPrior> priors;
   for (int k = 0; k < 3; ++k) priors.push_back({mean[k], deviation[k], false});
-  const LinearModel model(r, A, priors);
+  const LinearGaussianModel model(r, A, priors);
   const auto log_density = [&](const Eigen::VectorXd& x, const Eigen::MatrixXd& covariance) {
     const Eigen::LDLT<Eigen::MatrixXd> factor(covariance);
     return -0.5 * x.dot(factor.solve(x)) - 0.5 * factor.vectorD().array().log().sum();
@@ -38,14 +38,14 @@ TEST(LinearModel, HasTheEvidenceOfItsGaussian) {
               log_density(r + A * mean, with) - log_density(r, noise), 1e-8);
 }
 
-TEST(LinearModel, HasTheEvidenceOfAPriorCutInHalf) {
+TEST(LinearGaussianModel, HasTheEvidenceOfATruncatedPrior) {
   // ∫ over θ > 0 of 2 N(θ; 0, s²) exp(−½ ‖r + a θ‖²) by the trapezoidal rule.
   std::mt19937 random(4);
   const Eigen::MatrixXd a = Random(kRows, 1, &random);
   for (const double planted : {-0.3, 0.0, 0.3}) {
     const Eigen::VectorXd r = Random(kRows, 1, &random) - planted * a;
     const double s = 0.5, h = 1e-4;
-    const LinearModel model(r, a, {{0, s, true}});
+    const LinearGaussianModel model(r, a, {{0, s, true}});
     double sum = 0;
     for (int i = 0; i < 50000; ++i) {
       const double theta = i * h;
@@ -59,11 +59,11 @@ TEST(LinearModel, HasTheEvidenceOfAPriorCutInHalf) {
   }
 }
 
-TEST(LinearModel, FindsWhatWasPlanted) {
+TEST(LinearGaussianModel, RecoversTheTruth) {
   std::mt19937 random(5);
   const Eigen::MatrixXd A = Random(kRows, 3, &random);
   const Eigen::VectorXd r = Random(kRows, 1, &random) - 3 * A.col(2);
-  const LinearModel model(r, A, {{0, kInfinity}, {0, kInfinity}, {0, 10, true}});
+  const LinearGaussianModel model(r, A, {{0, kInfinity}, {0, kInfinity}, {0, 10, true}});
   const LinearFit fit = model.Fit({0, 1, 2}, 1);
   // One standard deviation is 1/√200 = 0.07.
   EXPECT_NEAR(fit.change[2], 3, 0.3);
@@ -72,35 +72,36 @@ TEST(LinearModel, FindsWhatWasPlanted) {
   EXPECT_GT(fit.log_evidence - model.Fit({0, 1}, 1).log_evidence, 100);
 }
 
-TEST(LinearModel, SeesNothingOfWhatWasTaken) {
+TEST(LinearGaussianModel, RemovesColumnsThatAreProjectedOut) {
   std::mt19937 random(7);
   Eigen::MatrixXd A = Random(kRows, 4, &random);
   A.col(3) = A.leftCols(3) * Eigen::Vector3d(1, -2, 0.5);
-  const LinearModel model(Random(kRows, 1, &random), A,
-                          std::vector<LinearPrior>(4, {0, kInfinity}));
+  const LinearGaussianModel model(Random(kRows, 1, &random), A,
+                                  std::vector<LinearPrior>(4, {0, kInfinity}));
   EXPECT_NEAR(model.Remaining({0, 1, 2}, {3}, {3}, 1)(0, 0) / model.Square(3), 0, 1e-10);
   EXPECT_EQ(model.Collinearity({0, 1, 2}, {3}, {3}, 1), 0);
 }
 
-TEST(LinearModel, IsRarelySureOfWhatIsNotThere) {
-  // ln B > 3 calls for z² > 6 + ln(1 + 100·200): once in some 10 000 draws of χ² with one degree of
-  // freedom; 500 draws hold none or, with probability 5 %, one.
+TEST(LinearGaussianModel, RarelyFindsStrongEvidenceForAnAbsentEffect) {
+  // ln B > 3 requires z² > 6 + ln(1 + 100·200), which has a probability of about 1e-4 for χ² with
+  // one degree of freedom; among 500 draws there is one with a probability of 5 %.
   std::mt19937 random(11);
   int alarms = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const LinearModel model(Random(kRows, 1, &random), Random(kRows, 3, &random),
-                            {{0, kInfinity}, {0, kInfinity}, {0, 10}});
+    const LinearGaussianModel model(Random(kRows, 1, &random), Random(kRows, 3, &random),
+                                    {{0, kInfinity}, {0, kInfinity}, {0, 10}});
     alarms += model.Fit({0, 1, 2}, 1).log_evidence - model.Fit({0, 1}, 1).log_evidence > 3;
   }
   EXPECT_LE(alarms, 1);
 }
 
-TEST(LinearModel, KnowsParallelColumns) {
+TEST(LinearGaussianModel, RecognisesParallelColumns) {
   std::mt19937 random(13);
   Eigen::MatrixXd A = Random(kRows, 4, &random);
   A.col(2) = A.col(1) + 0.01 * Random(kRows, 1, &random) + 5 * A.col(0);
-  const LinearModel model(Random(kRows, 1, &random), A, std::vector<LinearPrior>(4, {0, 10}));
-  // Alike after the first column is taken; two unrelated ones correlate by 1/√200.
+  const LinearGaussianModel model(Random(kRows, 1, &random), A,
+                                  std::vector<LinearPrior>(4, {0, 10}));
+  // Parallel after the first column has been projected out; unrelated columns correlate by 1/√200.
   EXPECT_GT(model.Collinearity({0}, {1}, {2}, 1), 0.999);
   EXPECT_LT(model.Collinearity({0}, {1}, {3}, 1), 0.4);
 }

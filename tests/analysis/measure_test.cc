@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-TEST(Measure, SummarisesLengthsAndLeavesOutWhatWasNotMeasured) {
+TEST(Measure, SummarisesLengthsWithoutUnmeasuredOnes) {
   const LengthSummary summary =
       Summarise(Eigen::Vector4d(3, std::numeric_limits<double>::quiet_NaN(), 4, 5));
   EXPECT_DOUBLE_EQ(summary.sum, 12);
@@ -17,7 +17,7 @@ TEST(Measure, SummarisesLengthsAndLeavesOutWhatWasNotMeasured) {
   EXPECT_DOUBLE_EQ(summary.max, 5);
 }
 
-TEST(Measure, OfNothingIsZero) {
+TEST(Measure, OfNoLengthsIsZero) {
   const LengthSummary summary = Summarise(Eigen::VectorXd());
   EXPECT_EQ(summary.sum, 0);
   EXPECT_EQ(summary.rms, 0);
@@ -28,7 +28,7 @@ TEST(Measure, AnimationResidualIsTheSumOverFrames) {
       AnimationResidual({Summarise(Eigen::Vector2d(1, 2)), Summarise(Eigen::Vector2d(3, 4))}), 10);
 }
 
-TEST(Measure, DistanceToSurfaceNeedsNoCorrespondence) {
+TEST(Measure, DistanceToSurfaceNeedsNoCorrespondences) {
   TriMesh square;
   square.vertices.resize(3, 4);
   square.vertices.transpose() << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;

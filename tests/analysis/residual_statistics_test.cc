@@ -18,7 +18,7 @@ Eigen::MatrixXd WhiteSeries(int rows, int columns, unsigned seed, double deviati
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
 }
 
-// x_f = a x_{f−1} + √(1 − a²) e_f, of variance one from the first.
+// The autoregression x_f = a x_{f−1} + √(1 − a²) e_f with unit variance in every frame.
 Eigen::MatrixXd AutoregressiveSeries(int rows, int columns, double a, unsigned seed) {
   Eigen::MatrixXd series = WhiteSeries(rows, columns, seed);
   for (int f = 1; f < columns; ++f)
@@ -36,7 +36,7 @@ Eigen::VectorXd Times(int frames, double step) {
   return Eigen::VectorXd::LinSpaced(frames, 0, step * (frames - 1));
 }
 
-TEST(ResidualStatistics, RootMeanSquaresLeaveOutWhatWasNotSeen) {
+TEST(ResidualStatistics, RootMeanSquaresIgnoreUnseenEntries) {
   Eigen::MatrixXd vectors(6, 2);
   vectors.col(0) << 3, 4, 0, 0, 0, 1;
   vectors.col(1) << 0, kNan, 0, 0, 7, 0;
@@ -51,19 +51,21 @@ TEST(ResidualStatistics, RootMeanSquaresLeaveOutWhatWasNotSeen) {
   EXPECT_TRUE(std::isnan(Rms(Eigen::MatrixXd::Constant(1, 1, kNan))));
 }
 
-TEST(ResidualStatistics, ChiSquareTailsAreThoseOfTheTables) {
-  // 5 % points to three decimals (Abramowitz & Stegun, table 26.8): off by less than 1e-4 in p.
+TEST(ResidualStatistics, ChiSquareTailsAgreeWithTables) {
+  // 5 % points to three decimals (Abramowitz & Stegun, table 26.8), i.e. with errors below 1e-4 in
+  // p.
   EXPECT_NEAR(ChiSquareTail(3.841, 1), 0.05, 1e-4);
   EXPECT_NEAR(ChiSquareTail(5.991, 2), 0.05, 1e-4);
   EXPECT_NEAR(ChiSquareTail(7.815, 3), 0.05, 1e-4);
   EXPECT_NEAR(ChiSquareTail(18.307, 10), 0.05, 1e-4);
   EXPECT_NEAR(ChiSquareTail(124.342, 100), 0.05, 1e-4);
-  // Many degrees: normal with mean k and variance 2k, skewed by less than 0.01.
+  // For many degrees of freedom k nearly normal, with mean k, variance 2k and a skewness below
+  // 0.01.
   EXPECT_NEAR(ChiSquareTail(5000, 5000), 0.5, 0.01);
   EXPECT_EQ(ChiSquareTail(0, 3), 1);
 }
 
-TEST(ResidualStatistics, WhiteNoiseIsCalledWhiteAtTheNominalRate) {
+TEST(ResidualStatistics, WhiteNoiseIsRejectedAtTheNominalRate) {
   constexpr int kSeeds = 400;
   int in_time = 0, in_space = 0;
   const Eigen::Matrix3Xd places = PlacesInARow(4, 0.01);
@@ -72,43 +74,43 @@ TEST(ResidualStatistics, WhiteNoiseIsCalledWhiteAtTheNominalRate) {
     in_time += WhitenessInTime(noise).p_value < 0.05;
     in_space += WhitenessInSpace(noise, places).p_value < 0.05;
   }
-  // 5 % of 400 is 20 ± 4.4: three deviations; the χ² of the second is an approximation.
+  // 5 % of 400 is 20 ± 4.4; three standard deviations. The χ² of the second test is approximate.
   EXPECT_NEAR(in_time, 20, 14);
   EXPECT_NEAR(in_space, 20, 18);
 }
 
-TEST(ResidualStatistics, PointsThatShareTheirNoiseAreStillWhiteInTime) {
+TEST(ResidualStatistics, PointsWithCommonNoiseAreStillWhiteInTime) {
   int coloured = 0;
   for (unsigned seed = 0; seed < 200; ++seed)
     coloured += WhitenessInTime(WhiteSeries(3, 60, seed).replicate(4, 1)).p_value < 0.05;
   EXPECT_LT(coloured, 20);  // 10 ± 3
 }
 
-TEST(ResidualStatistics, UnrelatedPointsThatRememberTheirPastAreNotCalledRelated) {
+TEST(ResidualStatistics, IndependentPointsWithAutocorrelationAreNotCalledCorrelated) {
   constexpr int kSeeds = 500;
   int related = 0;
   for (unsigned seed = 0; seed < kSeeds; ++seed)
     related +=
         WhitenessInSpace(AutoregressiveSeries(12, 200, 0.7, seed), PlacesInARow(4, 0.01)).p_value <
         0.05;
-  // 25 ± 5; without Bartlett's correction most of the 500 would be.
+  // 25 ± 5 are expected; without Bartlett's correction most of the 500 would be rejected.
   EXPECT_LT(related, 60);
 }
 
-TEST(ResidualStatistics, AutoregressionIsFoundWithItsCorrelationTime) {
+TEST(ResidualStatistics, AutoregressionIsDetectedWithItsCorrelationTime) {
   const TimeWhiteness white = WhitenessInTime(WhiteSeries(6, 400, 1));
   const TimeWhiteness coloured = WhitenessInTime(AutoregressiveSeries(6, 400, 0.8, 1));
   EXPECT_EQ(coloured.lags, 10);
-  EXPECT_LE(coloured.p_value, 0.001);  // the smallest of a thousand orders
+  EXPECT_LE(coloured.p_value, 0.001);  // the smallest possible with a thousand orders
   EXPECT_GT(white.p_value, 0.01);
-  // ρ_1 has deviation √((1 − a²)/n) = 0.012 over 2400 entries.
+  // The standard deviation of ρ_1 is √((1 − a²)/n) = 0.012 for 2400 entries.
   EXPECT_NEAR(coloured.lag_one, 0.8, 0.05);
   EXPECT_NEAR(white.lag_one, 0, 0.08);
   EXPECT_NEAR(coloured.correlation_frames, -1 / std::log(0.8), 1);  // 4.5
   EXPECT_LT(white.correlation_frames, 1);
 }
 
-TEST(ResidualStatistics, WeakAutoregressionIsFoundMostly) {
+TEST(ResidualStatistics, WeakAutoregressionIsUsuallyDetected) {
   int found = 0;
   for (unsigned seed = 0; seed < 100; ++seed)
     found += WhitenessInTime(AutoregressiveSeries(6, 200, 0.4, seed)).p_value < 0.05;
@@ -126,7 +128,7 @@ TEST(ResidualStatistics, GapsDoNotMakeNoiseColoured) {
   EXPECT_LT(coloured, 24);  // 10 ± 3
 }
 
-TEST(ResidualStatistics, TooFewFramesTellNothing) {
+TEST(ResidualStatistics, TooFewFramesGiveNoResult) {
   const TimeWhiteness whiteness = WhitenessInTime(WhiteSeries(3, 9, 1));
   EXPECT_EQ(whiteness.lags, 0);
   EXPECT_TRUE(std::isnan(whiteness.p_value));
@@ -135,11 +137,11 @@ TEST(ResidualStatistics, TooFewFramesTellNothing) {
   EXPECT_TRUE(std::isnan(WhiteNoise(Eigen::MatrixXd::Zero(3, 2))));
 }
 
-TEST(ResidualStatistics, CorrelationLengthInSpaceIsFound) {
+TEST(ResidualStatistics, CorrelationLengthInSpaceIsRecovered) {
   constexpr int kPoints = 6, kFrames = 2000;
   constexpr double kLength = 0.03;
   const Eigen::Matrix3Xd places = PlacesInARow(kPoints, 0.01);
-  // Along a row of points, exp(−d/ℓ) is an autoregression from point to point.
+  // Along a row of points, the correlation exp(−d/ℓ) is an autoregression from point to point.
   const double a = std::exp(-0.01 / kLength);
   const Eigen::MatrixXd along = AutoregressiveSeries(3 * kFrames, kPoints, a, 3);
   Eigen::MatrixXd vectors(3 * kPoints, kFrames);
@@ -150,7 +152,7 @@ TEST(ResidualStatistics, CorrelationLengthInSpaceIsFound) {
   EXPECT_EQ(whiteness.pairs.size(), 15u);
   EXPECT_NEAR(whiteness.correlation_length, kLength, 0.003);  // 6000 samples: 1 % of ρ each
   EXPECT_LT(whiteness.p_value, 1e-10);
-  // All points alike.
+  // Identical residuals at all points.
   Eigen::MatrixXd alike(3 * kPoints, kFrames);
   const Eigen::MatrixXd common = WhiteSeries(3, kFrames, 5);
   for (int m = 0; m < kPoints; ++m) alike.middleRows<3>(3 * m) = common;
@@ -158,15 +160,15 @@ TEST(ResidualStatistics, CorrelationLengthInSpaceIsFound) {
   EXPECT_NEAR(WhitenessInSpace(alike, places).mean_correlation, 1, 1e-9);
 }
 
-TEST(ResidualStatistics, WhiteNoiseIsSeenUnderMotion) {
+TEST(ResidualStatistics, WhiteNoiseIsEstimatedUnderMotion) {
   Eigen::MatrixXd positions = WhiteSeries(9, 1000, 2, 1e-5);
   const Eigen::VectorXd times = Times(1000, 0.01);
   for (int f = 0; f < 1000; ++f) positions.col(f).array() += 0.01 * std::sin(times[f]);
-  // The second difference of the motion is 1e-6 at most; 9 medians of a thousand: 2 %.
+  // The second difference of the motion is at most 1e-6; the error of the medians is 2 %.
   EXPECT_NEAR(WhiteNoise(positions), 1e-5, 0.05e-5);
 }
 
-TEST(ResidualStatistics, RestsAreFoundWithTheirNoiseAndDrift) {
+TEST(ResidualStatistics, StaticSpansAreFoundWithTheirNoiseAndDrift) {
   constexpr double kNoise = 1e-5, kDrift = 1e-5;
   const Eigen::VectorXd times = Times(300, 0.01);
   Eigen::MatrixXd positions = WhiteSeries(12, 300, 4, kNoise);
@@ -185,8 +187,8 @@ TEST(ResidualStatistics, RestsAreFoundWithTheirNoiseAndDrift) {
   EXPECT_NEAR(rests[1].first, 199, 1);
   EXPECT_EQ(rests[1].last, 299);
   for (const StaticSpan& rest : rests) EXPECT_NEAR(rest.deviation, kNoise, 0.1 * kNoise);
-  // A slope over a second of 100 frames has deviation σ √12 / (√100 s) = 3.5e-6 a coordinate, and
-  // what is not there adds √3 times that.
+  // A slope over one second with 100 frames has the standard deviation σ √12 / (√100 s) = 3.5e-6
+  // per coordinate, and noise alone gives a drift of √3 times as much.
   EXPECT_NEAR(rests[1].drift, std::hypot(kDrift, 6e-6), 4e-6);
 }
 
@@ -204,7 +206,7 @@ TEST(ResidualStatistics, SpeedAndDisplacementOfAUniformMotion) {
   EXPECT_TRUE(std::isnan(displacements(0, 5)));
 }
 
-TEST(ResidualStatistics, ErrorThatGrowsWithSpeedShowsInBinsAndRanks) {
+TEST(ResidualStatistics, AnErrorProportionalToSpeedShowsInBinsAndRanks) {
   const Eigen::MatrixXd speed = Eigen::RowVectorXd::LinSpaced(100, 0, 1);
   const Eigen::MatrixXd error = 2 * speed.array().square();
   const std::vector<ResidualBin> bins = BinnedResiduals(speed, error, 5);
@@ -214,7 +216,7 @@ TEST(ResidualStatistics, ErrorThatGrowsWithSpeedShowsInBinsAndRanks) {
   EXPECT_NEAR(RankCorrelation(speed, error), 1, 1e-12);
   EXPECT_NEAR(RankCorrelation(speed, -error), -1, 1e-12);
   EXPECT_TRUE(std::isnan(RankCorrelation(speed, 0 * error)));
-  // Two values only, three quarters alike: they stay together.
+  // With only two values, of which one makes up three quarters, equal values stay in one bin.
   Eigen::MatrixXd two = Eigen::MatrixXd::Ones(1, 100);
   two.rightCols(25).setConstant(2);
   const std::vector<ResidualBin> of_two = BinnedResiduals(two, error, 5);
@@ -222,23 +224,23 @@ TEST(ResidualStatistics, ErrorThatGrowsWithSpeedShowsInBinsAndRanks) {
   EXPECT_EQ(of_two[0].points, 75);
 }
 
-TEST(ResidualStatistics, ThePlantedSpanAndItsDirectionAreFound) {
+TEST(ResidualStatistics, ASpanOfErrorAndItsDirectionAreFound) {
   Eigen::MatrixXd error = WhiteSeries(9, 100, 6, 1e-5);
-  for (int f = 40; f < 60; ++f) error.row(5).segment(f, 1).array() -= 1e-3;  // point 1 down
+  for (int f = 40; f < 60; ++f) error.row(5).segment(f, 1).array() -= 1e-3;  // point 1 moves down
   error.col(50).setConstant(kNan);
-  error.col(80).array() += 1e-2;  // one bad frame is no span of time
+  error.col(80).array() += 1e-2;  // a single bad frame is shorter than the span
   const Eigen::VectorXd of_frames = RmsOfFrames(PointLengths(error));
   const FrameSpan span = LongestSpanAbove(of_frames, 2e-4);
   EXPECT_EQ(span.first, 40);
   EXPECT_EQ(span.last, 59);
-  EXPECT_EQ(span.above, 19);  // frame 50 is not seen
+  EXPECT_EQ(span.above, 19);  // frame 50 was not seen
   EXPECT_EQ(LongestSpanAbove(of_frames, 1).first, -1);
   EXPECT_EQ(LongestSpanAbove(of_frames, 2e-4, 19).last, 59);
   EXPECT_EQ(LongestSpanAbove(of_frames, 2e-4, 20).last, 80);
   const MeanVector of_point = MeanOver(error.middleRows<3>(3), span.first, span.last);
   EXPECT_NEAR(of_point.mean[2], -1e-3, 2e-5);
   EXPECT_GT(of_point.agreement, 0.99);
-  // 100 random vectors: |Σ| / Σ| | is about 0.1.
+  // For 100 random vectors |Σ e| / Σ |e| is about 0.1.
   EXPECT_LT(MeanOver(WhiteSeries(3, 100, 8), 0, 99).agreement, 0.3);
 }
 
@@ -251,11 +253,11 @@ TEST(ResidualStatistics, RepeatsAreAlignedAndTheirDistanceIsTheNoise) {
   Eigen::MatrixXd second = WhiteSeries(6, 320, 11, kNoise);
   for (int f = 0; f < 300; ++f) first.col(f).array() += motion(first_times[f]);
   for (int f = 0; f < 320; ++f)
-    second.col(f).array() += 0.002 + motion(second_times[f] - kDelay);  // stuck on elsewhere
+    second.col(f).array() += 0.002 + motion(second_times[f] - kDelay);  // attached elsewhere
   const Repeatability repeats = CompareRepeats(first_times, first, second_times, second, 0.2, 0.1);
   EXPECT_NEAR(repeats.delay, kDelay, 1e-4);
-  // √6 σ, less what averaging between two frames takes away (at most 1/√2 of one of the two) and
-  // with the bend of the motion between frames, h²/8 of the acceleration 0.8: 1e-5 at its most.
+  // √6 σ, reduced by the averaging between two frames (at most 1/√2 of one of the two recordings),
+  // plus the interpolation error of the motion, h²/8 times the acceleration 0.8, i.e. at most 1e-5.
   EXPECT_GT(repeats.distance, 0.8 * std::sqrt(6.0) * kNoise);
   EXPECT_LT(repeats.distance, 1.2 * std::sqrt(6.0) * kNoise);
   EXPECT_EQ(CompareRepeats(first_times, first, second_times.array() + 100, second, 0, 0.1).frames,

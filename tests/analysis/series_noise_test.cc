@@ -12,7 +12,7 @@ namespace {
 SeriesLayout Irregular() {
   SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<int>(18, 1), {}};
   layout.count[3] = layout.count[7] = layout.count[17] = 0;
-  layout.count[0] = 4;  // the mean of four
+  layout.count[0] = 4;  // a mean of four measurements
   return layout;
 }
 
@@ -36,10 +36,10 @@ TEST(SeriesNoise, WhitensItsCovariance) {
   EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
 }
 
-// An error of a marker's place turns and stretches with the object.
-TEST(SeriesNoise, WhitensPlacesThatMoveWithTheObject) {
+// The offset of a marker is rotated and stretched with the object.
+TEST(SeriesNoise, WhitensOffsetsThatMoveWithTheObject) {
   SeriesLayout layout{6, {0, 0.1, 0.15, 0.4}, std::vector<int>(24, 1), {}};
-  for (const int hidden : {9, 10, 11}) layout.count[hidden] = 0;  // the second point's in frame 1
+  for (const int hidden : {9, 10, 11}) layout.count[hidden] = 0;  // the second point in frame 1
   std::srand(1);
   for (int k = 0; k < 8; ++k)
     layout.deformation.push_back(Eigen::Matrix3d::Identity() + 0.8 * Eigen::Matrix3d::Random());
@@ -50,7 +50,7 @@ TEST(SeriesNoise, WhitensPlacesThatMoveWithTheObject) {
     for (Eigen::Index j = 0; j < 24; ++j) {
       if (!layout.count[i] || !layout.count[j]) continue;
       expected(i, j) = i == j;
-      if (i / 3 % 2 != j / 3 % 2) continue;  // another point
+      if (i / 3 % 2 != j / 3 % 2) continue;  // different points
       covariance(i, j) =
           0.49 * layout.deformation[i / 3].row(i % 3).dot(layout.deformation[j / 3].row(j % 3));
       const double apart = std::abs(layout.times[i / 6] - layout.times[j / 6]);
@@ -58,7 +58,7 @@ TEST(SeriesNoise, WhitensPlacesThatMoveWithTheObject) {
     }
   }
   EXPECT_LT((W * covariance * W.transpose() - expected).norm(), 1e-12);  // rounding
-  // What does not move shares a plain constant.
+  // In a body that does not deform, the offset is constant.
   layout.deformation.assign(8, Eigen::Matrix3d::Identity());
   SeriesLayout still = layout;
   still.deformation.clear();
@@ -66,7 +66,7 @@ TEST(SeriesNoise, WhitensPlacesThatMoveWithTheObject) {
   EXPECT_LT((Whitened(rows, layout, noise) - Whitened(rows, still, noise)).norm(), 1e-12);
 }
 
-TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
+TEST(SeriesNoise, TreatsExcludedFramesAsAbsent) {
   const SeriesLayout layout = Irregular();
   const std::vector<char> chosen = {1, 1, 1, 0, 1, 0};
   SeriesLayout without = layout;
@@ -77,7 +77,7 @@ TEST(SeriesNoise, TakesFramesThatAreLeftOutForAbsent) {
   EXPECT_EQ(Whitened(rows, layout, noise, chosen), Whitened(rows, without, noise));
 }
 
-TEST(SeriesNoise, TellsHowLongNoiseLasts) {
+TEST(SeriesNoise, EstimatesTheCorrelationTime) {
   SeriesLayout layout{40, {}, {}, {}};
   for (int frame = 0; frame < 60; ++frame) layout.times.push_back(0.01 * frame);
   layout.count.assign(static_cast<size_t>(layout.Rows()), 1);
@@ -91,7 +91,7 @@ TEST(SeriesNoise, TellsHowLongNoiseLasts) {
                       : memory * rows[row - 40] + std::sqrt(1 - memory * memory) * normal(random);
     const SeriesStatistics statistics = Statistics(rows, layout);
     EXPECT_NEAR(statistics.spacing, 0.01, 1e-12);  // rounding of the times
-    // 2400 rows: 0.02 by chance, 1/60 by the means taken away, times (1 + ρ)/(1 − ρ).
+    // For 2400 rows: 0.02 by chance, and 1/60 by the subtracted means, times (1 + ρ)/(1 − ρ).
     EXPECT_NEAR(statistics.lag_one, memory, 0.08);
     // 1 + 2 Σ (1 − k/9) ρᵏ.
     EXPECT_NEAR(statistics.long_run, memory == 0 ? 1 : 2.55, memory == 0 ? 0.15 : 0.5);
@@ -100,9 +100,9 @@ TEST(SeriesNoise, TellsHowLongNoiseLasts) {
   }
 }
 
-TEST(SeriesNoise, DeviationOfAShortRecordIsNotTooSmallForItsMemory) {
-  // 13 frames of noise that keeps 0.45 of itself, on lines of any slope: the plain deviation about
-  // a line is 11 % too small.
+TEST(SeriesNoise, DeviationOfAShortRecordAccountsForCorrelation) {
+  // 13 frames of noise with a lag-one correlation of 0.45 about lines of any slope. The plain
+  // standard deviation about a line would be 11 % too small.
   constexpr double kDeviation = 2e-4, kMemory = 0.45;
   constexpr int kFrames = 13, kSeries = 2000;
   std::mt19937_64 random(5);
@@ -116,7 +116,7 @@ TEST(SeriesNoise, DeviationOfAShortRecordIsNotTooSmallForItsMemory) {
       rows(s, f) = 0.3 * s + 1e-3 * s * times[f] + kDeviation * value;
     }
   }
-  // The chance error of 2000 series is 1 %; correlations are tried in steps of 0.05.
+  // The random error of 2000 series is 1 %, and correlations are tried in steps of 0.05.
   EXPECT_NEAR(DeviationAboutTrend(times, rows), kDeviation, 0.02 * kDeviation);
   EXPECT_EQ(DeviationAboutTrend(times, Eigen::MatrixXd::Zero(2, kFrames)), 0);
 }

@@ -1,5 +1,5 @@
 // The two formulations of a step's force fit, by the number of nodes and of coefficients: what
-// fit/force_fit.h chooses by. README.md of this folder tells how to read the figures.
+// fit/step_force_fitter.h chooses by. README.md of this folder tells how to read the figures.
 #include <fmt/format.h>
 
 #include <array>

@@ -386,12 +386,12 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
 TEST(MarkerNoise, IsThatOfTheCoordinates) {
   constexpr double kNoise = 2e-4;
   PredictedRecording item;
-  item.recording.marker_places = Eigen::Matrix3Xd::Random(3, 20);
+  item.recording.markers.places = Eigen::Matrix3Xd::Random(3, 20);
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, kNoise);
   std::vector<int> frames;
   for (int frame = 0; frame < 200; ++frame) {
-    Eigen::Matrix3Xd positions = item.recording.marker_places.array() + 0.01 * frame;
+    Eigen::Matrix3Xd positions = item.recording.markers.places.array() + 0.01 * frame;
     for (double& coordinate : positions.reshaped()) coordinate += noise(random);
     if (frame % 3 == 0) positions.col(4).setConstant(std::nan(""));
     item.recording.markers.positions.push_back(positions);

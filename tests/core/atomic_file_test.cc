@@ -29,7 +29,7 @@ class AtomicFileTest : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST_F(AtomicFileTest, ReplacesTheWholeContentAndLeavesNothingElse) {
+TEST_F(AtomicFileTest, ReplacesTheWholeContentAndLeavesNoOtherFile) {
   WriteFileAtomically(folder_ / "a", "the first, longer content");
   WriteFileAtomically(folder_ / "a", "second");
   EXPECT_EQ(FileContent(folder_ / "a"), "second");
@@ -78,7 +78,7 @@ TEST_F(AtomicFileTest, LinkKeepsPointingToTheFileThatIsReplaced) {
   EXPECT_EQ(FileContent(folder_ / "target"), "new");
 }
 
-TEST_F(AtomicFileTest, UnwritablePlacesAreNamedWithTheirCause) {
+TEST_F(AtomicFileTest, ErrorNamesTheUnwritablePlaceAndTheCause) {
   WriteFileAtomically(folder_ / "file", "");
   const auto expect = [](const fs::path& file, const std::string& cause) {
     EXPECT_THAT(
@@ -93,7 +93,7 @@ TEST_F(AtomicFileTest, UnwritablePlacesAreNamedWithTheirCause) {
 }
 
 TEST_F(AtomicFileTest, FullDiskIsAnErrorAndKeepsTheOldContent) {
-  // A limit on the file size stands for the full disk: write(2) fails in the same place.
+  // A limit on the file size imitates a full disk: write(2) fails in the same place.
   WriteFileAtomically(folder_ / "a", "old");
   const auto write_beyond_the_limit = [this] {
     signal(SIGXFSZ, SIG_IGN);

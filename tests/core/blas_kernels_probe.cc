@@ -1,4 +1,4 @@
-// Says with which BLAS kernels and arguments it runs; started by blas_kernels_test.
+// Prints the BLAS kernels and the arguments it runs with; started by blas_kernels_test.
 #include <cstdlib>
 #include <iostream>
 #include <string>
@@ -6,7 +6,7 @@
 #include "core/blas_kernels.h"
 
 int main(int argc, char** argv) {
-  // OpenBLAS cannot be made to err, so the test asks for the restart that an error would lead to.
+  // OpenBLAS cannot be made to misjudge the processor, so the test requests the restart itself.
   const bool restart = argc > 1 && std::string(argv[1]) == "restart";
   if (restart && std::getenv("OPENBLAS_CORETYPE") == nullptr) {
     lacuna::RestartWithBlasKernels("Nehalem", argv);

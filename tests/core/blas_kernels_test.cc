@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-// What the probe prints, with these words before and after its name.
+// The output of the probe program, run with this environment ("NAME=value") and these arguments.
 std::string RunProbe(const std::string& environment, const std::string& arguments) {
   const std::string command =
       "env -u OPENBLAS_CORETYPE " + environment + " '" LACUNA_BLAS_PROBE "' " + arguments;
@@ -20,7 +20,7 @@ std::string RunProbe(const std::string& environment, const std::string& argument
   return output;
 }
 
-TEST(BlasKernels, AreReplacedWhereTheyDoNotUseWhatTheProcessorHas) {
+TEST(BlasKernels, AreReplacedIfTheProcessorSupportsFasterOnes) {
   const VectorInstructions none, avx2{.avx2 = true}, avx512{.avx2 = true, .avx512 = true};
   EXPECT_EQ(BetterBlasKernels("Prescott", avx512), "SkylakeX");
   EXPECT_EQ(BetterBlasKernels("Prescott", avx2), "Haswell");
@@ -31,17 +31,17 @@ TEST(BlasKernels, AreReplacedWhereTheyDoNotUseWhatTheProcessorHas) {
   }
 }
 
-TEST(BlasKernels, InUseAreFastOnceTheProgramHasLookedAfterThem) {
+TEST(BlasKernels, InUseAreFastAfterTheProgramHasChecked) {
   const std::string name = RunProbe("", "");
   ASSERT_FALSE(name.empty());
   EXPECT_EQ(BetterBlasKernels(name, InstructionsOfThisProcessor()), "") << name;
 }
 
-TEST(BlasKernels, OfTheUsersChoiceAreKept) {
+TEST(BlasKernels, ChosenByTheUserAreKept) {
   EXPECT_EQ(RunProbe("OPENBLAS_CORETYPE=Nehalem", "a"), "Nehalem|a");
 }
 
-TEST(BlasKernels, AreChangedByARestartThatKeepsTheArguments) {
+TEST(BlasKernels, AreChangedByARestartWithTheSameArguments) {
   EXPECT_EQ(RunProbe("", "restart 'two words' '' --last"), "Nehalem|restart|two words||--last");
 }
 

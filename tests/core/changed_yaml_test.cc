@@ -33,14 +33,14 @@ class ChangedYamlTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(ChangedYamlTest, PutsPiecesInAndMovesTheirPaths) {
+TEST_F(ChangedYamlTest, InsertsIncludedPiecesAndRewritesTheirPaths) {
   const Config whole = Changed({});
   EXPECT_EQ(whole.Child("bar").Text("size"), "3 mm");
   EXPECT_EQ(whole.Child("bar").Text("scan"), "../../data/scan.csv");
   EXPECT_EQ(whole.Path("scan"), folder_ / "data/other.csv");
 }
 
-TEST_F(ChangedYamlTest, ReplacesAddsAndTakesOut) {
+TEST_F(ChangedYamlTest, ReplacesAddsAndRemovesEntries) {
   const Config changed = Changed({{"effects[0].eta", "2", "s.yaml"},
                                   {"bar.size", "~", "s.yaml"},
                                   {"new.of.all", "[1, 2]", "s.yaml"},
@@ -51,7 +51,7 @@ TEST_F(ChangedYamlTest, ReplacesAddsAndTakesOut) {
   EXPECT_EQ(changed.Path("scan"), folder_ / "base/pieces/mine.csv");
 }
 
-TEST_F(ChangedYamlTest, RefusesWhatHasNoPlace) {
+TEST_F(ChangedYamlTest, RefusesFieldsThatCannotExist) {
   const auto refuses = [this](const std::string& field, const char* message) {
     EXPECT_THAT(
         [&] {
@@ -60,11 +60,11 @@ TEST_F(ChangedYamlTest, RefusesWhatHasNoPlace) {
         ThrowsMessage<InputError>(HasSubstr(field + ": " + message)));
   };
   refuses("effects[1].eta", "effects has no item [1]");
-  refuses("effects.eta", "effects is no mapping");
-  refuses("scan.x", "scan is no mapping");
-  refuses("again.x", "again stands in several places");
-  refuses("bar..size", "is no field");
-  refuses("bar.", "is no field");
+  refuses("effects.eta", "effects is not a mapping");
+  refuses("scan.x", "scan is not a mapping");
+  refuses("again.x", "again is shared by several places");
+  refuses("bar..size", "is not a field");
+  refuses("bar.", "is not a field");
   EXPECT_THAT(
       [&] {
         Changed({{"bar", "[1", "s.yaml"}});

@@ -36,7 +36,7 @@ void ExpectInputError(const std::function<void()>& read,
   }
 }
 
-TEST(Config, ReadsValuesInSi) {
+TEST(Config, ReadsValuesInSiUnits) {
   const Config beam = Config::Parse(kBeam, "beam.yaml");
   EXPECT_EQ(beam.Integer("schema_version", 1, 1), 1);
   const Config material = beam.Child("material");
@@ -89,7 +89,7 @@ TEST(Config, RefusesAKeyGivenTwice) {
                    "a.yaml:4:3: c: is given twice");
 }
 
-TEST(Config, RefusesWhatIsNotYamlOrNotAMapping) {
+TEST(Config, RefusesInvalidYamlAndOtherThanAMapping) {
   EXPECT_THROW(Config::Parse("a: [1, 2\n", "a.yaml"), InputError);
   EXPECT_THROW(Config::Parse("- 1\n", "a.yaml"), InputError);
   EXPECT_THROW(Config::Parse("", "a.yaml"), InputError);
@@ -98,10 +98,11 @@ TEST(Config, RefusesWhatIsNotYamlOrNotAMapping) {
                    "a.yaml:3:1: starts a second YAML document; expected one in a file");
 }
 
-TEST(Config, UsesPiecesWhoseEntriesTheFileOverrides) {
+TEST(Config, InsertsPiecesWhoseEntriesTheFileOverrides) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "pieces");
-  std::ofstream(folder / "pieces/camera.yaml") << "noise: 0.3 mm\nlens: {width: 2 mm}\nfile: a.txt\n";
+  std::ofstream(folder / "pieces/camera.yaml")
+      << "noise: 0.3 mm\nlens: {width: 2 mm}\nfile: a.txt\n";
   std::ofstream(folder / "pieces/four.yaml") << "use: camera.yaml\ncount: 4\n";
   std::ofstream(folder / "main.yaml")
       << "list:\n  - {use: pieces/four.yaml, noise: 1 mm}\n  - use: pieces/camera.yaml\n";
@@ -120,8 +121,7 @@ TEST(Config, UsesPiecesWhoseEntriesTheFileOverrides) {
                    HasSubstr("camera.yaml"));  // items[1].lens, not read
 
   std::ofstream(folder / "pieces/camera.yaml") << "use: four.yaml\n";
-  ExpectInputError([&] { Config::Load(folder / "main.yaml"); },
-                   HasSubstr("would use itself"));
+  ExpectInputError([&] { Config::Load(folder / "main.yaml"); }, HasSubstr("would use itself"));
   std::filesystem::remove(folder / "pieces/camera.yaml");
   ExpectInputError([&] { Config::Load(folder / "main.yaml"); },
                    HasSubstr("pieces/four.yaml:1:6: list[0].use"));
@@ -156,7 +156,7 @@ TEST(Config, ResolvesToSiWithDefaults) {
                 R"({"material": {"young_modulus": 1e5, "poisson_ratio": 0.3}, "effects": []})"));
 }
 
-TEST(Config, TellsAWrongKindOfEntry) {
+TEST(Config, RefusesAnEntryOfTheWrongType) {
   const Config config = Config::Parse("a: {b: 1}\nv: [1 m, 2 m]\nn: 1.5\nf: maybe\n", "a.yaml");
   EXPECT_THROW(config.Text("a"), InputError);
   EXPECT_THROW(config.Items("a"), InputError);
@@ -178,7 +178,7 @@ TEST(Config, ListsItsKeysInOrderAndReadsQuantitiesOfAnyDimension) {
   ExpectInputError([&] { config.AnyQuantity("b"); }, HasSubstr("b: is missing"));
 }
 
-TEST(Config, PointsAtAnItemOfAList) {
+TEST(Config, ReportsThePositionOfAListItem) {
   const Config config = Config::Parse("force: [\"a\",\n  \"b\"]\ntext: c\n", "a.yaml");
   ExpectInputError([&] { config.FailAtItem("force", 1, "no"); }, "a.yaml:2:3: force[1]: no");
   ExpectInputError([&] { config.FailAtItem("force", 2, "no"); }, "a.yaml:1:8: force: no");

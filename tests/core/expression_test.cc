@@ -27,7 +27,7 @@ TEST(Expression, ReadsNumbersAndConstants) {
   EXPECT_EQ(ValueOf("pi"), M_PI);
 }
 
-TEST(Expression, BindsAsInMathematics) {
+TEST(Expression, FollowsMathematicalPrecedence) {
   EXPECT_EQ(ValueOf("1 + 2 * 3"), 7);
   EXPECT_EQ(ValueOf("(1 + 2) * 3"), 9);
   EXPECT_EQ(ValueOf("10 - 4 - 3"), 3);
@@ -46,7 +46,7 @@ TEST(Expression, BindsAsInMathematics) {
   EXPECT_EQ(ValueOf("x - y * stiffness / 2", 1, 2, 3), -2);
 }
 
-TEST(Expression, KnowsItsFunctions) {
+TEST(Expression, EvaluatesItsFunctions) {
   const double x = 0.3, y = -0.7;
   EXPECT_EQ(ValueOf("sin(x) + cos(y) + tan(x)", x, y), std::sin(x) + std::cos(y) + std::tan(x));
   EXPECT_EQ(ValueOf("asin(x) + acos(y) + atan(x)", x, y),
@@ -64,14 +64,14 @@ TEST(Expression, KnowsItsFunctions) {
   EXPECT_EQ(ValueOf("smooth_step(x)", 2), 1);
 }
 
-TEST(Expression, TellsWhichVariablesItUses) {
+TEST(Expression, ReportsWhichVariablesItUses) {
   const Expression expression("y * 0 + sin(pi)", kNames);
   EXPECT_FALSE(expression.Uses(0));
   EXPECT_TRUE(expression.Uses(1));
   EXPECT_EQ(expression.text(), "y * 0 + sin(pi)");
 }
 
-TEST(Expression, IsNotANumberWhereItIsNotDefined) {
+TEST(Expression, IsNotFiniteWhereItIsUndefined) {
   for (const char* text :
        {"log(x)", "sqrt(x)", "x ^ 0.5", "asin(x - 1)", "min(log(x), 1)", "min(1, log(x))",
         "max(log(x), 1)", "max(1, log(x))", "abs(log(x))", "step(log(x))", "smooth_step(log(x))"}) {
@@ -80,7 +80,7 @@ TEST(Expression, IsNotANumberWhereItIsNotDefined) {
   EXPECT_EQ(ValueOf("1 / x", 0), std::numeric_limits<double>::infinity());
 }
 
-// The smallest error of the derivative against central differences of several step sizes.
+// The smallest deviation of the derivative from central differences over several step sizes.
 double DerivativeError(const std::string& text, const std::array<double, 3>& at) {
   const Expression expression(text, kNames);
   Dual<3> variables[3];
@@ -107,7 +107,7 @@ double DerivativeError(const std::string& text, const std::array<double, 3>& at)
   return worst;
 }
 
-TEST(Expression, HasTheDerivativesOfItsDifferences) {
+TEST(Expression, HasDerivativesThatMatchFiniteDifferences) {
   for (const char* text : {"x + 2*y - stiffness",
                            "x*y*stiffness",
                            "x/y + y/x",
@@ -143,18 +143,19 @@ TEST(Expression, HasTheDerivativesOfItsDifferences) {
                            "smooth_step(y/x)",
                            "smooth_step(-x)",
                            "x/sqrt(x^2 + y^2)"}) {
-    // Central differences of steps of 1e-4 to 1e-5 are good to 1e-8 and rounding to 1e-11.
+    // Central differences with steps of 1e-4 to 1e-5 have a truncation error of up to 1e-8 and a
+    // rounding error of 1e-11.
     EXPECT_LT(DerivativeError(text, {0.6, 0.9, 1.7}), 2e-8) << text;
   }
 }
 
-TEST(Expression, HasFiniteDerivativesWhereNothingChanges) {
+TEST(Expression, HasFiniteDerivativesWhereTheArgumentIsConstant) {
   const auto derivative = [](const std::string& text, double x, double y) {
     const Dual<3> variables[] = {Dual<3>::Variable(x, 0), Dual<3>::Variable(y, 1),
                                  Dual<3>::Constant(0)};
     return Expression(text, kNames).At(variables).derivative;
   };
-  // A speed at rest; a negative base under a constant power; a root that the direction misses.
+  // The norm of a zero vector; a negative base with a constant exponent; a root of a constant.
   EXPECT_EQ(derivative("sqrt(x^2 + y^2)", 0, 0).matrix().norm(), 0);
   EXPECT_EQ(derivative("x^3", -2, 0)[0], 12);
   EXPECT_EQ(derivative("x^2", -2, 0)[0], -4);
@@ -173,7 +174,7 @@ std::string ErrorOf(const std::string& text) {
   return "nothing was refused";
 }
 
-TEST(Expression, SaysWhatIsWrongAndWhere) {
+TEST(Expression, ReportsErrorsWithTheirColumn) {
   const std::pair<const char*, const char*> cases[] = {
       {"", "column 1: is empty"},
       {"  ", "column 1: is empty"},
@@ -211,7 +212,7 @@ TEST(Expression, SaysWhatIsWrongAndWhere) {
   for (const auto& [text, message] : cases) EXPECT_EQ(ErrorOf(text), message) << text;
 }
 
-TEST(Expression, RefusesWhatIsNestedTooDeeply) {
+TEST(Expression, RefusesTooDeepNesting) {
   EXPECT_EQ(ValueOf(std::string(100, '(') + "1" + std::string(100, ')')), 1);
   const std::string values = [] {
     std::string text;
@@ -220,13 +221,13 @@ TEST(Expression, RefusesWhatIsNestedTooDeeply) {
   }();
   for (const std::string& text : {std::string(100000, '('), std::string(100000, '-') + "x", values})
     EXPECT_THAT(ErrorOf(text), testing::HasSubstr("is nested too deeply"));
-  // Long is not deep.
+  // A long expression is not a deep one.
   std::string sum = "x";
   for (int k = 0; k < 10000; ++k) sum += " + x";
   EXPECT_EQ(ValueOf(sum, 1), 10001);
 }
 
-TEST(Expression, SurvivesAnyText) {
+TEST(Expression, SurvivesRandomText) {
   const std::string alphabet = "xy12.+-*/^(),sincoexpmin e\xc2\xb2_";
   std::mt19937 random(3);
   int sound = 0;
@@ -245,7 +246,7 @@ TEST(Expression, SurvivesAnyText) {
   EXPECT_GT(sound, 100);
 }
 
-TEST(Expression, KnowsWhatANameIs) {
+TEST(Expression, RecognisesValidNames) {
   for (const char* name : {"k", "z0", "_a", "stiffNess_2"}) EXPECT_TRUE(Expression::IsName(name));
   for (const char* name : {"", "2k", "a-b", "a b", "µ"}) EXPECT_FALSE(Expression::IsName(name));
 }

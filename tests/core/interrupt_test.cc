@@ -8,7 +8,7 @@
 namespace lacuna {
 namespace {
 
-TEST(Interrupt, SignalIsRememberedUntilASafePlace) {
+TEST(Interrupt, SignalIsRememberedUntilASafePoint) {
   InstallInterruptHandler();
   EXPECT_FALSE(InterruptRequested());
   EXPECT_NO_THROW(ThrowIfInterrupted());

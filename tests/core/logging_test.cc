@@ -7,7 +7,7 @@
 namespace lacuna {
 namespace {
 
-// In processes of their own, for logging is initialised once per process.
+// These run in processes of their own because logging can be initialised only once per process.
 TEST(LoggingDeathTest, EachMessageAppearsOnceInTheCompactForm) {
   const auto log = [] {
     InitialiseLogging("test", LogLevel::kInfo);
@@ -32,7 +32,7 @@ TEST(LoggingDeathTest, MessagesBelowTheLevelAreDropped) {
   EXPECT_EXIT(log(), ::testing::ExitedWithCode(0), "^W [^\n]* seen\nI [^\n]* seen too\n$");
 }
 
-TEST(LoggingDeathTest, FailedCheckTellsWhatAndAborts) {
+TEST(LoggingDeathTest, FailedCheckReportsItsConditionAndAborts) {
   const auto fail = [] {
     InitialiseLogging("test", LogLevel::kError);
     CHECK_EQ(1, 2) << "the cause";

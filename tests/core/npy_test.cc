@@ -23,7 +23,7 @@ using ::testing::ThrowsMessage;
 
 class Npy : public ::testing::Test {
  protected:
-  // A file as NumPy writes it, with the header and the payload given.
+  // Writes a file like NumPy, from a header and a payload.
   template <typename Number>
   fs::path WriteByHand(const std::string& dictionary, const std::vector<Number>& numbers,
                        int version = 1) {
@@ -42,7 +42,7 @@ class Npy : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST_F(Npy, DoublesComeBackBitForBit) {
+TEST_F(Npy, DoublesAreReadBackBitForBit) {
   Eigen::MatrixXd matrix(2, 3);
   matrix << 0.1, -0.0, 1e-310, std::numeric_limits<double>::infinity(), std::nan(""), 3;
   WriteNpy(folder_ / "a.npy", matrix);
@@ -52,7 +52,7 @@ TEST_F(Npy, DoublesComeBackBitForBit) {
   EXPECT_EQ(std::memcmp(read.data(), matrix.data(), 6 * sizeof(double)), 0);
 }
 
-TEST_F(Npy, IntegersBeyondDoublePrecisionComeBackExactly) {
+TEST_F(Npy, IntegersBeyondDoublePrecisionAreReadBackExactly) {
   MatrixXi64 matrix(1, 2);
   matrix << (int64_t{1} << 53) + 1, std::numeric_limits<int64_t>::min();
   WriteNpyIntegers(folder_ / "a.npy", matrix);
@@ -68,7 +68,7 @@ TEST_F(Npy, EmptyMatrixKeepsItsShape) {
   EXPECT_EQ(read.cols(), 0);
 }
 
-TEST_F(Npy, PayloadIsAlignedAsTheFormatAsks) {
+TEST_F(Npy, PayloadIsAlignedAsTheFormatRequires) {
   WriteNpy(folder_ / "a.npy", Eigen::MatrixXd::Zero(1, 1));
   EXPECT_EQ((fs::file_size(folder_ / "a.npy") - sizeof(double)) % 64, 0u);
 }
@@ -85,7 +85,7 @@ TEST_F(Npy, BothOrdersGiveTheSameMatrix) {
   EXPECT_EQ(fortran(1, 0), 2);
 }
 
-TEST_F(Npy, ThreeDimensionsComeWithTheLastIndexFastest) {
+TEST_F(Npy, ThreeDimensionsAreReadWithTheLastIndexFastest) {
   // In Fortran order the first index runs fastest: a(i, j, k) = 1 + i + 2 j + 4 k here.
   const NpyArray array = ReadNpy(WriteByHand<float>(
       "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 2, 2), }", {1, 2, 3, 4, 5, 6, 7, 8}));
@@ -101,7 +101,7 @@ TEST_F(Npy, VectorIsAColumnAndVersionTwoIsRead) {
   EXPECT_EQ(column(2, 0), 65535);
 }
 
-TEST_F(Npy, EachBrokenFileIsRefusedWithItsCause) {
+TEST_F(Npy, BrokenFilesAreRefusedWithTheirCause) {
   const auto expect = [](const fs::path& file, const std::string& cause) {
     EXPECT_THAT([&] { ReadNpyMatrix(file); }, ThrowsMessage<InputError>(::testing::AllOf(
                                                   HasSubstr(file.string()), HasSubstr(cause))));
@@ -111,7 +111,7 @@ TEST_F(Npy, EachBrokenFileIsRefusedWithItsCause) {
   const std::string good = "{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }";
   const fs::path file = WriteByHand(good, two);
   fs::resize_file(file, fs::file_size(file) - 1);
-  expect(file, "15 bytes of numbers where its shape asks for 16");
+  expect(file, "15 bytes of numbers; its shape needs 16");
   fs::resize_file(file, 30);
   expect(file, "ends within");
   fs::resize_file(file, 4);

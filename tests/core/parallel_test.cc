@@ -38,7 +38,7 @@ TEST(Parallel, BlocksDoNotDependOnTheThreadCount) {
   }
 }
 
-TEST(Parallel, CarriesAnExceptionToTheCaller) {
+TEST(Parallel, RethrowsAnExceptionInTheCaller) {
   EXPECT_THROW(ParallelFor(100, 1,
                            [](int64_t i) {
                              if (i == 57) throw std::runtime_error("57");
@@ -55,7 +55,7 @@ TEST(Parallel, RunsALoopInsideALoop) {
   for (const int count : visits) EXPECT_EQ(count, 1);
 }
 
-TEST(Parallel, ServesLoopsOfSeveralCallersAtTheSameTime) {
+TEST(Parallel, RunsLoopsOfSeveralCallersAtTheSameTime) {
   ThreadCountGuard guard;
   SetThreadCount(2);
   constexpr int kCallers = 4, kLoops = 500;

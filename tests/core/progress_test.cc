@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-// A Progress that writes to a string under a clock that the test sets.
+// A Progress that writes to a string and reads a clock that the test sets.
 class ProgressTest : public ::testing::Test {
  protected:
   ProgressOptions Options(ProgressStyle style) {
@@ -34,7 +34,7 @@ class ProgressTest : public ::testing::Test {
   double now_ = 1000;
 };
 
-TEST_F(ProgressTest, JsonLinesTellStageFrameResidualAndRemainingTime) {
+TEST_F(ProgressTest, JsonLinesReportStageFrameResidualAndRemainingTime) {
   Progress progress(Options(ProgressStyle::kJsonLines));
   progress.Begin("fit", 20);
   now_ += 6;
@@ -59,7 +59,7 @@ TEST_F(ProgressTest, JsonLinesTellStageFrameResidualAndRemainingTime) {
   EXPECT_EQ(lines[3]["note"], "all converged");
 }
 
-TEST_F(ProgressTest, JsonLinesAreRateLimitedButTheEndIsTold) {
+TEST_F(ProgressTest, JsonLinesAreRateLimitedExceptForTheEnd) {
   Progress progress(Options(ProgressStyle::kJsonLines));
   progress.Begin("scan", 1000);
   for (int frame = 1; frame <= 1000; ++frame) {
@@ -67,7 +67,7 @@ TEST_F(ProgressTest, JsonLinesAreRateLimitedButTheEndIsTold) {
     progress.Report(frame);
   }
   progress.End();
-  // 10 s at one line per second, and the begin and the end; ± 1 for rounding of the clock's sums.
+  // 10 s at one line per second, plus the beginning and the end; ± 1 for rounding of the clock.
   EXPECT_NEAR(static_cast<double>(Lines().size()), 12, 1);
   EXPECT_EQ(Lines().back()["done"], 1000);
 }

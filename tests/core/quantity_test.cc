@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-TEST(Quantity, ReadsUnitsIntoSi) {
+TEST(Quantity, ConvertsUnitsToSi) {
   EXPECT_DOUBLE_EQ(ParseQuantity("0.1 MPa", kPressure), 1e5);
   EXPECT_DOUBLE_EQ(ParseQuantity("30 mm", kLength), 0.03);
   EXPECT_DOUBLE_EQ(ParseQuantity("30mm", kLength), 0.03);
@@ -36,10 +36,10 @@ void ExpectRefused(const char* text, const Dimension& dimension, const char* par
   }
 }
 
-TEST(Quantity, RefusesWhatItCannotMeanAndSaysWhatWasExpected) {
+TEST(Quantity, RefusesInvalidTextAndSaysWhatWasExpected) {
   ExpectRefused("12 Pas", kViscosity, "expected a viscosity, e.g. \"12 Pa s\"");
   ExpectRefused("30", kLength, "a unit is missing");
-  ExpectRefused("30 kg", kLength, "measures something else");
+  ExpectRefused("30 kg", kLength, "another dimension");
   ExpectRefused("30 mmm", kLength, "unknown unit \"mmm\"");
   ExpectRefused("30 mm extra", kLength, "unknown unit \"extra\"");
   ExpectRefused("m", kLength, "expected a length");
@@ -51,7 +51,7 @@ TEST(Quantity, RefusesWhatItCannotMeanAndSaysWhatWasExpected) {
   ExpectRefused("3 kmin", kTime, "unknown unit");  // a minute takes no prefix
 }
 
-TEST(Quantity, TellsTheDimensionOfAnyUnit) {
+TEST(Quantity, DeterminesTheDimensionOfAnyUnit) {
   const MeasuredQuantity pull = ParseAnyQuantity("3 N/kg");
   EXPECT_DOUBLE_EQ(pull.value, 3);
   EXPECT_TRUE(pull.dimension.SameAs(kAcceleration));
@@ -60,7 +60,7 @@ TEST(Quantity, TellsTheDimensionOfAnyUnit) {
   EXPECT_DOUBLE_EQ(odd.value, -2e9);
   EXPECT_STREQ(odd.dimension.unit, "kg/m^3/s");
   EXPECT_STREQ(odd.dimension.name, "a quantity in kg/m^3/s");
-  // What it says of itself can be read again.
+  // The example text of a dimension can be parsed again.
   EXPECT_TRUE(ParseAnyQuantity(odd.dimension.example).dimension.SameAs(odd.dimension));
   EXPECT_TRUE(ParseAnyQuantity("0.5").dimension.SameAs(kDimensionless));
   EXPECT_TRUE(ParseAnyQuantity("4 1/mm^2").dimension.SameAs({-2, 0, 0, 0, 0}));

@@ -19,7 +19,7 @@ TEST(ReadWholeFile, KeepsEveryByte) {
   EXPECT_EQ(ReadWholeFile(folder / "file"), "");
 }
 
-TEST(ReadWholeFile, NamesTheFileThatItCannotRead) {
+TEST(ReadWholeFile, ErrorNamesTheUnreadableFile) {
   const TemporaryFolder folder;
   for (const std::filesystem::path& file : {folder / "absent", folder / "."}) {
     try {

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Key;
 
-TEST(Claim, HoldsAFileOnceAndNamesItsHolder) {
+TEST(Claim, IsExclusiveAndNamesItsHolder) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "claimed";
   EXPECT_THAT(HolderOf(file), IsEmpty());
@@ -31,7 +31,7 @@ TEST(Claim, HoldsAFileOnceAndNamesItsHolder) {
     EXPECT_TRUE(first.holds());
     EXPECT_FALSE(second.holds());
     EXPECT_THAT(HolderOf(file), HasSubstr("process " + std::to_string(getpid())));
-    // Asking takes nothing.
+    // HolderOf takes no lock.
     EXPECT_FALSE(Claim(file).holds());
   }
   EXPECT_THAT(HolderOf(file), IsEmpty());
@@ -39,7 +39,7 @@ TEST(Claim, HoldsAFileOnceAndNamesItsHolder) {
   EXPECT_THROW(Claim(folder / "absent/claimed"), InputError);
 }
 
-TEST(Workers, DoEachJobOnceInProcessesOfTheirOwn) {
+TEST(Workers, RunEachJobOnceInAProcessOfItsOwn) {
   const TemporaryFolder folder;
   const int status = ShareOut(5, {.workers = 2, .threads = 3}, [&](size_t k) {
     std::ofstream(folder / std::to_string(k), std::ios::app)
@@ -54,7 +54,7 @@ TEST(Workers, DoEachJobOnceInProcessesOfTheirOwn) {
   }
 }
 
-TEST(Workers, ACrashIsToldAndTheOthersGoOn) {
+TEST(Workers, ReportACrashAndContinueWithTheOtherJobs) {
   const TemporaryFolder folder;
   std::map<size_t, std::string> crashed;
   WorkerOptions options;

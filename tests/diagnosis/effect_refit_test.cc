@@ -53,9 +53,9 @@ TEST(HypothesisEvidence, IsThatOfTheLinearModelAtTheBestParameters) {
   FittedHypothesis hypothesis = MakeHypothesis(0.8);
   const auto fit = [&] {
     const LinearisedMisfit& misfit = hypothesis.misfit;
-    return LinearModel(WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-                       WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false),
-                       hypothesis.priors)
+    return LinearGaussianModel(
+               WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
+               WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false), hypothesis.priors)
         .FitAll(kNoise.variance);
   };
   const LinearFit best = fit();
@@ -120,9 +120,9 @@ TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
   const FurtherEvidence further = FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise);
   EXPECT_EQ(further.type, "there");
   const auto evidence = [&] {
-    return LinearModel(WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-                       WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false),
-                       hypothesis.priors)
+    return LinearGaussianModel(
+               WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
+               WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false), hypothesis.priors)
         .FitAll(kNoise.variance)
         .log_evidence;
   };
@@ -139,9 +139,9 @@ TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
 FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise, bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd change =
-      LinearModel(WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
-                  WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only),
-                  hypothesis.priors)
+      LinearGaussianModel(
+          WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
+          WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only), hypothesis.priors)
           .FitAll(noise.variance)
           .change;
   hypothesis.misfit.residual += change[0] * hypothesis.misfit.by.col(0);

@@ -167,11 +167,11 @@ TEST_F(LoadedBar, ComesAsTrackedPointsToo) {
   EXPECT_EQ(item.scans, nullptr);
   ASSERT_EQ(item.recording.markers.names.size(), 9u);
   EXPECT_EQ(item.recording.markers.names[8], "p8");
-  EXPECT_TRUE(item.recording.marker_places.leftCols(8).isApprox(BarMarkerPlaces(), 1e-9));
+  EXPECT_TRUE(item.recording.markers.places.leftCols(8).isApprox(BarMarkerPlaces(), 1e-9));
   EXPECT_TRUE(item.recording.markers.positions[5].col(8).array().isNaN().all());
   EXPECT_EQ(item.recording.markers.positions[4](0, 8), 0.04);
-  EXPECT_EQ(item.recording.grips[0].motion, GripMotion::kFollowsMarkers);
-  EXPECT_THAT(item.recording.grips[0].markers, testing::ElementsAre("p0", "p1"));
+  EXPECT_EQ(item.recording.object.grips[0].motion, GripMotion::kFollowsMarkers);
+  EXPECT_THAT(item.recording.object.grips[0].markers, testing::ElementsAre("p0", "p1"));
 }
 
 TEST_F(LoadedBar, TellsThatItCreeps) {

@@ -141,8 +141,7 @@ TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
 // Of depth images, as of points.
 TEST(ScanPrediction, IsTheSameForAnyNumberOfThreads) {
   const TemporaryFolder folder;
-  WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape,
-                ScanOutput::kDepth);
+  WriteBarScans(folder.Path(), HeldSurfaces(), std::string(kClampedEnd) + kShape, WriteDepthFrames);
   const int threads = ThreadCount();
   std::vector<Observed> observed;
   for (const int count : {1, 2}) {

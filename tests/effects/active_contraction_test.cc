@@ -24,7 +24,7 @@ TEST(ActiveContraction, PullsAlongItsMaterialDirection) {
   const Eigen::Matrix3d F{{1.2, 0.3, -0.1}, {0.1, 0.8, 0.2}, {-0.2, 0.1, 0.9}};
   const Eigen::Matrix3d expected = 2e3 * F * a * a.transpose();
   EXPECT_LT((element.Stress(*Contraction(2e3), F) - expected).norm(), 1e-12 * expected.norm());
-  // Nothing at rest, to rounding: 2 kPa in 2.5 cm³ would be 5 mJ.
+  // Zero at rest up to rounding; 2 kPa in 2.5 cm³ would be 5 mJ.
   EXPECT_NEAR(element.Energy(*Contraction(2e3), Eigen::Matrix3d::Identity()), 0, 1e-17);
 }
 
@@ -38,7 +38,7 @@ TEST(ActiveContraction, ShortensABodyAndThickensIt) {
   const Eigen::Matrix3d F =
       identity + kTension / kYoung * (kPoisson * identity - (1 + kPoisson) * a * a.transpose());
   const auto solid = MakeEffect("linear", {{"young_modulus", kYoung}, {"poisson_ratio", kPoisson}});
-  // The next order in the strain is 1e-7 of it.
+  // The next order in the strain is smaller by 1e-7.
   EXPECT_LT((element.Stress(*solid, F) + element.Stress(*Contraction(kTension), F)).norm(),
             1e-6 * kTension);
   EXPECT_GT(element.Stress(*Contraction(kTension), F).norm(), 0.9 * kTension);
@@ -52,7 +52,7 @@ TEST(ActiveContraction, RisesSmoothlyFromItsStart) {
   };
   EXPECT_EQ(pull(0), 0);
   EXPECT_EQ(pull(0.2), 0);
-  // u² (3 − 2u) at a quarter, a half and three quarters of the rise; to rounding.
+  // u² (3 − 2u) at a quarter, a half and three quarters of the rise, up to rounding.
   EXPECT_NEAR(pull(0.3), 1e3 * 0.15625, 1e-9);
   EXPECT_NEAR(pull(0.4), 1e3 * 0.5, 1e-9);
   EXPECT_NEAR(pull(0.5), 1e3 * 0.84375, 1e-9);
@@ -60,7 +60,7 @@ TEST(ActiveContraction, RisesSmoothlyFromItsStart) {
   EXPECT_NEAR(pull(9), 1e3, 1e-9);
 }
 
-TEST(ActiveContraction, IsReadFromYamlAndActsAtOnceIfNotTold) {
+TEST(ActiveContraction, IsReadFromYamlAndActsAtOnceByDefault) {
   const Config config = Config::Parse(
       "effects:\n"
       "  - {type: active_contraction, tension: -2 kPa, axis: [0, 1, 0]}\n"

@@ -25,7 +25,7 @@ Eigen::Matrix3Xd ForcePerUnit(const Effect& effect, const Body& body,
   return force.reshaped(3, body.NodeCount());
 }
 
-TEST(AttachedMass, IsAnEffect) {
+TEST(AttachedMass, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("attached_mass", {{"mass", 0.02},
                                            {"centre_x", 0.02},
                                            {"centre_y", -0.02},
@@ -38,7 +38,7 @@ TEST(AttachedMass, IsAnEffect) {
 
 TEST(AttachedMass, HasItsWeightAndItsInertiaAtItsPlace) {
   const Eigen::Vector3d centre(0.08, 0.02, 0.02);
-  // No mass in the model yet: the derivative alone must know.
+  // The model has no mass yet, so only the derivative is tested.
   const auto mass = MakeEffect(
       "attached_mass",
       {{"mass", 0}, {"centre_x", 0.08}, {"centre_y", 0.02}, {"centre_z", 0.02}, {"radius", 0.006}});
@@ -47,8 +47,8 @@ TEST(AttachedMass, HasItsWeightAndItsInertiaAtItsPlace) {
     const Eigen::Matrix3Xd force = ForcePerUnit(*mass, body, {3, 0, 0});
     EXPECT_LT((force.rowwise().sum() - Eigen::Vector3d(-3, 0, -kGravity)).norm(), 1e-12);
     const Eigen::Vector3d place = body.mesh.nodes * force.row(2).transpose() / -kGravity;
-    // The bump is symmetric about its centre; the volumes around the nodes of a mesh with one
-    // diagonal are so too.
+    // The distribution is symmetric about its centre, and so are the nodal volumes of a mesh whose
+    // cells are all divided along one diagonal.
     EXPECT_LT((place - centre).norm(), 1e-6);
     EXPECT_LT(ForcePerUnit(*mass, body, {0, 0, -kGravity}).norm(), 1e-15) << "falls freely";
   }
@@ -67,8 +67,8 @@ TEST(AttachedMass, FallsOnTheNearestNodeWhenItIsSmall) {
   EXPECT_NEAR(force(2, nodes[0]), -kGravity, 1e-12);
 }
 
-// Half the period of small swings of a rod about a hinge through its upper end, from the first
-// return of the turned-out rod through its lowest place.
+// Half the period of small oscillations of a rod about a hinge at its upper end, from the first
+// passage of the deflected rod through its lowest position.
 double HalfPeriod(const Model& model, const Eigen::Vector3d& hinge, double expected) {
   MotionHistory history = RestHistory(model);
   const int nodes = model.body->NodeCount();
@@ -84,7 +84,7 @@ double HalfPeriod(const Model& model, const Eigen::Vector3d& hinge, double expec
     return shift.row(0).dot(mass);
   };
   Stepper stepper(model, {.scheme = TimeScheme::kBdf2});
-  // Errors of the step in the period: (π/120)²/3 = 2e-4.
+  // The time step causes a relative error of the period of (π/120)²/3 = 2e-4.
   const double time_step = expected / 120;
   double before = 0;
   for (int k = 0; k < 160; ++k) {
@@ -127,13 +127,14 @@ TEST(AttachedMass, LengthensThePeriodOfAPendulum) {
                       {MakeEffect("corotational", {{"young_modulus", 1e8}, {"poisson_ratio", 0.3}}),
                        MakeEffect("gravity", {{"acceleration_z", -kGravity}}), attached(mass)},
                       {{pinned, {}}}};
-    // Beside the 3e-4 above, what the rod bends (its stiffness is 1e4 that of the swing). With the
-    // weight or the inertia of the mass alone the period would be off by 20 % or more.
+    // In addition to the error of the step, the rod bends a little (its stiffness is 1e4 times that
+    // of the oscillation). With the weight or the inertia of the mass alone the period would be
+    // wrong by 20 % or more.
     EXPECT_NEAR(HalfPeriod(model, hinge, expected), expected, 1e-3 * expected) << mass;
   }
 }
 
-TEST(DensityGradient, IsAnEffect) {
+TEST(DensityGradient, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("density_gradient", {{"gradient", 3000},
                                               {"axis_x", 1},
                                               {"axis_y", -2},
@@ -154,7 +155,7 @@ TEST(DensityGradient, AddsItsMassAndMovesItsCentre) {
         MakeEffect("density_gradient", {{"gradient", 0}, {"axis_x", 7}, {"axis_z", 0}});
     const auto from_centre = MakeEffect(
         "density_gradient", {{"gradient", 0}, {"axis_x", 7}, {"axis_z", 0}, {"origin_x", 0.05}});
-    // ∫ X dV = 160 cm³ · 5 cm, exactly whatever the mesh and its density.
+    // ∫ X dV = 160 cm³ · 5 cm, exactly for any mesh.
     const double moment = 0.1 * 0.04 * 0.04 * 0.05;
     for (const Body* each : {&body, &same}) {
       const Eigen::Matrix3Xd force = ForcePerUnit(*from_end, *each, {2, 0, 0});
@@ -163,8 +164,8 @@ TEST(DensityGradient, AddsItsMassAndMovesItsCentre) {
     }
     const Eigen::Matrix3Xd force = ForcePerUnit(*from_centre, same, {0, 0, 0});
     EXPECT_LT(force.rowwise().sum().norm(), 1e-12 * moment);
-    // ∫ X (X − X₀) dV = A L³/12; lumping errs by the second moments of the elements, about 1/n² of
-    // it for n elements along the axis.
+    // ∫ X (X − X₀) dV = A L³/12. Lumping causes an error of the second moments of the elements, a
+    // share of about 1/n² for n elements along the axis.
     const double second = 0.04 * 0.04 * 1e-3 / 12;
     EXPECT_NEAR(-force.row(2).dot(same.mesh.nodes.row(0)) / kGravity, second, 0.03 * second);
   }
@@ -196,7 +197,7 @@ TEST(DensityGradient, StretchesAHangingBar) {
     const Eigen::VectorXi lower =
         NodesWhere(model.body->mesh, [](const Eigen::Vector3d& X) { return X.z() < 1e-9; });
     for (const int node : lower) sunk -= shift(2, node) / static_cast<double>(lower.size());
-    // The lumped load misses 1/n² of it, 0.4 % with its n = 16 rows of nodes.
+    // The lumped load lacks a share of 1/n², 0.4 % with n = 16 rows of nodes.
     EXPECT_NEAR(sunk, expected, 0.005 * expected) << order;
   }
 }

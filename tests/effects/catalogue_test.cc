@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <set>
+#include <variant>
 
 namespace lacuna {
 namespace {
@@ -36,13 +37,45 @@ TEST(Catalogue, NamesOnlyLookAlikesThatExist) {
   }
 }
 
-// What one is easily taken for is easily taken for it.
+// To be a look-alike is a symmetric relation.
 TEST(Catalogue, NamesLookAlikesBothWays) {
   for (const CatalogueEntry& entry : Catalogue()) {
-    for (const std::string& other : entry.card->look_alikes) {
+    for (const std::string& other : LookAlikesOf(*entry.card)) {
       ASSERT_NE(FindEntry(other), nullptr) << other;
-      EXPECT_THAT(FindEntry(other)->card->look_alikes, testing::Contains(entry.card->type))
+      EXPECT_THAT(LookAlikesOf(*FindEntry(other)->card), testing::Contains(entry.card->type))
           << "among those of " << other;
+    }
+  }
+}
+
+TEST(Catalogue, SaysOfEachEffectWhereItIsTried) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    const EffectCard& card = *entry.card;
+    if (const auto* at_values = std::get_if<TriedAtValues>(&card.tried_at)) {
+      EXPECT_GE(ParameterIndex(card, at_values->parameter), 0) << card.type;
+      EXPECT_FALSE(at_values->values.empty()) << card.type;
+    }
+    if (const auto* at_times = std::get_if<TriedAtRelaxationTimes>(&card.tried_at))
+      EXPECT_GE(ParameterIndex(card, at_times->parameter), 0) << card.type;
+    if (std::holds_alternative<TriedAtPlaces>(card.tried_at)) {
+      EXPECT_GE(ParameterIndex(card, "centre_x"), 0) << card.type;
+      EXPECT_GE(ParameterIndex(card, "radius"), 0) << card.type;
+    }
+    if (std::holds_alternative<TriedAsSupports>(card.tried_at))
+      EXPECT_GE(ParameterIndex(card, "point_x"), 0) << card.type;
+  }
+}
+
+// Two settings of one effect with the same draw would have the same random number.
+TEST(Catalogue, GivesEachDrawnSettingOfAnEffectItsOwnDraw) {
+  for (const CatalogueEntry& entry : Catalogue()) {
+    std::set<int> draws;
+    for (const ParameterCard& parameter : entry.card->parameters) {
+      if (!parameter.trial.IsDrawn()) continue;
+      EXPECT_TRUE(draws.insert(parameter.trial.draw).second)
+          << entry.card->type << "." << parameter.name;
+      EXPECT_GE(parameter.trial.min, parameter.plausible_min) << parameter.name;
+      EXPECT_LE(parameter.trial.max, parameter.plausible_max) << parameter.name;
     }
   }
 }

@@ -13,7 +13,7 @@ namespace {
 const std::map<std::string, double> kStiffnessDamping{
     {"beta", 0.02}, {"young_modulus", 8e4}, {"poisson_ratio", 0.4}};
 
-TEST(MassDamping, IsAnEffect) {
+TEST(MassDamping, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("mass_damping", {{"alpha", 3}}).get(),
               {.depends_on_position = false, .depends_on_velocity = true});
 }
@@ -28,7 +28,7 @@ TEST(MassDamping, BrakesByItsRateTimesMomentum) {
   EXPECT_NEAR(force.sum(), -0.54, 1e-13);
 }
 
-TEST(StiffnessDamping, IsAnEffect) {
+TEST(StiffnessDamping, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("stiffness_damping", kStiffnessDamping).get(),
               {.depends_on_position = true, .depends_on_velocity = true});
 }
@@ -48,14 +48,14 @@ TEST(StiffnessDamping, IsBetaTimesTheElasticForceOfTheVelocityAtSmallStrain) {
   EXPECT_LT((viscous - 0.02 * elastic).norm(), 1e-12 * viscous.norm());
 }
 
-TEST(StiffnessDamping, NeverFeedsEnergyIn) {
+TEST(StiffnessDamping, NeverAddsEnergy) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.04, 0.02, 0.02}, {2, 1, 1}), 1000);
   const auto damping = MakeEffect("stiffness_damping", kStiffnessDamping);
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   for (int trial = 0; trial < 100; ++trial) {
-    // Up to inverted elements.
+    // The largest of these deformations invert elements.
     const Eigen::VectorXd position =
         rest + 0.02 * Eigen::VectorXd::NullaryExpr(rest.size(), [&] { return uniform(random); });
     const Eigen::VectorXd velocity =

@@ -10,12 +10,12 @@
 namespace lacuna {
 namespace {
 
-TEST(Drag, IsAnEffect) {
+TEST(Drag, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("drag", {{"coefficient", 40}, {"linear", 3}}).get(),
               {.depends_on_position = false, .depends_on_velocity = true});
 }
 
-TEST(Drag, HasItsDerivativeWhereItVanishes) {
+TEST(Drag, HasADerivativeAtItsNullValue) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.05, 0.02}, {2, 1, 1}), 1000);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped(), state;
   const Eigen::VectorXd velocity = Eigen::Vector3d(3, 0, 4).replicate(body.NodeCount(), 1);
@@ -38,7 +38,7 @@ TEST(Drag, IsFiniteAndSmoothAtRest) {
     drag->AddTangents({body, rest, velocity, 0 * velocity, 0, 0.01, state}, {.velocity = 1}, false,
                       &tangent);
     for (int k = 0; k < body.pattern->BlockCount(); ++k) {
-      // A few times coefficient · area · speed.
+      // The bound is a few times coefficient · area · speed.
       EXPECT_LE(tangent.Block(k).cwiseAbs().maxCoeff(), 40 * 0.016 * 4 * speed);
     }
   }
@@ -70,7 +70,7 @@ TEST(Drag, LetsAFallingBlockApproachItsTerminalVelocity) {
       const StepSummary step = stepper.Step(kTime / kSteps, {}, &history);
       ASSERT_TRUE(step.IsUsable()) << step.message;
       if (k + 1 != kSteps / 10) continue;
-      // On the way. The step is 1/40 of V/g; errors of second order make some 0.1 %.
+      // During the fall. The step is 1/40 of V/g; errors of second order cause about 0.1 %.
       const double expected = terminal * std::tanh(kGravity * history.time / terminal);
       EXPECT_LT(expected, 0.9 * terminal);
       EXPECT_NEAR(mean_velocity(), expected, 2e-3 * terminal);

@@ -65,7 +65,7 @@ TEST(EffectText, ReadsBackToTheSameBits) {
                             [&](const ParameterCard& card) { return card.name == name; }) -
                cards.begin();
       };
-      // A force that ends before it begins is refused.
+      // A force that ends before it starts is refused.
       if (const auto stop = at("stop"); stop < values.size()) values[stop] += values[at("start")];
       ExpectRoundTrip(entry, values);
     }
@@ -80,7 +80,7 @@ TEST(EffectText, KeepsNumbersOfAnySize) {
     ExpectRoundTrip(gravity, Eigen::Vector3d(value, 1, -value));
 }
 
-TEST(EffectText, IsWrittenAsUsersWriteIt) {
+TEST(EffectText, UsesTheSyntaxOfUsers) {
   EXPECT_EQ(FormatEffect(*MakeEffect("gravity", {{"acceleration_z", -9.80665}})),
             "{type: gravity, acceleration: [0 m/s^2, 0 m/s^2, -9.80665 m/s^2]}");
   EXPECT_EQ(
@@ -88,14 +88,14 @@ TEST(EffectText, IsWrittenAsUsersWriteIt) {
       "{law: neo_hookean, young_modulus: 100000 Pa, poisson_ratio: 0.35}");
 }
 
-TEST(EffectText, LeavesOutADirectionThatIsNone) {
+TEST(EffectText, OmitsADirectionOfLengthZero) {
   const auto everywhere = MakeEffect("pressure", {{"pressure", 250}});
   EXPECT_EQ(FormatEffect(*everywhere),
             "{type: pressure, pressure: 250 Pa, point: [0 m, 0 m, 0 m]}");
   ExpectRoundTrip(*FindEntry("pressure"), everywhere->Parameters());
 }
 
-TEST(EffectText, ReadsALawOfTheUsersOwnBack) {
+TEST(EffectText, ReadsAnExpressionLawBack) {
   const Config law = Config::Parse(
       "{type: expression, name: \"a \\\"pull\\\": #1\", per: area,\n"
       " force: [\"k * max(x - x0, 0)\", \"0\", \"-k * exp(-abs(z)/d)\"], amplitude: k,\n"
@@ -128,7 +128,7 @@ TEST(EffectText, ReadsALawOfTheUsersOwnBack) {
   }
 }
 
-TEST(EffectText, IsNothingWhereYamlCannotSayIt) {
+TEST(EffectText, IsNothingForValuesThatYamlCannotExpress) {
   EXPECT_EQ(FormatEffect(PrescribedForce(Eigen::VectorXd::Ones(1),
                                          [](double) { return Eigen::Vector3d(0, 0, 1); })),
             std::nullopt);
@@ -136,7 +136,7 @@ TEST(EffectText, IsNothingWhereYamlCannotSayIt) {
   EXPECT_EQ(FormatEffect(*MakeEffect("gravity", {{"acceleration_z", kInfinite}})), std::nullopt);
 }
 
-// The texts of a card's dimensions are SI and understood.
+// The unit of every dimension on a card is an SI unit that the reader understands.
 TEST(EffectText, UnitsOfAllCardsAreSi) {
   for (const CatalogueEntry& entry : Catalogue()) {
     for (const ParameterCard& parameter : entry.card->parameters) {

@@ -11,11 +11,11 @@
 namespace lacuna {
 namespace {
 
-TEST(ElasticSupport, IsAnEffect) {
+TEST(ElasticSupport, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5}}).get());
 }
 
-TEST(ElasticSupport, OfAFadingPartIsAnEffect) {
+TEST(ElasticSupport, PassesTheEffectChecksForAFadingPart) {
   CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5},
                                              {"point_x", 0.02},
                                              {"point_z", 0.03},
@@ -25,9 +25,9 @@ TEST(ElasticSupport, OfAFadingPartIsAnEffect) {
                   .get());
 }
 
-TEST(ElasticSupport, PullsThePartBackByItsArea) {
-  // The lower face, and of the sides half the lowest row of triangles, which is 10 mm high for
-  // linear and 5 mm for quadratic elements.
+TEST(ElasticSupport, PullsBackInProportionToArea) {
+  // The area of the lower face and half of the lowest row of triangles of the sides, which is 10 mm
+  // high for linear and 5 mm for quadratic elements.
   const auto support = MakeEffect("elastic_support", {{"modulus", 1e5}, {"normal_z", -1}});
   for (const int order : {1, 2}) {
     const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}, order), 1000);
@@ -61,7 +61,7 @@ TEST(ElasticSupport, FadesWithDistance) {
   }
 }
 
-// A block lies on a bed: it sinks as a whole until k A u = m g, with nothing else to hold it.
+// A block that only a bed supports sinks until k A u = m g.
 TEST(ElasticSupport, CarriesTheWeight) {
   constexpr double kModulus = 1e6, kGravity = 9.81;
   const Eigen::Vector3d size(0.03, 0.02, 0.04);
@@ -77,7 +77,7 @@ TEST(ElasticSupport, CarriesTheWeight) {
   const double sunk = 1000 * size.prod() * kGravity / (kModulus * surface);
   const Eigen::Matrix3Xd shift =
       history.position.reshaped(3, model.body->NodeCount()) - model.body->mesh.nodes;
-  // The block's own strain shifts its nodes by up to ρ g h²/(2E) = 8e-9 m, against 4.5e-5 m.
+  // The strain of the block moves its nodes by up to ρ g h²/(2E) = 8e-9 m, compared with 4.5e-5 m.
   EXPECT_LT((shift.colwise() + Eigen::Vector3d(0, 0, sunk)).colwise().norm().maxCoeff(),
             5e-4 * sunk);
 }

@@ -22,11 +22,11 @@ std::shared_ptr<const Effect> Law(const std::string& type, double young = kYoung
 
 class ElasticityLaw : public testing::TestWithParam<std::string> {};
 
-TEST_P(ElasticityLaw, IsAnEffect) { CheckEffect(Law(GetParam()).get()); }
+TEST_P(ElasticityLaw, PassesTheEffectChecks) { CheckEffect(Law(GetParam()).get()); }
 
-TEST_P(ElasticityLaw, IsAnEffectWhenElementsAreCrushedAndInverted) {
-  // Steps for differences near the kinks of strongly distorted elements must be small: more
-  // rounding.
+TEST_P(ElasticityLaw, PassesTheEffectChecksForCrushedAndInvertedElements) {
+  // Finite differences near the kinks of strongly distorted elements need small steps, which causes
+  // more rounding.
   CheckEffect(Law(GetParam()).get(), {.strain = 4, .tolerance = 1e-5});
 }
 
@@ -39,7 +39,7 @@ TEST_P(ElasticityLaw, IsHookesLawAtSmallStrain) {
   const double lambda = kYoung * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoisson));
   const Eigen::Matrix3d hooke =
       2 * mu * strain + lambda * strain.trace() * Eigen::Matrix3d::Identity();
-  // The next order in the strain is 1e-7 of it.
+  // The next order in the strain is smaller by 1e-7.
   EXPECT_LT((element.Stress(*law, Eigen::Matrix3d::Identity() + strain) - hooke).norm(),
             1e-6 * hooke.norm());
 }
@@ -47,7 +47,7 @@ TEST_P(ElasticityLaw, IsHookesLawAtSmallStrain) {
 TEST_P(ElasticityLaw, HasNoStressAtRest) {
   const OneElement element;
   EXPECT_LT(element.Stress(*Law(GetParam()), Eigen::Matrix3d::Identity()).norm(), 1e-14 * kYoung);
-  // Strain is known to 1e-16, the volume is 3e-6 m³.
+  // The strain has a rounding error of 1e-16, and the volume is 3e-6 m³.
   EXPECT_NEAR(element.Energy(*Law(GetParam()), Eigen::Matrix3d::Identity()), 0, 1e-30);
 }
 
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(All, ElasticityLaw,
                                          "neo_hookean"),
                          [](const auto& info) { return info.param; });
 
-TEST(ElasticityLaws, GiveTheStressWorkedOutByHand) {
+TEST(ElasticityLaws, GiveAStressCalculatedByHand) {
   // F = diag(1.5, 1, 1) with λ = μ = 1e5 Pa (ν = ¼, E = 2.5e5 Pa):
   const OneElement element;
   const Eigen::Matrix3d F = Eigen::Vector3d(1.5, 1, 1).asDiagonal();
@@ -74,7 +74,7 @@ TEST(ElasticityLaws, GiveTheStressWorkedOutByHand) {
   EXPECT_TRUE(diagonal("neo_hookean").isApprox(Eigen::Vector3d(1.5, 1, 1), tolerance));
 }
 
-TEST(NeoHookean, IsTheRubberOfTheTextbooksWhenIncompressible) {
+TEST(NeoHookean, IsTheTextbookLawOfRubberIfIncompressible) {
   // Uniaxial nominal stress μ (s − 1/s²), the lateral stretch found from zero lateral stress. At
   // ν = 0.4999 the compressibility contributes about (1 − 2ν) of the stress.
   const double young = 3e5, poisson = 0.4999;
@@ -94,7 +94,7 @@ TEST(NeoHookean, IsTheRubberOfTheTextbooksWhenIncompressible) {
 }
 
 TEST(NeoHookean, PushesInvertedElementsBack) {
-  // Turned inside out along x, the force on the element's far node points back out.
+  // The element is inverted along x; the force on its far node must restore it.
   const OneElement element;
   const auto law = Law("neo_hookean");
   for (const double s : {-0.2, -1.0, -3.0}) {
@@ -105,7 +105,7 @@ TEST(NeoHookean, PushesInvertedElementsBack) {
   }
 }
 
-TEST(Corotational, IsLinearElasticityInATurnedFrame) {
+TEST(Corotational, IsLinearElasticityInARotatedFrame) {
   const OneElement element;
   const Eigen::Matrix3d stretch{{1.1, 0.05, 0.02}, {0.05, 0.95, -0.03}, {0.02, -0.03, 1.04}};
   const Eigen::Matrix3d R =

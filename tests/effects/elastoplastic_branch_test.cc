@@ -28,14 +28,14 @@ double BarStress(StrainedBody* bar, double strain) {
   return P(0, 0) / stretch[0] - P(1, 1) / stretch[1];
 }
 
-TEST(ElastoplasticBranch, IsAnEffect) {
-  // With strains of some 0.05 to 0.1, elastic and yielding points.
+TEST(ElastoplasticBranch, PassesTheEffectChecks) {
+  // At strains of 0.05 to 0.1 some points are elastic and others yield.
   CheckEffect(Branch().get());
   CheckEffect(Branch(kModulus, 0.01).get());
 }
 
-TEST(ElastoplasticBranch, IsAnEffectWhenElementsAreCrushedAndInverted) {
-  // Forces vary as the cube of such strains: more truncation.
+TEST(ElastoplasticBranch, PassesTheEffectChecksForCrushedAndInvertedElements) {
+  // Forces vary as the cube of such strains, which causes more truncation error.
   CheckEffect(Branch().get(), {.strain = 4, .tolerance = 1e-5});
 }
 
@@ -44,7 +44,7 @@ TEST(ElastoplasticBranch, FollowsPrandtlsLoop) {
     StrainedBody bar(Branch(), order);
     constexpr double kAmplitude = 0.2;
     double slider = 0, strain = 0, stress = 0, area = 0;
-    // Out, and twice around; the stress depends on the way only, not on the steps it is made in.
+    // Loading and two cycles. The stress depends on the path only, not on the size of the steps.
     for (const double target : {kAmplitude, -kAmplitude, kAmplitude, -kAmplitude, kAmplitude}) {
       const double from = strain;
       const double corner = slider + std::copysign(kYield, target - from);
@@ -58,23 +58,23 @@ TEST(ElastoplasticBranch, FollowsPrandtlsLoop) {
         slider = std::clamp(slider, next - kYield, next + kYield);
         const double expected = kModulus * (next - slider);
         const double got = BarStress(&bar, next);
-        // Rounding of strains of 1e-16 and of the sums.
+        // Rounding of strains (1e-16) and of sums.
         EXPECT_NEAR(got, expected, 1e-10 * kModulus * kYield) << next;
         area += 0.5 * (stress + got) * (next - strain);
         strain = next;
         stress = got;
       }
     }
-    // The way out costs ½ m ε_y² + m ε_y (a − ε_y), each loop 4 m ε_y (a − ε_y).
+    // The work of loading is ½ m ε_y² + m ε_y (a − ε_y), that of each loop 4 m ε_y (a − ε_y).
     const double flow = kModulus * kYield * (kAmplitude - kYield);
     EXPECT_NEAR(area, 0.5 * kModulus * kYield * kYield + 9 * flow, 1e-9 * flow);
   }
 }
 
-TEST(ElastoplasticBranch, LeavesTheClosedFormSetBesideASpring) {
-  // A bar of bulk modulus K and shear modulus G, beside a branch of shear modulus m/3 that yields
-  // at σ_y = m ε_y, drawn by σ and let go: the shear strain yields to (σ − σ_y)/(3G) and comes back
-  // by σ/(3G + m). Strains of 1e-4 leave the difference of strain measures at 1e-4.
+TEST(ElastoplasticBranch, LeavesThePermanentSetOfTheClosedForm) {
+  // A bar of bulk modulus K and shear modulus G in parallel with a branch of shear modulus m/3 that
+  // yields at σ_y = m ε_y is loaded by σ and released: the shear strain rises to (σ − σ_y)/(3G) and
+  // recovers by σ/(3G + m). At strains of 1e-4 strain measures differ by a share of 1e-4.
   constexpr double kYoung = 1e5, kPoisson = 0.35, kSmallYield = 5e-5;
   constexpr double kBulk = kYoung / (3 * (1 - 2 * kPoisson));
   constexpr double kThreeShear = 3 * kYoung / (2 * (1 + kPoisson));

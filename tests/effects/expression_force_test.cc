@@ -45,7 +45,7 @@ Eigen::Vector3d Total(const Eigen::VectorXd& force) {
   return force.reshaped(3, force.size() / 3).rowwise().sum();
 }
 
-TEST(ExpressionForce, IsAnEffect) {
+TEST(ExpressionForce, PassesTheEffectChecks) {
   CheckEffect(FromYaml(kMagnet).get());
   CheckEffect(MakeLaw("area", "[-k*abs(vx)*vx, -k*vy + k*nx, '-k*vz*c*(1 + nz^2)']", "3 Pa s/m",
                       "  c: {value: 0.4, plausible: [0, 1]}\n")
@@ -311,7 +311,7 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
       {"\"0\", ", "min(x, 1), ", "force: got 4 entries; expected three expressions"},
       {"per: mass", "per: weight",
        "a.yaml:3:6: per: got \"weight\"; expected one of: mass, volume, area"},
-      {"name: magnet", "nam: magnet", "a.yaml:1:1: name: is missing (\"nam\" is no key)"},
+      {"name: magnet", "nam: magnet", "a.yaml:1:1: name: is missing (\"nam\" is not a known key)"},
       {"z0: {value: 20 mm, setting: true}", "z0: 20 mm", "parameters.z0: expected a mapping"},
       {"z0: {value: 20 mm", "z0: {value: 20 mmm",
        "parameters.z0.value: got \"20 mmm\" (unknown unit \"mmm\")"},
@@ -325,10 +325,10 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
        "a.yaml:7:33: parameters.k.plausible: expected the least"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N/kg]", "parameters.k.plausible: expected the least"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N, 10 N]",
-       "parameters.k.plausible[0]: got \"-10 N\" (its unit measures something else); expected an "
+       "parameters.k.plausible[0]: got \"-10 N\" (its unit has another dimension); expected an "
        "acceleration"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N/kg, 10 N/kg], null_value: 1 mm",
-       "parameters.k.null_value: got \"1 mm\" (its unit measures something else)"},
+       "parameters.k.null_value: got \"1 mm\" (its unit has another dimension)"},
       {"[-10 N/kg, 10 N/kg]", "[1 N/kg, 10 N/kg], min: 1 N/kg",
        "parameters.k: the null value 0 of the amplitude is out of its bounds"},
       {"[1 mm, 20 cm]", "[0, 20 cm]", "parameters.d.plausible"},

@@ -62,7 +62,7 @@ TEST(FibreStiffness, IsTheTransverselyIsotropicSolidOfSmallStrain) {
     }
     const Eigen::Matrix3d stress = element.Stress(*solid, identity + strain) +
                                    element.Stress(*Fibres(azimuth, 0), identity + strain);
-    // The next order in the strain is 1e-7 of it.
+    // The next order in the strain is smaller by 1e-7.
     EXPECT_LT((stress - pull).norm(), 1e-6 * pull.norm()) << degrees;
   }
 }

@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-TEST(FollowerForce, IsAnEffect) {
+TEST(FollowerForce, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("follower_force", {{"force_x", 0.2},
                                             {"force_y", -1},
                                             {"force_z", 3},
@@ -23,7 +23,7 @@ TEST(FollowerForce, IsAnEffect) {
                   .get());
 }
 
-TEST(FollowerForce, TurnsWithTheBody) {
+TEST(FollowerForce, RotatesWithTheBody) {
   const auto effect = MakeEffect("follower_force", {{"force_x", 0.2},
                                                     {"force_y", -1},
                                                     {"force_z", 3},
@@ -41,7 +41,7 @@ TEST(FollowerForce, TurnsWithTheBody) {
         ForceAt(*effect, body, position, 0 * position).reshaped(3, body.NodeCount());
     const Eigen::Vector3d expected = turn * Eigen::Vector3d(0.2, -1, 3);
     EXPECT_LT((force.rowwise().sum() - expected).norm(), 1e-12);
-    // The bump is symmetric about its centre, as is the mesh.
+    // The distribution and the mesh are symmetric about its centre.
     const Eigen::Vector3d place =
         body.mesh.nodes * (expected.transpose() * force).transpose() / expected.squaredNorm();
     EXPECT_LT((place - Eigen::Vector3d(0.04, 0.02, 0.02)).norm(), 1e-6);
@@ -81,10 +81,10 @@ TEST(FollowerForce, IsFiniteWhereElementsAreFlatOrInverted) {
   }
 }
 
-// A stiff bar on a hinge through its lower end, pushed across its upper end by a force that turns
-// with it: the torque F L stays what it is, so that the angle grows as ½ F L t²/I past a quarter of
-// a turn, where a force of fixed direction would push it no more.
-TEST(FollowerForce, KeepsItsTorqueAsTheBarTurns) {
+// A stiff bar on a hinge at its lower end, pushed at its upper end by a force that rotates with it:
+// the torque F L is constant, so that the angle grows as ½ F L t²/I beyond 90°, where the torque of
+// a force of fixed direction would vanish.
+TEST(FollowerForce, KeepsItsTorqueAsTheBarRotates) {
   constexpr double kForce = 0.4, kLever = 0.075, kTime = 0.16;
   const auto body = std::make_shared<Body>(
       MakeBody(BoxMesh({-0.01, -0.01, 0}, {0.01, 0.01, 0.1}, {2, 1, 4}), 1000));
@@ -120,7 +120,7 @@ TEST(FollowerForce, KeepsItsTorqueAsTheBarTurns) {
   const double angle = std::atan2(centre.x(), centre.z());
   const double expected = 0.5 * kForce * kLever * kTime * kTime / inertia;
   EXPECT_GT(expected, 0.6 * M_PI);
-  // The points of the elements hit the bump's centre to 1 % of the lever.
+  // The quadrature points represent the centre of the force to within 1 % of the lever.
   EXPECT_NEAR(angle, expected, 0.01 * expected);
 }
 

@@ -1,3 +1,5 @@
+#include "effects/gravity.h"
+
 #include <gtest/gtest.h>
 
 #include "effects/catalogue.h"
@@ -7,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-TEST(Gravity, IsAnEffect) {
+TEST(Gravity, PassesTheEffectChecks) {
   const auto gravity = MakeEffect(
       "gravity", {{"acceleration_x", 1}, {"acceleration_y", -2}, {"acceleration_z", -9.81}});
   CheckEffect(gravity.get(), {.depends_on_position = false});
@@ -25,6 +27,14 @@ TEST(Gravity, PullsWithTheWeightOfTheBody) {
     EXPECT_NEAR(force.reshaped(3, body.NodeCount()).row(2).sum(), -1070 * 9e-5 * 9.81, 1e-12);
     EXPECT_EQ(force.reshaped(3, body.NodeCount()).topRows(2).norm(), 0);
   }
+}
+
+TEST(Gravity, IsFoundByItsTypeAmongTheEffectsOfAModel) {
+  const auto damping = MakeEffect("mass_damping", {{"alpha", 1}});
+  EXPECT_FALSE(GravityOf({damping}).has_value());
+  const auto gravity = MakeGravity({1, -2, -9});
+  EXPECT_EQ(gravity->Card().type, "gravity");
+  EXPECT_EQ(GravityOf({damping, gravity}).value(), Eigen::Vector3d(1, -2, -9));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What all branches that remember past strains have in common.
+// Properties that all branches with a memory of past strains share.
 #include "fem/memory_branch.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class MemoryBranchOf : public testing::TestWithParam<BranchType> {};
 
 const Eigen::Matrix3d kDeformation{{1.2, 0.1, 0}, {-0.2, 0.9, 0.1}, {0.1, 0, 1.1}};
 
-TEST_P(MemoryBranchOf, NeverGivesEnergyInAClosedCycle) {
+TEST_P(MemoryBranchOf, NeverReleasesEnergyInAClosedCycle) {
   for (const double strain : {0.1, 1.5}) {              // up to inverted elements
     for (const double duration : {0.003, 0.15, 6.0}) {  // of a relaxation time of 0.03 s
       for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -44,7 +44,7 @@ TEST_P(MemoryBranchOf, NeverGivesEnergyInAClosedCycle) {
 }
 
 TEST_P(MemoryBranchOf, RemembersInTheFrameOfTheMaterial) {
-  // Turned between two steps, it has the stress of a body that was never turned, but turned.
+  // A body that is rotated between two steps has the rotated stress of a body that is not.
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, 1, -0.4).normalized()).toRotationMatrix();
   StrainedBody turned(GetParam().Make()), still(GetParam().Make());
@@ -53,11 +53,11 @@ TEST_P(MemoryBranchOf, RemembersInTheFrameOfTheMaterial) {
   const Eigen::Matrix3d next = 0.5 * (kDeformation + Eigen::Matrix3d::Identity());
   const Eigen::Matrix3d expected = R * still.Deform(next, 0.01);
   ASSERT_GT(expected.norm(), 0.01 * kModulus);
-  // Rounding of strains of 1e-16 and of the sums.
+  // Rounding of strains (1e-16) and of sums.
   EXPECT_LT((turned.Deform(R * next, 0.01) - expected).norm(), 1e-12 * kModulus);
 }
 
-TEST_P(MemoryBranchOf, HasTheSameMemoryWhateverItsSize) {
+TEST_P(MemoryBranchOf, HasAMemoryIndependentOfItsSize) {
   const auto none = GetParam().Make(0);
   StrainedBody large(GetParam().Make()), absent(none);
   for (const double share : {1.0, 0.3}) {
@@ -67,7 +67,7 @@ TEST_P(MemoryBranchOf, HasTheSameMemoryWhateverItsSize) {
   }
   EXPECT_GT(large.state().norm(), 0);
   EXPECT_EQ(large.state(), absent.state());
-  // What a diagnosis asks of an effect that is not there yet.
+  // A diagnosis uses the derivative of an effect that the model does not contain yet.
   const Eigen::VectorXd position = (kDeformation * absent.body().mesh.nodes).reshaped();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(position.size());
   Eigen::VectorXd derivative = zero;
@@ -78,9 +78,9 @@ TEST_P(MemoryBranchOf, HasTheSameMemoryWhateverItsSize) {
   EXPECT_LT((kModulus * derivative - force).norm(), 1e-13 * force.norm());
 }
 
-TEST_P(MemoryBranchOf, IsSquashedAndReleasedWithTheBody) {
-  // To 60 % of its length and back between two plates within 0.4 s; the branch is as stiff as the
-  // body. (At half its length the neo-Hookean block alone is no longer stable.)
+TEST_P(MemoryBranchOf, ConvergesWhenTheBodyIsCompressedAndReleased) {
+  // Two plates compress the block to 60 % of its length and release it within 0.4 s; the branch is
+  // as stiff as the block. (At half its length the neo-Hookean block alone is no longer stable.)
   const auto body =
       std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.04, 0.02, 0.02}, {4, 2, 2}, 2), 1000));
   std::vector<int> ends[2];
@@ -107,7 +107,8 @@ TEST_P(MemoryBranchOf, IsSquashedAndReleasedWithTheBody) {
     ASSERT_TRUE(summary.IsUsable()) << n << ": " << summary.message;
     iterations += summary.iterations;
   }
-  // Quadratic convergence: two or three a step, the one that moves the plate included.
+  // Newton's method converges quadratically: two or three iterations per step, including the one
+  // that moves the plate.
   EXPECT_LE(iterations, 4 * 40);
 }
 

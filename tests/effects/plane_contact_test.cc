@@ -1,3 +1,5 @@
+#include "effects/plane_contact.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -25,7 +27,7 @@ std::map<std::string, double> CuttingPlane(double friction) {
           {"smoothing", 0.01}, {"slip_velocity", 0.004}};
 }
 
-TEST(PlaneContact, IsAnEffect) {
+TEST(PlaneContact, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("plane_contact", CuttingPlane(0.4)).get(), {.depends_on_velocity = true});
 }
 
@@ -49,11 +51,11 @@ TEST(PlaneContact, HasAnEnergyWithoutFrictionOnly) {
                    .has_value());
 }
 
-TEST(PlaneContact, PushesByDepthAndAreaAndRubsAgainstTheSlip) {
+TEST(PlaneContact, PushesByDepthAndAreaWithFrictionAgainstTheSlip) {
   // A block of 30 × 20 mm stands 2 mm deep: p = 1 MPa/m · (2 mm − s/2) = 1.5 kPa for s = 1 mm.
-  // Only the nodes of the lower face are below; theirs are its 600 mm² and, of the sides, half the
-  // lowest row of triangles, which is 10 mm high for linear and 5 mm for quadratic elements.
-  // A slip of 4 mm/s at w = 3 mm/s rubs with 4/5 of μ p.
+  // Only the nodes of the lower face are below the plane. Their area is that of the face, 600 mm²,
+  // and half of the lowest row of triangles of the sides, which is 10 mm high for linear and 5 mm
+  // for quadratic elements. At a slip of 4 mm/s and w = 3 mm/s friction reaches 4/5 of μ p.
   const auto contact = MakeEffect("plane_contact", {{"stiffness", 1e6},
                                                     {"offset", 0.05},
                                                     {"friction", 0.5},
@@ -74,7 +76,7 @@ TEST(PlaneContact, PushesByDepthAndAreaAndRubsAgainstTheSlip) {
 TEST(PlaneContact, NeverPulls) {
   const auto contact = MakeEffect("plane_contact", {{"stiffness", 1e6}, {"friction", 0.5}});
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.02}, {3, 2, 2}), 1000);
-  // Above the plane or just on it, and leaving it fast.
+  // Above the plane or just on it, also when the body leaves it fast.
   const Eigen::VectorXd velocity = Eigen::Vector3d(1, 0, 5).replicate(body.NodeCount(), 1);
   Eigen::VectorXd position = body.mesh.nodes.reshaped();
   EXPECT_EQ(ForceAt(*contact, body, position, velocity).norm(), 0);
@@ -84,8 +86,8 @@ TEST(PlaneContact, NeverPulls) {
       0);
 }
 
-// Its nodes at depths √(2 s P/k), where contact carries the pressure P of the block's weight if
-// that is spread over `area`.
+// Places the nodes at depths √(2 s P/k), where contact carries the pressure P of the weight of the
+// block distributed over `area`.
 struct Block {
   std::shared_ptr<const Body> body;
   double mass = 0;
@@ -114,8 +116,8 @@ TEST(PlaneContact, CarriesTheWeightOfABlockThatRests) {
                        MakeEffect("gravity", {{"acceleration_z", -kGravity}}), contact},
                       {}};
     MotionHistory history = RestHistory(model);
-    // Sinks from its unloaded place. Long steps of implicit Euler damp every oscillation: its
-    // slowest, of √(g/depth) ~ 500/s, shrinks by a factor of 50 in a step.
+    // The block sinks from its unloaded position. Long steps of implicit Euler damp every
+    // oscillation; the slowest, of √(g/depth) ~ 500/s, decreases by a factor of 50 in a step.
     Stepper stepper(model, {.scheme = TimeScheme::kImplicitEuler});
     for (int k = 0; k < 12; ++k) {
       const StepSummary step = stepper.Step(0.1, {}, &history);
@@ -124,18 +126,18 @@ TEST(PlaneContact, CarriesTheWeightOfABlockThatRests) {
     const Eigen::VectorXd force =
         ForceAt(*contact, *block.body, history.position, history.velocity);
     const double weight = block.mass * kGravity;
-    // The tolerance of the step: 1e-8 of all forces, elastic ones included.
+    // Steps are solved to 1e-8 of all forces, including the elastic ones.
     EXPECT_NEAR(Total(force).z(), weight, 1e-6 * weight);
     EXPECT_LT(Total(force).head<2>().norm(), 1e-6 * weight);
     const double deepest = -history.position.reshaped(3, block.body->NodeCount()).row(2).minCoeff();
-    // Not deeper than under its pressure spread evenly over the face, as the edges carry more.
+    // Not deeper than under a uniform pressure on the face, because the edges carry more.
     EXPECT_GT(deepest, 0.5 * block.depth);
     EXPECT_LT(deepest, 1.2 * block.depth);
     EXPECT_LT(deepest, 1e-4);
   }
 }
 
-// Down an incline: the way, the velocity and the acceleration of the second half of the time.
+// Motion down an incline: distance, velocity and acceleration in the second half of the time.
 struct Slide {
   double way = 0;           // m
   double velocity = 0;      // m/s
@@ -157,7 +159,7 @@ Slide SlideDown(double angle, double friction, double duration, double slip_velo
                                                   {"slip_velocity", slip_velocity}})},
                     {}};
   MotionHistory history = RestHistory(model);
-  // Near its equilibrium along the normal, so that it does not bounce.
+  // The block starts near its equilibrium along the normal, so that it does not bounce.
   history.position.reshaped(3, block.body->NodeCount()).row(2).array() -= 0.8 * block.depth;
   Stepper stepper(model, {.scheme = TimeScheme::kBdf2});
   const Eigen::VectorXd& mass = block.body->node_mass;
@@ -184,7 +186,8 @@ constexpr double kAngle = 25 * M_PI / 180;
 TEST(PlaneContact, HoldsABlockOnAnInclineBelowTheAngleOfFriction) {
   constexpr double kSlip = 1e-3, kShare = 0.7;  // of the friction that could be had
   const Slide slide = SlideDown(kAngle, std::tan(kAngle) / kShare, 0.2, kSlip);
-  // What is left is the creep of the regularisation; the rest is the settling at the start.
+  // The remaining velocity is the creep of the regularisation, the distance also the initial
+  // settling.
   const double creep = kSlip * kShare / std::sqrt(1 - kShare * kShare);
   EXPECT_NEAR(slide.velocity, creep, 0.02 * creep);
   EXPECT_LT(slide.way, 0.2 * creep + 1e-4);
@@ -195,7 +198,7 @@ TEST(PlaneContact, LetsABlockSlideAboveTheAngleOfFriction) {
   for (const double friction : {0.0, 0.2, 0.4}) {
     const Slide slide = SlideDown(kAngle, friction, kDuration, 1e-3);
     const double acceleration = kGravity * (std::sin(kAngle) - friction * std::cos(kAngle));
-    // The regularised friction misses ½ (w/u)² of its limit, below 1e-4 at u > 60 mm/s.
+    // Regularised friction lacks a share of ½ (w/u)² of its limit, below 1e-4 at u > 60 mm/s.
     EXPECT_NEAR(slide.acceleration, acceleration, 0.002 * acceleration) << friction;
     EXPECT_GT(slide.velocity, 0.1) << friction;
   }
@@ -215,6 +218,25 @@ TEST(PlaneContact, IsReadFromYaml) {
   EXPECT_LT((MakeEffect(items[0])->Parameters() - all).norm(), 1e-8);
   EXPECT_LT((MakeEffect(items[1])->Parameters() - few).norm(), 1e-8);
   config.RefuseUnknownKeys();
+}
+
+TEST(PlaneContact, IsFoundByItsTypeWithItsPlane) {
+  const auto damping = MakeEffect("mass_damping", {{"alpha", 1}});
+  const auto contact =
+      MakePlaneContact({.normal = {0, 2, 1}, .offset = 0.05, .stiffness = 1e6, .friction = 0.3});
+  EXPECT_EQ(contact->Parameters(), MakeEffect("plane_contact", {{"stiffness", 1e6},
+                                                                {"normal_y", 2},
+                                                                {"normal_z", 1},
+                                                                {"offset", 0.05},
+                                                                {"friction", 0.3}})
+                                       ->Parameters());
+  EXPECT_EQ(FindPlaneContact({damping}), nullptr);
+  EXPECT_EQ(FindPlaneContact({damping, contact}), contact.get());
+  EXPECT_FALSE(ContactPlaneOf(*damping).has_value());
+  EXPECT_EQ(ContactPlaneOf(*contact)->normal, Eigen::Vector3d(0, 2, 1));
+  EXPECT_EQ(ContactPlaneOf(*contact)->offset, 0.05);
+  EXPECT_EQ(ContactPlaneOf(*contact)->stiffness, 1e6);
+  EXPECT_EQ(ContactPlaneOf(*contact)->friction, 0.3);
 }
 
 TEST(PlaneContact, RefusesAPlaneWithoutDirection) {

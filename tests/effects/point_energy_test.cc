@@ -1,4 +1,4 @@
-// What holds for every effect that is an additional energy at each material point.
+// Properties of every effect that is an additional energy at each material point.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -27,18 +27,18 @@ class PointEnergy : public testing::TestWithParam<Case> {
   }
 };
 
-TEST_P(PointEnergy, IsAnEffect) { CheckEffect(Make(1).get()); }
+TEST_P(PointEnergy, PassesTheEffectChecks) { CheckEffect(Make(1).get()); }
 
-TEST_P(PointEnergy, IsAnEffectWhenElementsAreCrushedAndInverted) {
-  // Steps for differences in strongly distorted elements must be small: more rounding.
+TEST_P(PointEnergy, PassesTheEffectChecksForCrushedAndInvertedElements) {
+  // Finite differences in strongly distorted elements need small steps, which causes more rounding.
   CheckEffect(Make(1).get(), {.strain = 4, .tolerance = 1e-5});
 }
 
-TEST_P(PointEnergy, IsAnEffectOfNegativeSize) {
+TEST_P(PointEnergy, PassesTheEffectChecksAtNegativeSize) {
   if (GetParam().either_sign) CheckEffect(Make(-1).get());
 }
 
-TEST_P(PointEnergy, IsProportionalToItsSizeAndSoIsKnownWhenAbsent) {
+TEST_P(PointEnergy, IsProportionalToItsSize) {
   const OneElement element;
   const Eigen::Matrix3d F{{1.2, 0.3, -0.1}, {0.1, 0.8, 0.2}, {-0.2, 0.1, 0.9}};
   const Eigen::VectorXd position = element.Position(F);
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{"strain_stiffening", {{"modulus", 2e4}}, false},
         Case{"fibre_stiffness", {{"modulus", 5e4}, {"azimuth", 0.7}, {"inclination", -0.4}}},
-        // At the edge of the block of CheckEffect.
+        // At the edge of the block that CheckEffect uses.
         Case{"inclusion",
              {{"young_modulus_difference", 6e4},
               {"centre_x", 0.04},

@@ -16,7 +16,7 @@ std::map<std::string, double> ForceAtTheTop(double radius) {
           {"radius", radius}, {"start", 0.295},   {"stop", 0.42}};
 }
 
-TEST(PointForce, IsAnEffect) {
+TEST(PointForce, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("point_force", ForceAtTheTop(0.01)).get(), {.depends_on_position = false});
 }
 
@@ -41,7 +41,7 @@ TEST(PointForce, ActsOnTheSurfaceAboutItsPlace) {
   }
 }
 
-TEST(PointForce, FollowsItsSettingsAndItsBody) {
+TEST(PointForce, FollowsItsSettingsAndTheBody) {
   const auto effect = MakeEffect("point_force", ForceAtTheTop(0.005));
   const Body coarse = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {8, 4, 4}), 1000);
   const Body fine = MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {16, 8, 8}), 1000);
@@ -62,7 +62,7 @@ TEST(PointForce, FollowsItsSettingsAndItsBody) {
   EXPECT_LT((place(*other, coarse) - Eigen::Vector3d(0.05, 0.02, 0.04)).norm(), 1e-4);
 }
 
-// A free body keeps F (stop − start) of momentum, for steps that do not meet start and stop.
+// A free body gets the momentum F (stop − start), also for steps that do not end at start and stop.
 TEST(PointForce, GivesItsImpulse) {
   const Model model{
       std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, {0.08, 0.04, 0.04}, {2, 1, 1}), 1000)),

@@ -27,12 +27,14 @@ Eigen::VectorXd Bent(const Body& body) {
   return position;
 }
 
-TEST(Pressure, IsAnEffect) {
+TEST(Pressure, PassesTheEffectChecks) {
   CheckEffect(MakeEffect("pressure", {{"pressure", 300}}).get());
   CheckEffect(MakeEffect("pressure", {{"pressure", -300}}).get());
 }
 
-TEST(Pressure, OnAPartIsAnEffect) { CheckEffect(MakeEffect("pressure", kUpperPart).get()); }
+TEST(Pressure, PassesTheEffectChecksOnAPart) {
+  CheckEffect(MakeEffect("pressure", kUpperPart).get());
+}
 
 TEST(Pressure, HasNoResultantOnAClosedSurface) {
   const auto pressure = MakeEffect("pressure", {{"pressure", 300}});
@@ -52,7 +54,7 @@ TEST(Pressure, HasNoResultantOnAClosedSurface) {
   }
 }
 
-TEST(Pressure, PressesInwardOnItsPartAloneAndTurnsWithIt) {
+TEST(Pressure, PressesInwardOnItsPartAloneAndRotatesWithIt) {
   const auto pressure =
       MakeEffect("pressure", {{"pressure", 300}, {"point_z", 0.02}, {"normal_z", 1}});
   const Eigen::Matrix3d turn =
@@ -62,7 +64,7 @@ TEST(Pressure, PressesInwardOnItsPartAloneAndTurnsWithIt) {
     const Eigen::VectorXd position = (1.5 * turn * body.mesh.nodes).reshaped();
     const Eigen::Matrix3Xd force =
         ForceAt(*pressure, body, position, 0 * position).reshaped(3, body.NodeCount());
-    // −300 Pa on the upper face of 30 cm², 1.5² times as large, and turned.
+    // −300 Pa on the upper face of 30 cm², which is scaled by 1.5² and rotated.
     const Eigen::Vector3d expected = -300 * 0.003 * 2.25 * turn.col(2);
     EXPECT_LT((force.rowwise().sum() - expected).norm(), 1e-13);
     for (int i = 0; i < body.NodeCount(); ++i) {
@@ -73,7 +75,7 @@ TEST(Pressure, PressesInwardOnItsPartAloneAndTurnsWithIt) {
   }
 }
 
-TEST(Pressure, HasItsDerivativeWhereItVanishes) {
+TEST(Pressure, HasADerivativeAtItsNullValue) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.02}, {5, 2, 1}), 1000);
   const Eigen::VectorXd position = Bent(body), zero = 0 * position, state;
   Eigen::VectorXd derivative = zero;
@@ -114,7 +116,7 @@ TEST(Pressure, ShrinksABodyUniformly) {
     for (int k = 0; k < 20; ++k) {
       strain = kPressure * (1 - strain) * (1 - strain) / (3 * kBulk);
     }
-    // Steps solved to 1e-8, and the bed.
+    // Steps are solved to 1e-8, and the bed adds a little.
     EXPECT_LT((history.position - (1 - strain) * rest).norm(), 1e-6 * strain * rest.norm());
   }
 }

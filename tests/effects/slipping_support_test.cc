@@ -19,9 +19,9 @@ double Surface() {
   return 2 * (kSize.x() * kSize.y() + kSize.y() * kSize.z() + kSize.z() * kSize.x());
 }
 
-TEST(SlippingSupport, IsAnEffect) {
-  // A body turned by a radian is some centimetres off its place: parts hold and parts slide, then
-  // all slide.
+TEST(SlippingSupport, PassesTheEffectChecks) {
+  // A body rotated by one radian is displaced by some centimetres: first some nodes hold and others
+  // slide, then all slide.
   for (const double distance : {0.03, 0.002}) {
     CheckEffect(
         MakeEffect("slipping_support", {{"modulus", 1e5}, {"slip_distance", distance}}).get());
@@ -44,7 +44,7 @@ TEST(SlippingSupport, HoldsAndSlidesAlongALoop) {
     support->AddForce(at, &force);
     slip = std::clamp(slip, shift - kDistance, shift + kDistance);
     const Eigen::Vector3d expected = -kModulus * Surface() * (shift - slip) * axis;
-    // Rounding, of a sum of some hundred areas.
+    // Rounding of a sum of some hundred areas.
     EXPECT_LT((force.reshaped(3, body.NodeCount()).rowwise().sum() - expected).norm(),
               1e-12 * kModulus * Surface() * kDistance)
         << shift;
@@ -54,9 +54,9 @@ TEST(SlippingSupport, HoldsAndSlidesAlongALoop) {
   }
 }
 
-// A block on a bed that slides, beside one that does not: drawn away and let go, it stays where both
-// are in balance.
-TEST(SlippingSupport, LeavesTheBlockOffItsPlace) {
+// A block on a bed that slides and one that does not: pulled away and released, it stays where both
+// are in equilibrium.
+TEST(SlippingSupport, LeavesTheBlockDisplaced) {
   constexpr double kOther = 4e5;  // Pa/m
   const Model model{
       std::make_shared<Body>(MakeBody(BoxMesh({0, 0, 0}, kSize, {3, 2, 4}), 1000)),
@@ -86,10 +86,9 @@ TEST(SlippingSupport, LeavesTheBlockOffItsPlace) {
 }
 
 TEST(SlippingSupport, RefusesAnEmptyPart) {
-  const auto support = MakeEffect("slipping_support", {{"modulus", kModulus},
-                                                       {"slip_distance", kDistance},
-                                                       {"point_z", 0.09},
-                                                       {"normal_z", 1}});
+  const auto support = MakeEffect(
+      "slipping_support",
+      {{"modulus", kModulus}, {"slip_distance", kDistance}, {"point_z", 0.09}, {"normal_z", 1}});
   const Body body = MakeBody(BoxMesh({0, 0, 0}, kSize, {3, 2, 4}), 1000);
   const Eigen::VectorXd rest = body.mesh.nodes.reshaped();
   Eigen::VectorXd state;

@@ -19,16 +19,16 @@ std::shared_ptr<const Effect> Branch(double modulus = kModulus, double poisson =
       "softening", {{"modulus", modulus}, {"softening_strain", kHalf}, {"poisson_ratio", poisson}});
 }
 
-// In a bar without lateral effect, of E₁₁ = ε: κ is the largest |ε| so far.
+// A bar without lateral effect at E₁₁ = ε; κ is the largest |ε| so far.
 double BarStress(StrainedBody* bar, double strain) {
   const double stretch = std::sqrt(1 + 2 * strain);
   return bar->Deform(Eigen::Vector3d(stretch, 1, 1).asDiagonal(), 0)(0, 0) / stretch;
 }
 
-TEST(Softening, IsAnEffect) { CheckEffect(Branch().get()); }
+TEST(Softening, PassesTheEffectChecks) { CheckEffect(Branch().get()); }
 
-TEST(Softening, IsAnEffectWhenElementsAreCrushedAndInverted) {
-  // Forces vary as the cube of such strains: more truncation.
+TEST(Softening, PassesTheEffectChecksForCrushedAndInvertedElements) {
+  // Forces vary as the cube of such strains, which causes more truncation error.
   CheckEffect(Branch().get(), {.strain = 4, .tolerance = 1e-5});
 }
 
@@ -39,14 +39,15 @@ TEST(Softening, SoftensOnFirstLoadingOnly) {
     for (const double strain : {0.05, 0.2, 0.1, 0.0, 0.15, 0.2, 0.4, 0.3, -0.1, -0.3, 0.4, 0.5}) {
       largest = std::max(largest, std::abs(strain));
       const double expected = kModulus * strain / (1 + largest / kHalf);
-      // Rounding of strains of 1e-16 and of the sums.
+      // Rounding of strains (1e-16) and of sums.
       EXPECT_NEAR(BarStress(&bar, strain), expected, 1e-10 * kModulus * kHalf) << strain;
     }
   }
 }
 
-TEST(Softening, CostsTheEnergyOfTheDamageOnceOnly) {
-  // Out to strain a and back: ∫ m κ g dκ − ½ m a² g(a), by a trapezoidal rule of error ~ steps⁻².
+TEST(Softening, DissipatesTheEnergyOfTheDamageOnce) {
+  // A cycle to strain a and back: ∫ m κ g dκ − ½ m a² g(a), by a trapezoidal rule of error ~
+  // steps⁻².
   StrainedBody bar(Branch(kModulus, 0));
   constexpr double kFar = 0.3;
   constexpr int kSteps = 1000;

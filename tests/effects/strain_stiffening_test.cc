@@ -44,7 +44,7 @@ TEST(StrainStiffening, DoublesTheForceOfRubberAtTwiceTheLengthWithAnEighthOfItsS
   EXPECT_NEAR(nominal(*stiffening), nominal(*rubber), 1e-10 * kModulus);
 }
 
-TEST(StrainStiffening, LeavesTheModuliAtSmallStrainAlone) {
+TEST(StrainStiffening, DoesNotChangeTheModuliAtSmallStrain) {
   // Stress grows as the cube of the strain: 2c · 2 e:e · 4 e.
   const OneElement element;
   const auto stiffening = MakeEffect("strain_stiffening", {{"modulus", kModulus}});
@@ -52,7 +52,7 @@ TEST(StrainStiffening, LeavesTheModuliAtSmallStrainAlone) {
   strain *= 1e-4;
   const Eigen::Matrix3d deviator = strain - strain.trace() / 3 * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d expected = 16 * kModulus * deviator.squaredNorm() * deviator;
-  // The next order in the strain is 1e-4 of it, times a factor of a few.
+  // The next order in the strain is smaller by a few times 1e-4.
   EXPECT_LT((element.Stress(*stiffening, Eigen::Matrix3d::Identity() + strain) - expected).norm(),
             1e-3 * expected.norm());
 }

@@ -32,7 +32,7 @@ TEST(Swelling, PushesWithTheThermalStressOfABodyHeldOnAllSides) {
 }
 
 // The stretch at which a free neo-Hookean body is without stress: μ s + ((λ + μ)(s³ − 1) − μ) s² is
-// the principal stress, 3 K ε s² the push.
+// the principal stress, and 3 K ε s² the swelling stress.
 double FreeStretch(double strain) {
   const double mu = kYoung / (2 * (1 + kPoisson));
   const double lambda = kYoung * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoisson));
@@ -56,7 +56,7 @@ TEST(Swelling, EnlargesAFreeBodyByItsStrain) {
           {MakeEffect("neo_hookean", {{"young_modulus", kYoung}, {"poisson_ratio", kPoisson}}),
            SwellingBy(strain)},
           {}};
-      // A grip that grows along keeps it in place.
+      // A grip that grows with the body keeps it in place.
       const Eigen::VectorXi held =
           NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x[0] == 0; });
       const Eigen::Matrix3Xd places = stretch * mesh.nodes(Eigen::all, held);
@@ -65,7 +65,7 @@ TEST(Swelling, EnlargesAFreeBodyByItsStrain) {
       const StepSummary summary =
           Stepper(model, {.relative_tolerance = 1e-11}).Equilibrium({}, &history);
       ASSERT_TRUE(summary.IsUsable()) << summary.message;
-      // The tolerance of the forces.
+      // Forces are solved to this tolerance.
       EXPECT_LT((history.position - stretch * mesh.nodes.reshaped()).norm(),
                 1e-8 * mesh.nodes.norm())
           << strain << ", order " << order;

@@ -21,7 +21,7 @@ std::shared_ptr<const Effect> Branch(double modulus = kModulus, double tau = kTa
                     {{"modulus", modulus}, {"relaxation_time", tau}, {"poisson_ratio", poisson}});
 }
 
-// Uniaxial strain E₁₁; without lateral effect, S₁₁ = P₁₁/s is the over-stress of a bar.
+// At uniaxial strain E₁₁ without lateral effect, S₁₁ = P₁₁/s is the over-stress of a bar.
 double Stretch(double strain) { return std::sqrt(1 + 2 * strain); }
 
 double SecondStress(StrainedBody* bar, double strain, double time_step) {
@@ -29,14 +29,14 @@ double SecondStress(StrainedBody* bar, double strain, double time_step) {
   return bar->Deform(F, time_step)(0, 0) / Stretch(strain);
 }
 
-TEST(ViscoelasticBranch, IsAnEffect) {
+TEST(ViscoelasticBranch, PassesTheEffectChecks) {
   CheckEffect(Branch(kModulus, kTau, 0.4).get());
   // A branch that has relaxed by 1 − 4e-5 at the end of the step.
   CheckEffect(Branch(kModulus, 0.001, 0.4).get());
 }
 
-TEST(ViscoelasticBranch, IsAnEffectWhenElementsAreCrushedAndInverted) {
-  // Forces vary as the cube of such strains: more truncation.
+TEST(ViscoelasticBranch, PassesTheEffectChecksForCrushedAndInvertedElements) {
+  // Forces vary as the cube of such strains, which causes more truncation error.
   CheckEffect(Branch(kModulus, kTau, 0.4).get(), {.strain = 4, .tolerance = 1e-5});
 }
 
@@ -44,7 +44,8 @@ TEST(ViscoelasticBranch, RelaxesExponentiallyInAHeldBar) {
   for (const int order : {1, 2}) {
     StrainedBody bar(Branch(), order);
     constexpr double kStrain = 0.3;
-    // A ramp that lasts τ/3 as one step leaves 3 (1 − e^(−1/3)) of the spring's stress.
+    // After a ramp of duration τ/3 in one step, 3 (1 − e^(−1/3)) of the stress of the spring
+    // remains.
     double expected = kModulus * kStrain * 3 * (1 - std::exp(-1.0 / 3));
     EXPECT_NEAR(SecondStress(&bar, kStrain, kTau / 3), expected, 1e-10 * expected);
     for (const double hold : {0.2, 3.0, 0.01, 1.0}) {  // in τ; the update is exact: only rounding
@@ -74,8 +75,8 @@ TEST(ViscoelasticBranch, HasTheStorageAndLossModulusOfAMaxwellElementToSecondOrd
     const double coarse = std::abs(ComplexModulus(x, 24) - exact);
     const double fine = std::abs(ComplexModulus(x, 48) - exact);
     const double finest = std::abs(ComplexModulus(x, 96) - exact);
-    // What is left of the start after three periods is e^(−6π/x) < 2e-3 at x = 3, and does not
-    // shrink with the step: seen in the finest error there.
+    // The initial transient is e^(−6π/x) < 2e-3 after three periods at x = 3. It does not decrease
+    // with the step and limits the finest error there.
     EXPECT_LT(finest, 3e-3) << x;
     if (x > 2) continue;
     // Second order: each halving divides the error by 4, up to higher orders.
@@ -84,7 +85,7 @@ TEST(ViscoelasticBranch, HasTheStorageAndLossModulusOfAMaxwellElementToSecondOrd
   }
 }
 
-TEST(ViscoelasticBranch, RelaxesBesideAnElasticLawWithoutChangeOfShape) {
+TEST(ViscoelasticBranch, RelaxesInParallelWithAnElasticLawWithoutChangeOfShape) {
   // With the same Poisson ratio, and at a strain of 1e-4 that leaves all laws linear to 1e-3, a
   // clamped bar that is stretched and held has the force (E + m b e^(−t/τ))/E of the elastic one.
   constexpr double kYoung = 1e5, kLength = 0.06, kStretch = 1e-4 * kLength;
@@ -142,7 +143,7 @@ TEST(ViscoelasticBranch, BecomesKelvinVoigtWhenItsTimeVanishes) {
   EXPECT_LT((force - viscous).norm(), 1e-4 * viscous.norm());
 }
 
-TEST(ViscoelasticBranch, HasNoForceInStaticsAndForgets) {
+TEST(ViscoelasticBranch, HasNoForceInStaticsAndNoMemory) {
   StrainedBody body(Branch());
   EXPECT_GT(SecondStress(&body, 0.2, kTau), 0);
   EXPECT_EQ(SecondStress(&body, 0.3, 0), 0);

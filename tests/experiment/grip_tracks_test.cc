@@ -24,8 +24,8 @@ class CarriedByMarkers : public testing::Test {
   CarriedByMarkers() : mesh_(BarMesh({4, 1, 1}, 1)) {
     recording_.times = {0, 1, 2};
     recording_.markers.names = {"a", "b", "c", "d"};
-    recording_.marker_places.resize(3, 4);
-    recording_.marker_places << 0, 0, 0, 0.01, -0.01, 0.01, -0.01, 0.01, 0.01, 0.01, -0.01, 0.01;
+    recording_.markers.places.resize(3, 4);
+    recording_.markers.places << 0, 0, 0, 0.01, -0.01, 0.01, -0.01, 0.01, 0.01, 0.01, -0.01, 0.01;
   }
 
   // A grip that follows these markers: in the first frame at rest, in the last where the motion has
@@ -36,21 +36,21 @@ class CarriedByMarkers : public testing::Test {
     grip.motion = GripMotion::kFollowsMarkers;
     grip.markers = names;
     grip.deforms = deforms_;
-    recording_.grips = {grip};
+    recording_.object.grips = {grip};
     model_ = {};
     model_.body = std::make_shared<const Body>(MakeBody(mesh_, 1000));
     GripTracks tracks(recording_, mesh_, &model_);
     const Eigen::Matrix3Xd none(3, 0);
-    first_lost_ = tracks.Extend(0, none, none, recording_.marker_places) != nullptr;
+    first_lost_ = tracks.Extend(0, none, none, recording_.markers.places) != nullptr;
     const RecordedGrip* lost = tracks.Extend(1, none, none, middle);
     lost_ = lost == nullptr ? "" : lost->region.name;
-    tracks.Extend(2, none, none, motion_ * recording_.marker_places);
+    tracks.Extend(2, none, none, motion_ * recording_.markers.places);
     const Grip& held = model_.grips.front();
     rest_ = mesh_.nodes(Eigen::all, held.nodes);
     at_middle_ = held.motion(1);
   }
 
-  Eigen::Matrix3Xd Moved() const { return motion_ * recording_.marker_places; }
+  Eigen::Matrix3Xd Moved() const { return motion_ * recording_.markers.places; }
 
   TetMesh mesh_;
   Recording recording_;
@@ -72,7 +72,7 @@ TEST_F(CarriedByMarkers, MovesAsTheyDo) {
 
 TEST_F(CarriedByMarkers, DeformsWithThemWhereItMay) {
   const Eigen::Vector3d stretch(1, 1.2, 0.9);  // the markers lie in the plane x = 0
-  const Eigen::Matrix3Xd wide = stretch.asDiagonal() * recording_.marker_places;
+  const Eigen::Matrix3Xd wide = stretch.asDiagonal() * recording_.markers.places;
   Follow({"a", "b", "c", "d"}, wide);
   const auto inner = [](const Eigen::Matrix3Xd& places) -> Eigen::MatrixXd {
     const Eigen::Matrix3Xd about = places.colwise() - Eigen::Vector3d(places.col(0));
@@ -110,7 +110,7 @@ TEST_F(CarriedByMarkers, MovesEvenlyWhereTheyDoNotTell) {
 }
 
 TEST_F(CarriedByMarkers, DoesNotTurnAboutTheLineOfTwo) {
-  Follow({"a", "b"}, recording_.marker_places);
+  Follow({"a", "b"}, recording_.markers.places);
   EXPECT_EQ(lost_, "");
   EXPECT_LT((at_middle_ - rest_).norm(), 1e-12);
 }

@@ -53,7 +53,7 @@ Recording ExpectReadable(const Scene& scene, const SceneMotion& motion,
   WriteSceneRecording(scene, motion, folder);
   Recording recording = LoadRecording(folder);
   EXPECT_EQ(recording.FrameCount(), scene.frames);
-  EXPECT_EQ(recording.density, scene.density);
+  EXPECT_EQ(recording.object.density, scene.density);
   for (const int i : {0, scene.frames / 2, scene.frames - 1}) {
     EXPECT_NEAR(recording.times[i], i / scene.frame_rate, 1e-6);
     const Frame frame = LoadFrame(recording, i);
@@ -90,7 +90,7 @@ TEST(BendScene, BendsInThePlaneOfItsForceAndIsHeldAtItsClamp) {
     EXPECT_NEAR(std::remainder(angle, 2 * M_PI), 0, 0.05) << "frame " << k;
   }
   const Recording recording = ExpectReadable(scene, motion, folder / "bend");
-  EXPECT_EQ(recording.fixed.size(), 1u);
+  EXPECT_EQ(recording.object.fixed.size(), 1u);
 }
 
 TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
@@ -128,8 +128,8 @@ TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
   // Warping of the section and its not being quite at rest: some degrees.
   EXPECT_LT(largest_error, 8 * M_PI / 180);
   const Recording recording = ExpectReadable(scene, motion, folder / "twist");
-  EXPECT_EQ(recording.fixed.size(), 1u) << "the clamp is told, the moved chuck is not";
-  EXPECT_TRUE(recording.grips.empty());
+  EXPECT_EQ(recording.object.fixed.size(), 1u) << "the clamp is told, the moved chuck is not";
+  EXPECT_TRUE(recording.object.grips.empty());
 }
 
 // What a body that falls has, J.
@@ -205,9 +205,9 @@ TEST(DropScene, FallsFreelyStaysAboveTheFloorAndReboundsWithLessEnergy) {
   EXPECT_GT(*std::max_element(lowest.begin() + touch, lowest.end()), 2e-4);
 
   const Recording recording = ExpectReadable(scene, motion, folder / "drop");
-  EXPECT_TRUE(recording.fixed.empty());
-  ASSERT_TRUE(recording.gravity.has_value());
-  EXPECT_NEAR(recording.gravity->z(), -kGravity, 1e-9);
+  EXPECT_TRUE(recording.object.fixed.empty());
+  ASSERT_TRUE(recording.object.gravity.has_value());
+  EXPECT_NEAR(recording.object.gravity->z(), -kGravity, 1e-9);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-// A row of `cubes` unit cubes, six tetrahedra each.
+// A row of unit cubes, each divided into six tetrahedra.
 Eigen::MatrixXi RowOfCubes(int cubes) {
   const int path[6][3] = {{1, 3, 7}, {1, 5, 7}, {2, 3, 7}, {2, 6, 7}, {4, 5, 7}, {4, 6, 7}};
   const auto node = [](int cube, int corner) { return 4 * (cube + (corner & 1)) + (corner >> 1); };
@@ -25,7 +25,7 @@ Eigen::MatrixXi RowOfCubes(int cubes) {
   return tets;
 }
 
-TEST(BlockPattern, HoldsTheBlocksOfNodesThatShareAnElementAndNoOthers) {
+TEST(BlockPattern, ContainsABlockExactlyForNodesThatShareAnElement) {
   const int nodes = 24;
   const Eigen::MatrixXi tets = RowOfCubes(5);
   std::set<std::pair<int, int>> expected;
@@ -52,7 +52,7 @@ TEST(BlockPattern, HoldsTheBlocksOfNodesThatShareAnElementAndNoOthers) {
   }
 }
 
-TEST(BlockPattern, GivesANodeWithoutElementsItsDiagonalBlock) {
+TEST(BlockPattern, ContainsTheDiagonalBlockOfANodeWithoutElements) {
   const BlockPattern pattern = MakeBlockPattern(9, RowOfCubes(1));
   EXPECT_EQ(pattern.Find(8, 8), pattern.BlockCount() - 1);
   EXPECT_EQ(pattern.Find(8, 0), -1);
@@ -78,7 +78,7 @@ TEST(BlockMatrix, MultipliesLikeItsDenseCounterpart) {
   }
 
   matrix.Multiply(x, &y);
-  // Sums of at most 36 terms of order one, in another order.
+  // Rounding of sums of at most 36 terms of order one in a different order.
   EXPECT_LT((y - expected).lpNorm<Eigen::Infinity>(), 1e-12);
 
   Eigen::VectorXd on_one_thread;

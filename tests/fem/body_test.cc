@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "fem/inverted_element.h"
 #include "geometry/shape_functions.h"
 #include "support/box_mesh.h"
 
@@ -38,7 +39,7 @@ TEST(ShapeFunctions, AreOneAtTheirNodeAndZeroAtTheOthers) {
 
 TEST(ShapeFunctions, HaveTheDerivativesOfTheirValues) {
   const Eigen::Vector4d at(0.1, 0.2, 0.3, 0.4);
-  const double h = 1e-3;  // exact for quadratics whatever h
+  const double h = 1e-3;  // any step is exact for a quadratic function
   for (const int order : {1, 2}) {
     for (int k = 0; k < 4; ++k) {
       const Eigen::Vector4d step = h * Eigen::Vector4d::Unit(k);
@@ -70,7 +71,7 @@ TEST(Body, HasTheMassOfItsVolume) {
   }
 }
 
-TEST(Body, GivesTheGradientOfPolynomialsOfItsOrder) {
+TEST(Body, DifferentiatesPolynomialsOfItsOrderExactly) {
   for (const int order : {1, 2}) {
     const Body body = MakeBody(JitteredBox(order), 1);
     const auto field = [order](const Eigen::Vector3d& x) {
@@ -116,11 +117,11 @@ TEST(ElementSchedule, VisitsEachElementOnceAndSharesNoNodeWithinAColour) {
   }
 }
 
-TEST(Body, RemembersTheNumbersOfTheGivenElements) {
+TEST(Body, KeepsTheElementNumbersOfTheGivenMesh) {
   const TetMesh mesh = JitteredBox(2);
   const Body body = MakeBody(mesh, 1);
   EXPECT_EQ(body.mesh.nodes, mesh.nodes);
-  EXPECT_NE(body.mesh.tets, mesh.tets) << "sorted by place";
+  EXPECT_NE(body.mesh.tets, mesh.tets) << "the elements must have been sorted";
   EXPECT_THAT(std::set<int>(body.given_element.begin(), body.given_element.end()),
               testing::SizeIs(body.ElementCount()));
   for (int e = 0; e < body.ElementCount(); ++e) {
@@ -128,8 +129,8 @@ TEST(Body, RemembersTheNumbersOfTheGivenElements) {
   }
 }
 
-TEST(ElementSchedule, CopesWithANodeInMoreChunksThanThereAreColours) {
-  // 12 000 slivers around one edge: both its nodes belong to some 94 chunks.
+TEST(ElementSchedule, SupportsANodeInMoreChunksThanThereAreColours) {
+  // 12 000 thin elements around one edge, whose two nodes belong to about 94 chunks.
   constexpr int kSlivers = 12000;
   TetMesh fan;
   fan.nodes.resize(3, kSlivers + 2);
@@ -155,7 +156,7 @@ std::string ErrorOf(const std::function<void()>& action) {
   return "";
 }
 
-TEST(Body, RefusesBadMeshes) {
+TEST(Body, RejectsInvalidMeshes) {
   using testing::HasSubstr;
   const TetMesh good = BoxMesh({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   EXPECT_THAT(ErrorOf([&] { MakeBody(good, 0); }), HasSubstr("density"));
@@ -178,11 +179,11 @@ TEST(Body, RefusesBadMeshes) {
   EXPECT_THAT(ErrorOf([&] { MakeBody(missing, 1); }), HasSubstr("not finite"));
 }
 
-TEST(Body, FindsAnInvertedElement) {
+TEST(InvertedElement, IsFoundAmongTheElementsOfADisplacedNode) {
   const Body body = MakeBody(JitteredBox(1), 1);
   Eigen::VectorXd position = body.mesh.nodes.reshaped();
   EXPECT_EQ(FindInvertedElement(body, position), -1);
-  // One node far away turns some of its elements over, and no others.
+  // Moving one node far away inverts some of its elements and no others.
   const int node = 100;
   position.segment<3>(3 * node) += Eigen::Vector3d(0.5, 0.3, 0.2);
   const int inverted = FindInvertedElement(body, position);

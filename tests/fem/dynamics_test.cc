@@ -1,4 +1,4 @@
-// Motion in time: order, frequency, energy, momentum.
+// Dynamics: order of accuracy, frequencies, energy and momentum.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -61,7 +61,7 @@ MotionHistory Moved(const Model& model, TimeScheme scheme, double duration, int 
   return history;
 }
 
-// A clamped bar with a smooth initial velocity, swinging by some 20° within a quarter period.
+// A clamped bar with a smooth initial velocity that deflects by about 20° within a quarter period.
 MotionHistory Swing(const Model& model) {
   MotionHistory history = RestHistory(model);
   Throw(
@@ -85,8 +85,8 @@ double ObservedOrder(TimeScheme scheme, const std::vector<std::shared_ptr<const 
   return std::log2((coarse - medium).norm() / (medium - fine).norm());
 }
 
-// Undamped, the steps must resolve the mesh's highest modes too, of some 1 ms. The tolerances leave
-// room for the next order at the finest step used.
+// Without damping the steps must resolve the highest modes of the mesh too, with periods of about 1
+// ms. The tolerances allow for the error term of the next order at the smallest step.
 std::vector<std::shared_ptr<const Effect>> GravityAndDamping() {
   return {MakeEffect("gravity", {{"acceleration_z", -9.81}}),
           MakeEffect("mass_damping", {{"alpha", 5}}),
@@ -111,7 +111,8 @@ TEST(TimeSchemes, TwoStepIsOfOrderTwoWithDampingAndGravity) {
   EXPECT_NEAR(ObservedOrder(TimeScheme::kTwoStep, GravityAndDamping(), 80), 2, 0.1);
 }
 
-// ẍ = −ω² x over one period from rest at 1, the first of `steps` a tenth as long as the others.
+// Integrates ẍ = −ω² x over one period from rest at 1, with a first step a tenth as long as the
+// others.
 std::complex<double> AfterAPeriod(TimeScheme scheme, int steps) {
   const double h = 2 * M_PI / (steps - 0.9);
   double x = 1, v = 0, a = 0, x_before = 0, v_before = 0, a_before = 0, last = 0;
@@ -132,7 +133,8 @@ std::complex<double> AfterAPeriod(TimeScheme scheme, int steps) {
 TEST(TimeSchemes, TwoStepHasAThirdOfTheErrorOfBdf2) {
   const std::complex<double> bdf2 = AfterAPeriod(TimeScheme::kBdf2, 100);
   const std::complex<double> two_step = AfterAPeriod(TimeScheme::kTwoStep, 100);
-  // A lag of 2π C (ωh)², C = 1/3 and 0.099: the error constants of the two.
+  // The phase error is 2π C (ωh)² with the error constants C = 1/3 and C = 0.099 of the two
+  // schemes.
   const double square = std::pow(2 * M_PI / 99.1, 2);
   EXPECT_NEAR(-std::arg(bdf2) / (2 * M_PI * square), 1.0 / 3, 0.03);
   EXPECT_NEAR(-std::arg(two_step) / (2 * M_PI * square), 0.099, 0.01);
@@ -142,7 +144,7 @@ TEST(TimeSchemes, TwoStepHasAThirdOfTheErrorOfBdf2) {
 TEST(TimeSchemes, Bdf2StaysOfOrderTwoWhenTheStepChanges) {
   const Model model = Bar("neo_hookean", {6, 1, 1}, 1, true);
   const MotionHistory start = Swing(model);
-  // Steps of 1 : 2 : 3 : 2, over and over.
+  // Steps with the repeated ratios 1 : 2 : 3 : 2.
   const auto at = [&](int rounds) {
     Stepper stepper(model, {.scheme = TimeScheme::kBdf2, .relative_tolerance = 1e-11});
     MotionHistory history = start;
@@ -159,8 +161,8 @@ TEST(TimeSchemes, Bdf2StaysOfOrderTwoWhenTheStepChanges) {
 }
 
 TEST(Vibration, HasTheFirstFrequencyOfBeamTheory) {
-  // Timoshenko's cantilever is 1.3 % below Euler–Bernoulli's at this slenderness (the factor
-  // 1 + (1/2)(β r)²(…) of Thomson, Theory of Vibration, ch. 8, evaluated below).
+  // At this slenderness the frequency of Timoshenko's cantilever is 1.3 % below that of
+  // Euler–Bernoulli's (the factor 1 + (1/2)(β r)²(…) of Thomson, Theory of Vibration, ch. 8).
   const double inertia = std::pow(kSide, 4) / 12, area = kSide * kSide;
   const double beta = 1.875104 / kLength;
   const double euler = beta * beta * std::sqrt(kYoung * inertia / (kDensity * area)) / (2 * M_PI);
@@ -176,7 +178,7 @@ TEST(Vibration, HasTheFirstFrequencyOfBeamTheory) {
   Throw(
       model,
       [&](const Eigen::Vector3d& x) {
-        // The first mode's shape, small.
+        // A small deflection in the shape of the first mode.
         const double z = beta * x[0], sigma = 0.734096;
         return Eigen::Vector3d(
             0, 0, 1e-3 * (std::cosh(z) - std::cos(z) - sigma * (std::sinh(z) - std::sin(z))));
@@ -184,7 +186,7 @@ TEST(Vibration, HasTheFirstFrequencyOfBeamTheory) {
       &history);
   const Eigen::VectorXi tip =
       NodesWhere(model.body->mesh, [](const Eigen::Vector3d& x) { return x[0] > kLength - 1e-9; });
-  // BDF2 is slow by (ωh)²/3·… : 0.1 % at 200 steps a period.
+  // BDF2 lowers the frequency by 0.1 % at 200 steps per period.
   const double step = 1 / (200 * theory);
   Stepper stepper(model, {.scheme = TimeScheme::kBdf2});
   std::vector<double> crossings;
@@ -197,13 +199,13 @@ TEST(Vibration, HasTheFirstFrequencyOfBeamTheory) {
   }
   ASSERT_EQ(crossings.size(), 3u);
   const double frequency = 1 / (crossings[2] - crossings[0]);
-  // Beam theory and this three-dimensional, laterally hindered clamp differ by about 1 %.
+  // Beam theory neglects that the clamp restrains lateral contraction, which changes about 1 %.
   EXPECT_NEAR(frequency, theory, 0.015 * theory) << "Euler–Bernoulli " << euler << " Hz";
 }
 
-TEST(Energy, FallsMonotonicallyWithImplicitEulerAndFarLessWithBdf2) {
+TEST(Energy, DecreasesMonotonicallyWithImplicitEulerAndMuchLessWithBdf2) {
   const Model model = Bar("neo_hookean", {8, 2, 2}, 1, true);
-  double left[2];
+  double remaining[2];
   int k = 0;
   for (const TimeScheme scheme : {TimeScheme::kImplicitEuler, TimeScheme::kBdf2}) {
     MotionHistory history = Swing(model);
@@ -216,19 +218,20 @@ TEST(Energy, FallsMonotonicallyWithImplicitEulerAndFarLessWithBdf2) {
       if (scheme == TimeScheme::kImplicitEuler) {
         EXPECT_LE(now, last * (1 + 1e-9)) << "step " << step;
       }
-      EXPECT_LE(now, start * (1 + 1e-9)) << "energy is never gained";
+      EXPECT_LE(now, start * (1 + 1e-9)) << "the energy must never exceed its initial value";
       last = now;
     }
-    left[k++] = last / start;
+    remaining[k++] = last / start;
   }
-  // In a second, two and a half periods of the first mode, whose energy implicit Euler lowers by
-  // exp(−ω² h t) = 0.28.
-  EXPECT_LT(left[0], 0.35) << left[1];
-  EXPECT_GT(left[1], 0.9);
+  // One second is two and a half periods of the first mode, whose energy implicit Euler reduces by
+  // the factor exp(−ω² h t) = 0.28.
+  EXPECT_LT(remaining[0], 0.35) << remaining[1];
+  EXPECT_GT(remaining[1], 0.9);
 }
 
-TEST(Energy, OfADampedBodyDiesOutAtTheRateOfRayleigh) {
-  // α alone: the first mode's amplitude falls as exp(−α t/2), its energy as exp(−α t).
+TEST(Energy, OfADampedBodyDecaysAtTheRateOfRayleighDamping) {
+  // With α alone, the amplitude of the first mode decays as exp(−α t/2) and its energy as exp(−α
+  // t).
   Model model = Bar("linear", {10, 1, 1}, 2, true);
   model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 4}}));
   MotionHistory history = RestHistory(model);
@@ -247,17 +250,17 @@ TEST(Energy, OfADampedBodyDiesOutAtTheRateOfRayleigh) {
   };
   const double start = energy(history);
   history = Moved(model, TimeScheme::kBdf2, 0.4, 800, history);
-  // BDF2's own loss and the small share of higher modes.
+  // The tolerance covers the numerical damping of BDF2 and the small share of higher modes.
   EXPECT_NEAR(energy(history) / start, std::exp(-4 * 0.4), 0.02);
 }
 
-TEST(FreeFlight, KeepsMomentumAndFallsUndeformed) {
+TEST(FreeFlight, ConservesMomentumAndKeepsTheShape) {
   for (const int order : {1, 2}) {
     Model model = Bar("corotational", {5, 2, 2}, order, false);
     model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.81}}));
     MotionHistory history = RestHistory(model);
     history = Moved(model, TimeScheme::kImplicitEuler, 0.1, 10, history);
-    // Implicit Euler falls by g h² n(n+1)/2.
+    // n steps of implicit Euler give a fall of g h² n(n+1)/2.
     const double fall = 9.81 * 0.01 * 0.01 * 55;
     for (int i = 0; i < model.body->NodeCount(); ++i) {
       EXPECT_NEAR(history.position[3 * i + 2], model.body->mesh.nodes(2, i) - fall, 1e-10);
@@ -265,8 +268,8 @@ TEST(FreeFlight, KeepsMomentumAndFallsUndeformed) {
   }
 }
 
-TEST(FreeFlight, SpinsOnWithoutSpuriousDamping) {
-  // Stiffness-proportional damping must not brake a body that turns as a whole, however far.
+TEST(FreeFlight, RotatesWithoutSpuriousDamping) {
+  // Stiffness-proportional damping must not slow down a rigid rotation of any size.
   Model model = Bar("neo_hookean", {5, 2, 2}, 1, false);
   model.effects.push_back(MakeEffect(
       "stiffness_damping", {{"beta", 0.01}, {"young_modulus", kYoung}, {"poisson_ratio", 0.3}}));
@@ -276,13 +279,13 @@ TEST(FreeFlight, SpinsOnWithoutSpuriousDamping) {
       model, [&](const Eigen::Vector3d& x) { return spin.cross(x - centre); }, &history);
   const double start = KineticEnergy(model, history);
   history = Moved(model, TimeScheme::kBdf2, 1.0, 1000, history);
-  // BDF2 itself loses (ωh)³/… a step; a braking −βKv would have stopped the body in a few ms.
+  // BDF2 itself loses a term of order (ωh)³ per step; a force −βKv would stop the body in a few ms.
   EXPECT_GT(KineticEnergy(model, history), 0.99 * start);
   EXPECT_LT(KineticEnergy(model, history), 1.001 * start);
 }
 
-TEST(Grip, MovesTheBodyAndFeelsItsWeight) {
-  // Carried along at constant velocity, quasi-statically: the grip's force is the weight.
+TEST(Grip, MovesTheBodyAndCarriesItsWeight) {
+  // In a quasi-static motion at constant velocity the force of the grip is the weight.
   Model model = Bar("corotational", {8, 2, 2}, 1, true);
   model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.81}}));
   const Eigen::Matrix3Xd rest = model.body->mesh.nodes(Eigen::all, model.grips[0].nodes);
@@ -321,7 +324,8 @@ TEST(StepEquation, HasTheResidualAsGradientOfItsPotentialAndTheTangentAsItsDeriv
     const double h = 1e-6;
     equation.Residual(at + h * direction, &ahead);
     equation.Residual(at - h * direction, &behind);
-    // Truncation (h/element)² = 1e-8 and rounding 1e-16/1e-6 of 1e3 times larger forces.
+    // Truncation (h/element size)² = 1e-8, and rounding 1e-16/1e-6 of forces that are 1e3 times
+    // larger.
     EXPECT_LT((product - (ahead - behind) / (2 * h)).norm(), 1e-6 * product.norm());
     const double slope =
         (equation.Potential(at + h * direction) - equation.Potential(at - h * direction)) / (2 * h);
@@ -356,7 +360,7 @@ TEST(StepEquation, HasTheParameterDerivativesOfItsResidual) {
   }
 }
 
-TEST(Stepper, LeavesTheHistoryAloneWhenAStepFails) {
+TEST(Stepper, DoesNotChangeTheHistoryWhenAStepFails) {
   const Model model = Bar("corotational", {3, 1, 1}, 1, true);
   Stepper stepper(model, {.max_iterations = 0});
   MotionHistory history = Swing(model);

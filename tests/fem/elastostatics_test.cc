@@ -1,4 +1,4 @@
-// Static equilibrium: patch test, convergence rates, beams, robustness.
+// Static equilibrium: patch test, convergence rates, beams and robustness.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "effects/catalogue.h"
+#include "fem/inverted_element.h"
 #include "fem/simulate.h"
 #include "geometry/shape_functions.h"
 #include "support/box_mesh.h"
@@ -27,7 +28,7 @@ bool OnBoundary(const Eigen::Vector3d& x, const Eigen::Vector3d& low, const Eige
   return (x - low).cwiseAbs().minCoeff() < 1e-12 || (x - high).cwiseAbs().minCoeff() < 1e-12;
 }
 
-// Every law, order and a deformation that is the same everywhere.
+// For every law and element order.
 TEST(PatchTest, HomogeneousDeformationIsReproducedExactly) {
   const Eigen::Matrix3d F{{1.1, 0.08, -0.05}, {0.02, 0.94, 0.06}, {-0.04, 0.03, 1.07}};
   for (const std::string type : {"linear", "corotational", "st_venant_kirchhoff", "neo_hookean"}) {
@@ -51,7 +52,7 @@ TEST(PatchTest, HomogeneousDeformationIsReproducedExactly) {
   }
 }
 
-// A smooth displacement and the body force that linear elasticity asks for: b = −div σ(u).
+// A smooth displacement u and the body force b = −div σ(u) that it requires in linear elasticity.
 struct Manufactured {
   static constexpr double kMu = 1, kLambda = 1.5;
   static Eigen::Vector3d Displacement(const Eigen::Vector3d& x) {
@@ -59,8 +60,8 @@ struct Manufactured {
             std::cos(x[0]) * std::sin(1.5 * x[1]) * x[2],
             std::exp(0.3 * x[0]) * std::sin(x[1] + 2 * x[2])};
   }
-  // Second derivatives by central differences of the smooth field: error 1e-7, far below that of
-  // the meshes used.
+  // Second derivatives by central differences of the smooth field, with an error of 1e-7, far below
+  // that of the meshes.
   static Eigen::Vector3d BodyForce(const Eigen::Vector3d& x) {
     constexpr double h = 1e-4;
     const auto second = [&](int i, int j) -> Eigen::Vector3d {
@@ -78,8 +79,8 @@ struct Manufactured {
   }
 };
 
-// A rule of high degree: each tetrahedron cut into 8³ cells would be dear, so the conical product
-// of four-point Gauss rules (exact to degree 5 here).
+// A quadrature rule of high degree: the conical product of four-point Gauss rules, exact to
+// degree 5.
 template <typename Visit>
 void IntegrateElement(const TetMesh& mesh, Eigen::Index element, const Visit& visit) {
   constexpr double kPoint[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
@@ -105,7 +106,7 @@ void IntegrateElement(const TetMesh& mesh, Eigen::Index element, const Visit& vi
   }
 }
 
-// L2 error of linear elasticity on n × n × n cells.
+// The L2 error of linear elasticity on n × n × n cells.
 double ManufacturedError(int order, int cells) {
   const TetMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1}, {cells, cells, cells}, order);
   const double poisson = Manufactured::kLambda / (2 * (Manufactured::kLambda + Manufactured::kMu));
@@ -131,9 +132,8 @@ double ManufacturedError(int order, int cells) {
                      });
   }
   MotionHistory history = RestHistory(model);
-  // Displacements of order 1 turn elements inside out, which linear elasticity does not mind but
-  // the stepper does; the law is linear, so a thousandth of everything gives a thousandth of the
-  // result.
+  // Displacements of order 1 would invert elements, which the stepper rejects. Since the law is
+  // linear, loads and displacements are scaled by 1/1000.
   constexpr double kScale = 1e-3;
   const Eigen::Matrix3Xd rest = mesh.nodes(Eigen::all, held);
   model.grips[0].motion = [=](double) { return Eigen::Matrix3Xd(rest + kScale * (places - rest)); };
@@ -158,7 +158,7 @@ double ManufacturedError(int order, int cells) {
 
 TEST(ManufacturedSolution, ConvergesWithOrderTwoForLinearElements) {
   const double rate = std::log2(ManufacturedError(1, 5) / ManufacturedError(1, 10));
-  EXPECT_NEAR(rate, 2, 0.15);  // not yet asymptotic
+  EXPECT_NEAR(rate, 2, 0.15);  // the meshes are not yet in the asymptotic range
 }
 
 TEST(ManufacturedSolution, ConvergesWithOrderThreeForQuadraticElements) {
@@ -189,17 +189,17 @@ double CantileverDeflection(const std::string& law, const std::array<int, 3>& ce
   return deflection;
 }
 
-TEST(Cantilever, BendsAsTimoshenkosBeam) {
+TEST(Cantilever, BendsLikeTimoshenkosBeam) {
   // F L³/(3 E I) + F L/(κ G A) with κ = 10(1+ν)/(12+11ν) (Cowper 1966).
   const double E = 1e6, nu = 0.3, L = 0.2, a = 0.02, F = 1e-3;
   const double inertia = std::pow(a, 4) / 12, G = E / (2 * (1 + nu));
   const double kappa = 10 * (1 + nu) / (12 + 11 * nu);
   const double theory = F * L * L * L / (3 * E * inertia) + F * L / (kappa * G * a * a);
   for (const std::string law : {"linear", "corotational", "st_venant_kirchhoff", "neo_hookean"}) {
-    // Beam theory itself leaves out the clamp's hindrance of lateral contraction: about 1 %.
+    // Beam theory neglects that the clamp restrains lateral contraction, which changes about 1 %.
     EXPECT_NEAR(CantileverDeflection(law, {20, 2, 2}, 2, F), theory, 0.012 * theory) << law;
   }
-  // Linear tetrahedra are known to be too stiff in bending, and converge from below.
+  // Linear tetrahedra are too stiff in bending, and their deflection converges from below.
   const double coarse = CantileverDeflection("linear", {20, 2, 2}, 1, F);
   const double fine = CantileverDeflection("linear", {40, 4, 4}, 1, F);
   EXPECT_LT(coarse, fine);
@@ -208,7 +208,7 @@ TEST(Cantilever, BendsAsTimoshenkosBeam) {
 
 TEST(Equilibrium, IsFoundUnderLoadsThatFoldTheBeam) {
   for (const std::string law : {"corotational", "st_venant_kirchhoff", "neo_hookean"}) {
-    // 50 times the load at which linear theory would bend it by its own length.
+    // 50 times the load that would deflect the beam by its own length in linear theory.
     const double deflection = CantileverDeflection(law, {16, 2, 2}, 2, 5.0);
     EXPECT_GT(deflection, 0.15) << law;
     EXPECT_LT(deflection, 0.3) << law;
@@ -217,8 +217,8 @@ TEST(Equilibrium, IsFoundUnderLoadsThatFoldTheBeam) {
 
 class InvertedStart : public testing::TestWithParam<std::string> {};
 
-TEST_P(InvertedStart, IsUndoneToTheRestShape) {
-  // Half of the boundary held; the other nodes thrown anywhere within the box.
+TEST_P(InvertedStart, ReturnsToTheRestShape) {
+  // Half of the boundary is held, and all other nodes start at random places within the box.
   const TetMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1}, {4, 4, 4});
   Model model = MakeModel(mesh, 1, Law(GetParam(), 1e5, 0.4));
   model.grips.push_back({NodesWhere(mesh,
@@ -245,8 +245,9 @@ TEST_P(InvertedStart, IsUndoneToTheRestShape) {
 INSTANTIATE_TEST_SUITE_P(Laws, InvertedStart, testing::Values("corotational", "neo_hookean"),
                          [](const auto& info) { return info.param; });
 
-TEST(Equilibrium, ReportsALoadThatTheBodyCannotBear) {
-  // Compression beyond 58 % makes St. Venant–Kirchhoff give way: a force larger than it can resist.
+TEST(Equilibrium, ReportsALoadThatTheBodyCannotSupport) {
+  // The law of St. Venant–Kirchhoff softens beyond 58 % of compression, so its resistance is
+  // limited.
   const TetMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1}, {2, 2, 2});
   Model model = MakeModel(mesh, 1, Law("st_venant_kirchhoff", 1e5, 0.0));
   model.grips.push_back(
@@ -260,22 +261,22 @@ TEST(Equilibrium, ReportsALoadThatTheBodyCannotBear) {
   const StepSummary summary = Stepper(model, {}).Equilibrium(load, &history);
   EXPECT_FALSE(summary.IsUsable());
   EXPECT_NE(summary.message, "");
-  EXPECT_EQ(history.position, before) << "a failed step changes nothing";
+  EXPECT_EQ(history.position, before) << "a failed step must not change the history";
 }
 
-TEST(Equilibrium, FollowsGripsThatMoveFarAtOnce) {
-  // A bar stretched to twice its length and turned by 90° in one go, elements smaller than the
-  // move.
+TEST(Equilibrium, FollowsALargeMotionOfAGrip) {
+  // A bar is stretched to twice its length and rotated by 90° in one step, with elements that are
+  // smaller than the motion.
   const TetMesh mesh = BoxMesh({0, 0, 0}, {0.1, 0.02, 0.02}, {10, 2, 2});
   Model model = MakeModel(mesh, 1000, Law("neo_hookean", 1e5, 0.45));
   model.grips.push_back(
       {NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x[0] < 1e-9; }), {}});
   const Eigen::VectorXi end =
       NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x[0] > 0.1 - 1e-9; });
-  const Eigen::Matrix3d turn =
+  const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix();
   const Eigen::Matrix3Xd places =
-      (turn * mesh.nodes(Eigen::all, end)).colwise() + Eigen::Vector3d(0.1, 0, 0);
+      (rotation * mesh.nodes(Eigen::all, end)).colwise() + Eigen::Vector3d(0.1, 0, 0);
   model.grips.push_back({end, [places](double) { return places; }});
   MotionHistory history = RestHistory(model);
   const StepSummary summary = Stepper(model, {}).Equilibrium({}, &history);
@@ -296,7 +297,7 @@ TEST(Equilibrium, IsTheSameOnOneThreadAndOnTwo) {
   EXPECT_EQ(deflection[0], deflection[1]);
 }
 
-TEST(Stepper, RefusesGripsThatMakeNoSense) {
+TEST(Stepper, RejectsInvalidGrips) {
   const TetMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   Model model = MakeModel(mesh, 1, Law("linear", 1, 0.3));
   model.grips = {{Eigen::VectorXi::Constant(1, 8), {}}};

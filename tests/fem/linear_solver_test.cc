@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-// The free part solved densely, 0 on the fixed nodes.
+// The solution of the free part by a dense factorisation; 0 at the fixed nodes.
 Eigen::VectorXd DenseSolution(const BlockMatrix& A, const std::vector<char>& fixed,
                               const Eigen::VectorXd& b) {
   const BlockPattern& pattern = A.pattern();
@@ -32,14 +32,14 @@ Eigen::VectorXd DenseSolution(const BlockMatrix& A, const std::vector<char>& fix
 
 class LinearSolverMethod : public testing::TestWithParam<LinearSolverOptions::Method> {};
 
-TEST_P(LinearSolverMethod, SolvesLikeADenseFactorisationAndLeavesFixedNodesAtZero) {
+TEST_P(LinearSolverMethod, AgreesWithADenseFactorisationAndIsZeroAtFixedNodes) {
   const Lattice lattice(7);
   LinearSolverOptions options;
   options.method = GetParam();
   options.relative_tolerance = 1e-12;
   LinearSolver solver(lattice.pattern, lattice.fixed, options);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
-  // The second and third matrices differ, so that a kept factor is a preconditioner there.
+  // The later matrices differ from the first one, so that the kept factor is a preconditioner only.
   for (const double angle : {0.0, 0.1, 0.2}) {
     const BlockMatrix A = lattice.Stiffness(angle, 0.01);
     Eigen::VectorXd x;
@@ -47,7 +47,7 @@ TEST_P(LinearSolverMethod, SolvesLikeADenseFactorisationAndLeavesFixedNodesAtZer
     ASSERT_TRUE(summary.IsUsable()) << summary.message;
     EXPECT_LE(summary.relative_residual, 1e-12);
     const Eigen::VectorXd expected = DenseSolution(A, lattice.fixed, b);
-    // Condition number of about 1e3 times the tolerance.
+    // The tolerance of the solver times a condition number of about 1e3.
     EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm()) << "angle " << angle;
     for (int i = 0; i < lattice.n * lattice.n; ++i) {
       EXPECT_EQ(x.segment<3>(3 * i), Eigen::Vector3d::Zero());
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Each, LinearSolverMethod,
                                                                                      : "KeptFactor";
                          });
 
-TEST(LinearSolver, KeepsItsFactorForLikeMatricesAndRenewsItForUnlikeOnes) {
+TEST(LinearSolver, KeepsItsFactorForSimilarMatricesAndRenewsItForOthers) {
   const Lattice lattice(14);
   LinearSolver solver(lattice.pattern, lattice.fixed, {});
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
@@ -87,7 +87,7 @@ TEST(LinearSolver, KeepsItsFactorForLikeMatricesAndRenewsItForUnlikeOnes) {
   EXPECT_EQ(solver.factorisations(), 3);
 }
 
-TEST(LinearSolver, TurnsItsFactorWithTheBody) {
+TEST(LinearSolver, RotatesItsFactorWithTheBody) {
   const Lattice lattice(10);
   const double angle = 1.3;
   const std::vector<Eigen::Matrix3d> before(lattice.Nodes(), Eigen::Matrix3d::Identity());
@@ -97,18 +97,18 @@ TEST(LinearSolver, TurnsItsFactorWithTheBody) {
   LinearSolver solver(lattice.pattern, lattice.fixed, {});
   Eigen::VectorXd x;
   const int when_new = solver.Solve(lattice.Stiffness(0, 0.01), b, &x, &before).iterations;
-  // The lattice has turned as a whole, its springs with it: the turned factor is as good as new.
-  const LinearSolveSummary turned = solver.Solve(lattice.Stiffness(angle, 0.01), b, &x, &after);
-  EXPECT_TRUE(turned.IsUsable());
-  EXPECT_FALSE(turned.factorised);
-  EXPECT_LE(turned.iterations, when_new + 1);
-  // A solver that is not told of the turn gives its factor up.
-  LinearSolver untold(lattice.pattern, lattice.fixed, {});
-  untold.Solve(lattice.Stiffness(0, 0.01), b, &x);
-  EXPECT_TRUE(untold.Solve(lattice.Stiffness(angle, 0.01), b, &x).factorised);
+  // The lattice has rotated as a whole, so the rotated factor is as good as a new one.
+  const LinearSolveSummary rotated = solver.Solve(lattice.Stiffness(angle, 0.01), b, &x, &after);
+  EXPECT_TRUE(rotated.IsUsable());
+  EXPECT_FALSE(rotated.factorised);
+  EXPECT_LE(rotated.iterations, when_new + 1);
+  // A solver that is not given the rotation renews its factor.
+  LinearSolver without_rotations(lattice.pattern, lattice.fixed, {});
+  without_rotations.Solve(lattice.Stiffness(0, 0.01), b, &x);
+  EXPECT_TRUE(without_rotations.Solve(lattice.Stiffness(angle, 0.01), b, &x).factorised);
 }
 
-TEST(LinearSolver, StartsFromEarlierSolutionsWhereTheyHelp) {
+TEST(LinearSolver, StartsFromEarlierSolutionsIfTheyHelp) {
   const Lattice lattice(10);
   LinearSolver solver(lattice.pattern, lattice.fixed, {});
   const BlockMatrix A = lattice.Stiffness(0, 0.01);
@@ -116,12 +116,12 @@ TEST(LinearSolver, StartsFromEarlierSolutionsWhereTheyHelp) {
   Eigen::VectorXd x, doubled;
   solver.Solve(A, b, &x);
   EXPECT_EQ(solver.Solve(A, 2 * b, &doubled).iterations, 0);
-  // Both are solved to 1e-9, at a condition number of about 1e3.
+  // Both solutions have a tolerance of 1e-9, at a condition number of about 1e3.
   EXPECT_LT((doubled - 2 * x).norm(), 1e-5 * doubled.norm());
 }
 
 TEST(LinearSolver, FallsBackOnDoublePrecisionForIllConditionedMatrices) {
-  // Free everywhere, held by next to nothing: the condition number is about 1e10.
+  // Without fixed nodes and with a tiny mass term, the condition number is about 1e10.
   const Lattice lattice(5);
   const std::vector<char> free(lattice.Nodes(), 0);
   LinearSolver solver(lattice.pattern, free, {.relative_tolerance = 1e-8});
@@ -130,7 +130,8 @@ TEST(LinearSolver, FallsBackOnDoublePrecisionForIllConditionedMatrices) {
   const LinearSolveSummary summary = solver.Solve(A, b, &x);
   ASSERT_TRUE(summary.IsUsable()) << summary.message;
   A.Multiply(x, &product);
-  // The recurrence's residual drifts from the true one by rounding: 1e-16 of ‖A‖ ‖x‖ ≈ 1e10 ‖b‖.
+  // By rounding, the residual of the recurrence deviates from the true one by 1e-16 ‖A‖ ‖x‖ with
+  // ‖A‖ ‖x‖ ≈ 1e10 ‖b‖.
   EXPECT_LT((b - product).norm(), 1e-5 * b.norm());
 }
 
@@ -160,7 +161,8 @@ TEST(LinearSolver, ReportsAMatrixThatIsNotPositiveDefinite) {
     EXPECT_EQ(x, Eigen::VectorXd::Zero(b.size()));
   };
   expect_refusal();
-  // Also when a good factor of an earlier matrix is at hand; and the next good matrix is solved.
+  // The same holds if the factor of an earlier matrix is available, and the next definite matrix is
+  // solved again.
   EXPECT_TRUE(solver.Solve(lattice.Stiffness(0, 1), b, &x).IsUsable());
   expect_refusal();
   EXPECT_TRUE(solver.Solve(lattice.Stiffness(0, 1), b, &x).IsUsable());
@@ -178,7 +180,7 @@ TEST(LinearSolver, ReportsNotANumber) {
   EXPECT_FALSE(solver.Solve(A, b, &x).IsUsable());
 }
 
-TEST(LinearSolver, SolvesANullRightHandSideAndABodyWithoutFreeNodes) {
+TEST(LinearSolver, AcceptsAZeroRightHandSideAndABodyWithoutFreeNodes) {
   const Lattice lattice(3);
   Eigen::VectorXd x;
   LinearSolver solver(lattice.pattern, lattice.fixed, {});

@@ -26,33 +26,34 @@ Eigen::VectorXd Moved(const Body& body, const Map& map) {
 
 class NodeRotationsOfOrder : public testing::TestWithParam<int> {};
 
-TEST_P(NodeRotationsOfOrder, AreTheRotationOfABodyThatHasTurnedStretchedAndMoved) {
+TEST_P(NodeRotationsOfOrder, AreTheRotationOfABodyThatIsAlsoStretchedAndTranslated) {
   const Body body = Bar(GetParam());
-  const Eigen::Matrix3d turn =
+  const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   const Eigen::Vector3d stretch(1.2, 0.9, 1.1);
   const Eigen::VectorXd position = Moved(body, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    return turn * stretch.cwiseProduct(x) + Eigen::Vector3d(3, -2, 1);
+    return rotation * stretch.cwiseProduct(x) + Eigen::Vector3d(3, -2, 1);
   });
-  for (const Eigen::Matrix3d& rotation : NodeRotations(body, position)) {
-    // Rounding of positions about 4 m from the origin, over elements of 0.05 m.
-    EXPECT_LT((rotation - turn).norm(), 1e-12);
+  for (const Eigen::Matrix3d& found : NodeRotations(body, position)) {
+    // Rounding of positions at about 4 m from the origin, with elements of 0.05 m.
+    EXPECT_LT((found - rotation).norm(), 1e-12);
   }
 }
 
 TEST_P(NodeRotationsOfOrder, FollowATwist) {
   const Body body = Bar(GetParam());
   const double twist = 3;  // rad/m
-  const auto turn_at = [&](double x) {
+  const auto rotation_at = [&](double x) {
     return Eigen::AngleAxisd(twist * x, Eigen::Vector3d::UnitX()).toRotationMatrix();
   };
   const Eigen::VectorXd position = Moved(body, [&](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    return turn_at(x[0]) * (x - Eigen::Vector3d(0, 0.05, 0.05));
+    return rotation_at(x[0]) * (x - Eigen::Vector3d(0, 0.05, 0.05));
   });
   const std::vector<Eigen::Matrix3d> rotations = NodeRotations(body, position);
   for (int i = 0; i < body.NodeCount(); ++i) {
-    // An element of 0.05 m spans 0.15 rad, and a node on the surface sees the shear of one side.
-    EXPECT_LT((rotations[i] - turn_at(body.mesh.nodes(0, i))).norm(), 0.3) << "node " << i;
+    // An element of 0.05 m spans 0.15 rad, and at surface nodes the shear is averaged on one side
+    // only.
+    EXPECT_LT((rotations[i] - rotation_at(body.mesh.nodes(0, i))).norm(), 0.3) << "node " << i;
   }
 }
 

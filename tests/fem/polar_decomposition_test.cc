@@ -18,15 +18,17 @@ Eigen::Matrix3d RandomMatrix(std::mt19937* random) {
   return matrix;
 }
 
-// R is the rotation nearest to F: RᵀR = I, det R = 1, RᵀF = S is symmetric, and the sums of two
-// eigenvalues of S are not negative, i.e. tr(S) I − S is positive semidefinite.
+// Checks the conditions for R to be the rotation nearest to F: RᵀR = I, det R = 1, S = RᵀF is
+// symmetric, and the sum of any two eigenvalues of S is not negative, i.e. tr(S) I − S is positive
+// semi-definite.
 void ExpectNearestRotation(const Eigen::Matrix3d& F, const Eigen::Matrix3d& R) {
-  // Rounding of a few operations on entries of the size of F.
+  // Rounding of a few operations on entries of the magnitude of F.
   const double tolerance = 1e-12;
   EXPECT_NEAR((R.transpose() * R - Eigen::Matrix3d::Identity()).norm(), 0, tolerance);
   EXPECT_NEAR(R.determinant(), 1, tolerance);
   const Eigen::Matrix3d S = R.transpose() * F;
-  // Where two singular values nearly cancel the rotation is ill-conditioned, but S stays symmetric.
+  // If two singular values nearly cancel, the rotation is ill-conditioned, but S is still
+  // symmetric.
   EXPECT_NEAR((S - S.transpose()).norm(), 0, 1e-10 * F.norm());
   const Eigen::Matrix3d sums = S.trace() * Eigen::Matrix3d::Identity() - S;
   EXPECT_GE(sums.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-10 * F.norm());
@@ -35,7 +37,7 @@ void ExpectNearestRotation(const Eigen::Matrix3d& F, const Eigen::Matrix3d& R) {
 TEST(PolarDecompositionTest, ManyRotationsAreTheNearestOnesOfRegularSingularAndInvertedMatrices) {
   std::mt19937 random(5);
   std::vector<Eigen::Matrix3d> F;
-  for (int k = 0; k < 101; ++k) {  // no multiple of the number of lanes
+  for (int k = 0; k < 101; ++k) {  // not a multiple of the number of lanes
     const Eigen::Matrix3d matrix = RandomMatrix(&random);
     if (k % 3 == 0) {
       const Eigen::Vector3d axis = RandomMatrix(&random).col(0).normalized();
@@ -43,7 +45,7 @@ TEST(PolarDecompositionTest, ManyRotationsAreTheNearestOnesOfRegularSingularAndI
     } else if (k % 3 == 1) {
       F.push_back(matrix);  // half of them inverted
     } else {
-      F.push_back(1e-4 * matrix);  // beyond the steps that the lanes take
+      F.push_back(1e-4 * matrix);  // needs more steps than the lanes perform
     }
   }
   F[7] = Eigen::Vector3d(1, 1, 0).asDiagonal();
@@ -64,7 +66,7 @@ TEST(PolarDecompositionTest, ManyRotationsAgreeWithSingleOnes) {
   std::vector<Eigen::Matrix3d> R = F;
   ReplaceByRotations(static_cast<int>(R.size()), R.data());
   for (size_t k = 0; k < F.size(); ++k) {
-    // Both iterate to rounding error.
+    // Both iterations end at rounding errors.
     EXPECT_NEAR((R[k] - PolarRotation(F[k])).norm(), 0, 1e-12);
   }
 }

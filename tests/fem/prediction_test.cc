@@ -18,15 +18,15 @@ namespace {
 constexpr double kTimeStep = 0.01;  // s
 constexpr double kStart = 0.2;      // s
 
-// What a prediction visited.
+// The states that a prediction has visited.
 struct Visited {
   PredictionSummary summary;
   std::vector<int> index;
   std::vector<Eigen::VectorXd> position, velocity;
-  std::vector<Eigen::MatrixXd> position_by, velocity_by;
+  std::vector<Eigen::MatrixXd> position_jacobian, velocity_jacobian;
 };
 
-// A bar in its weight, clamped at one end and pulled aside at the other until it is let go.
+// A bar under its weight, clamped at one end and deflected at the other until it is released.
 struct HeldBar {
   std::shared_ptr<const Body> body;
   std::vector<std::shared_ptr<const Effect>> effects;
@@ -63,13 +63,13 @@ struct HeldBar {
                                 visited.index.push_back(index);
                                 visited.position.push_back(state.position);
                                 visited.velocity.push_back(state.velocity);
-                                visited.position_by.push_back(state.position_by);
-                                visited.velocity_by.push_back(state.velocity_by);
+                                visited.position_jacobian.push_back(state.position_jacobian);
+                                visited.velocity_jacobian.push_back(state.velocity_jacobian);
                               });
     return visited;
   }
 
-  // The largest distance of a node from where `other` has it at the same times.
+  // The largest distance between corresponding nodes of two predictions at the same times.
   static double LargestDistance(const Visited& one, const Visited& other) {
     double largest = 0;
     for (size_t k = 0; k < one.position.size(); ++k)
@@ -78,7 +78,7 @@ struct HeldBar {
   }
 };
 
-TEST(Prediction, IsTheSteppersMotionWhereStepsEnd) {
+TEST(Prediction, EqualsTheMotionOfTheStepperAtTheEndsOfSteps) {
   const HeldBar bar;
   const Model model = bar.MakeModel();
   Stepper stepper(model, bar.options.step);
@@ -99,20 +99,20 @@ TEST(Prediction, IsTheSteppersMotionWhereStepsEnd) {
   EXPECT_EQ(visited.summary.steps, 6);
   EXPECT_EQ(visited.summary.states, 7);
   for (size_t k = 0; k < times.size(); ++k) {
-    // The cubic ends in its knots; its slope there is theirs, but for rounding of 1 m / h.
+    // The cubic interpolates values and slopes of its knots, up to rounding of 1 m / h.
     EXPECT_LT((visited.position[k] - position[k]).cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_LT((visited.velocity[k] - velocity[k]).cwiseAbs().maxCoeff(), 1e-11);
   }
 }
 
-TEST(Prediction, IsAsGoodBetweenStepsAsWhereTheyEnd) {
-  // Damped and after a while, so that no mode moves that the steps cannot follow.
+TEST(Prediction, IsAsAccurateBetweenStepsAsAtTheirEnds) {
+  // With damping and after some time, so that modes which the steps cannot resolve have decayed.
   constexpr double kStep = 2e-3;
   constexpr int kFirst = 20, kIntervals = 20;
   HeldBar bar;
   bar.effects.push_back(MakeEffect(
       "stiffness_damping", {{"beta", 5e-3}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}));
-  std::vector<double> times;  // ends and middles of steps in turn
+  std::vector<double> times;  // ends and middles of steps, alternating
   for (int k = 0; k <= 2 * kIntervals; ++k) times.push_back(kStart + (kFirst + 0.5 * k) * kStep);
   const auto run = [&](double time_step) {
     bar.options.time_step = time_step;
@@ -129,20 +129,20 @@ TEST(Prediction, IsAsGoodBetweenStepsAsWhereTheyEnd) {
     error += (whole[k] - truth[k]).squaredNorm();
     half_error += (half[k] - truth[k]).squaredNorm();
   }
-  // Between two ends the motion bends by h² a / 8, which the cubic follows.
+  // Linear interpolation would have an error of h² a / 8.
   EXPECT_LT(unfollowed, 0.05 * 0.05 * bend);
-  // Half the step, which ends at these times as well, has a fourth of the error.
+  // Steps of half the length, which end at these times too, have a fourth of the error.
   EXPECT_LT(half_error, 0.3 * 0.3 * error);
 }
 
-TEST(Prediction, StartsInEquilibriumAndIsLetGo) {
+TEST(Prediction, StartsInEquilibriumAndIsReleased) {
   HeldBar bar;
   const Visited held = bar.Run({kStart - 0.1, kStart, kStart + kTimeStep});
   ASSERT_TRUE(held.summary.IsUsable());
   EXPECT_EQ(held.position[0], held.position[1]);
   EXPECT_EQ(held.velocity[1].norm(), 0);
   EXPECT_GT(held.velocity[2].norm(), 1e-2);
-  // The forces at the start balance at the free nodes.
+  // At the start the forces are in balance at the free nodes.
   const Model model = bar.MakeModel();
   const MotionHistory rest = RestHistory(model);
   Eigen::VectorXd residual;
@@ -151,14 +151,14 @@ TEST(Prediction, StartsInEquilibriumAndIsLetGo) {
   for (const int node : bar.clamped) residual.segment<3>(3 * node).setZero();
   EXPECT_LT(residual.norm(), 1e-9 * bar.pull.norm());
 
-  // Nothing held it: it hangs still.
+  // Without a holding force the body stays in equilibrium.
   bar.options.held_force = {};
   const Visited hanging = bar.Run({kStart, kStart + 5 * kTimeStep});
-  // Newton's tolerance, 1e-12 of the forces, over a stiffness of some N/m.
+  // The tolerance of Newton's method, 1e-12 of the forces, divided by a stiffness of some N/m.
   EXPECT_LT((hanging.position[0] - hanging.position[1]).lpNorm<Eigen::Infinity>(), 1e-10);
 }
 
-// At step ends and between them.
+// Compares sensitivities with central differences, at the ends of steps and between them.
 void ExpectDerivative(HeldBar* bar, const Perturbation& perturbation, double step,
                       const std::function<void(double)>& shift) {
   const std::vector<double> times{kStart, kStart + 0.3 * kTimeStep, kStart + 4 * kTimeStep,
@@ -171,17 +171,19 @@ void ExpectDerivative(HeldBar* bar, const Perturbation& perturbation, double ste
   const Visited minus = bar->Run(times);
   shift(0);
   for (size_t k = 0; k < times.size(); ++k) {
-    const Eigen::VectorXd by = (plus.position[k] - minus.position[k]) / (2 * step);
-    const Eigen::VectorXd velocity_by = (plus.velocity[k] - minus.velocity[k]) / (2 * step);
-    // Truncation of the differences and the trajectories' own accuracy.
-    EXPECT_LT((here.position_by[k].col(0) - by).norm(), 1e-5 * by.norm()) << times[k];
-    EXPECT_LE((here.velocity_by[k].col(0) - velocity_by).norm(), 1e-5 * velocity_by.norm())
+    const Eigen::VectorXd derivative = (plus.position[k] - minus.position[k]) / (2 * step);
+    const Eigen::VectorXd velocity_jacobian = (plus.velocity[k] - minus.velocity[k]) / (2 * step);
+    // Truncation errors of the differences and errors of the trajectories.
+    EXPECT_LT((here.position_jacobian[k].col(0) - derivative).norm(), 1e-5 * derivative.norm())
         << times[k];
-    EXPECT_GT(by.norm(), 0);
+    EXPECT_LE((here.velocity_jacobian[k].col(0) - velocity_jacobian).norm(),
+              1e-5 * velocity_jacobian.norm())
+        << times[k];
+    EXPECT_GT(derivative.norm(), 0);
   }
 }
 
-TEST(Prediction, DoesNotTellWhereItsEquilibriumWasSought) {
+TEST(Prediction, DoesNotDependOnTheStartOfTheSearchForItsEquilibrium) {
   HeldBar bar;
   bar.options.step = {.scheme = TimeScheme::kTwoStep, .relative_tolerance = 1e-6};
   const std::vector<double> times = {kStart, kStart + 0.05, kStart + 0.1};
@@ -195,12 +197,12 @@ TEST(Prediction, DoesNotTellWhereItsEquilibriumWasSought) {
   ASSERT_GT((bar.options.held_guess - from_rest.position[0]).cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_LT(HeldBar::LargestDistance(bar.Run(times), from_rest), 1e-8);
 
-  // Inside out: nothing is found from there.
+  // From an inverted body no equilibrium is found.
   bar.options.held_guess = -from_rest.position[0];
   EXPECT_LT(HeldBar::LargestDistance(bar.Run(times), from_rest), 1e-8);
 }
 
-TEST(Prediction, SensitivityToTheHoldAgreesWithDifferences) {
+TEST(Prediction, SensitivityToTheHoldingForceAgreesWithDifferences) {
   HeldBar bar;
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(bar.pull.size());
   for (Eigen::Index i = 0; i < direction.size(); ++i)
@@ -217,7 +219,7 @@ TEST(Prediction, SensitivityToTheModelAgreesWithDifferencesBetweenSteps) {
   });
 }
 
-// A load that grows, and a material that remembers, in equilibrium throughout.
+// A growing load on a material with memory, in equilibrium at all times.
 HeldBar LoadedBar() {
   HeldBar bar;
   const Eigen::VectorXd share =
@@ -231,7 +233,7 @@ HeldBar LoadedBar() {
   return bar;
 }
 
-TEST(Prediction, QuasiStaticStepsEndAtTheTimesAskedFor) {
+TEST(Prediction, QuasiStaticStepsEndAtTheRequestedTimes) {
   HeldBar bar = LoadedBar();
   bar.options.time_step = 0.1;
   const std::vector<double> times{kStart, kStart + 0.1, kStart + 0.15, kStart + 0.5};
@@ -249,7 +251,7 @@ TEST(Prediction, QuasiStaticStepsEndAtTheTimesAskedFor) {
   EXPECT_LT((visited.velocity.back() - history.velocity).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(Prediction, QuasiStaticErrorGoesWithTheStepAtLeast) {
+TEST(Prediction, QuasiStaticErrorIsAtLeastOfFirstOrder) {
   const auto improves = [](HeldBar bar) {
     const auto run = [&](double time_step) {
       bar.options.time_step = time_step;
@@ -261,7 +263,7 @@ TEST(Prediction, QuasiStaticErrorGoesWithTheStepAtLeast) {
     return whole / HeldBar::LargestDistance(run(0.05), truth);
   };
   HeldBar bar = LoadedBar();
-  EXPECT_NEAR(improves(bar), 4, 0.4);  // a memory is followed to second order
+  EXPECT_NEAR(improves(bar), 4, 0.4);  // this memory is integrated to second order
   bar.effects.back() = MakeEffect("mass_damping", {{"alpha", 50.0}});
   EXPECT_NEAR(improves(bar), std::pow(2, OrderOf(TimeScheme::kQuasiStatic)), 0.2);
 }
@@ -283,11 +285,11 @@ TEST(Prediction, QuasiStaticSensitivityAgreesWithDifferences) {
       return other.Run(times).position.back();
     };
     const Eigen::VectorXd difference = (shifted(steps[k]) - shifted(-steps[k])) / (2 * steps[k]);
-    EXPECT_LT((linear.position_by.back() - difference).norm(), 1e-4 * difference.norm()) << k;
+    EXPECT_LT((linear.position_jacobian.back() - difference).norm(), 1e-4 * difference.norm()) << k;
   }
 }
 
-TEST(Prediction, TellsWhereItStopped) {
+TEST(Prediction, ReportsWhereItStopped) {
   HeldBar bar;
   const Eigen::VectorXd share =
       Eigen::VectorXd::Constant(bar.body->NodeCount(), 1.0 / bar.body->NodeCount());
@@ -301,16 +303,16 @@ TEST(Prediction, TellsWhereItStopped) {
   EXPECT_EQ(visited.summary.status, PredictionSummary::Status::kStopped);
   EXPECT_FALSE(visited.summary.IsUsable());
   EXPECT_NE(visited.summary.message, "");
-  // The fourth lies in the step that fails, the fifth, as the first is short.
+  // The first step is short, so the fourth time lies in the fifth step, which fails.
   EXPECT_EQ(visited.summary.steps, 4);
   EXPECT_EQ(visited.summary.states, 3);
   EXPECT_THAT(visited.index, testing::ElementsAre(0, 1, 2));
-  // What was visited is what a model without the trouble does.
+  // The visited states are those of a model whose steps do not fail.
   bar.effects.pop_back();
   EXPECT_LT(HeldBar::LargestDistance(visited, bar.Run(times)), 1e-12);
 }
 
-TEST(Prediction, TellsThatItCannotStart) {
+TEST(Prediction, ReportsThatItCannotStart) {
   HeldBar bar;
   bar.options.held_force.setConstant(std::numeric_limits<double>::quiet_NaN());
   const Visited visited = bar.Run({kStart});

@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
+TEST(PrescribedForce, IsDistributedByAreaAndFollowsItsHistory) {
   for (const int order : {1, 2}) {
     const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.03}, {3, 2, 2}, order), 1000);
     std::vector<int> tip;
@@ -26,16 +26,15 @@ TEST(PrescribedForce, IsSharedByAreaAndFollowsItsTime) {
     force.AddForce({body, position, velocity, velocity, 3.0, 0, state}, &total);
     const Eigen::Matrix3Xd at_nodes = total.reshaped(3, body.NodeCount());
     EXPECT_LT((at_nodes.rowwise().sum() - Eigen::Vector3d(3, 0, -6)).norm(), 1e-12);
-    // Spread evenly over the end: its centre of action is the face's.
+    // A uniform distribution over the end acts at the centre of the face.
     const Eigen::Vector3d centre =
         body.mesh.nodes * at_nodes.row(2).transpose() / at_nodes.row(2).sum();
     EXPECT_LT((centre - Eigen::Vector3d(0.1, 0.015, 0.015)).norm(), 1e-12);
   }
 }
 
-// A bar that is stretched evenly pulls at its end with what an even traction there must balance,
-// node by node.
-TEST(BoundaryShares, AreThoseOfAnEvenTraction) {
+// The nodal forces of a uniformly stretched bar at its end are those of a uniform traction.
+TEST(BoundaryShares, AreThoseOfAUniformTraction) {
   constexpr double kModulus = 2e5, kStretch = 1e-3, kArea = 0.03 * 0.02;
   for (const int order : {1, 2}) {
     const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.1, 0.03, 0.02}, {3, 2, 2}, order), 1000);
@@ -55,8 +54,8 @@ TEST(BoundaryShares, AreThoseOfAnEvenTraction) {
   }
 }
 
-// The nodes end in the middle of quadratic faces: what they span is loaded, and no more.
-TEST(BoundaryShares, CoverPartsOfFacesToo) {
+// If the nodes end in the middle of quadratic faces, only the triangles that they span are loaded.
+TEST(BoundaryShares, CoverPartsOfFaces) {
   const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.06, 0.02, 0.02}, {3, 1, 1}, 2), 1000);
   const auto on_top = [&](double from) {
     return NodesWhere(body.mesh, [from](const Eigen::Vector3d& at) {
@@ -66,7 +65,7 @@ TEST(BoundaryShares, CoverPartsOfFacesToo) {
   const auto middle = [&](const Eigen::VectorXd& share) { return body.mesh.nodes.row(0) * share; };
   EXPECT_NEAR(middle(BoundaryShares(body, on_top(0.04)))[0], 0.05, 1e-12);
   EXPECT_NEAR(middle(BoundaryShares(body, on_top(0.03)))[0], 0.045, 1e-3);
-  // Corners without a face between them.
+  // Corners that span no face.
   const Eigen::VectorXi corners = NodesWhere(body.mesh, [](const Eigen::Vector3d& at) {
     return at.x() < 1e-9 && std::abs(at.y() - 0.01) > 0.009 && std::abs(at.z() - 0.01) > 0.009;
   });

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStart = 0.1, kStep = 0.005;  // s
 
-// A damped bar in its weight, held aside and let go: large deflections.
+// A damped bar under its weight, deflected and released, with large deflections.
 struct SwingingBar {
   Model model;
   PredictionOptions options;
@@ -45,7 +45,7 @@ struct SwingingBar {
 
 double Push(double time) { return 0.3 + std::sin(20 * (time - kStart)); }
 
-// The bar's motion at its times, with the sensitivities of the tangent-linear model.
+// The motion of the bar, with the sensitivities of the tangent-linear model.
 struct Followed {
   std::vector<TrajectoryState> states;
   std::vector<Eigen::MatrixXd> exact;
@@ -57,7 +57,7 @@ struct Followed {
                             state.position,
                             state.velocity,
                             {Eigen::VectorXd(), Eigen::VectorXd(), Eigen::VectorXd()}});
-          exact.push_back(state.position_by);
+          exact.push_back(state.position_jacobian);
         });
     EXPECT_TRUE(summary.IsUsable()) << summary.message;
   }
@@ -91,8 +91,8 @@ TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
                        size[k] += exact[index].col(k).squaredNorm();
                      }
                    });
-  // Of what two moments at six states leave out, and of linear interpolation of the tangents. The
-  // release is abrupt, and rings in shapes that the basis does not have.
+  // Errors of two moments at six states and of the interpolation of the tangents. The abrupt
+  // release excites shapes that the basis does not contain.
   EXPECT_LT(std::sqrt(difference[0] / size[0]), 0.03);
   EXPECT_LT(std::sqrt(difference[1] / size[1]), 0.06);
 }

@@ -15,7 +15,7 @@ SupernodalFactor FactorFor(const Lattice& lattice) {
   return SupernodalFactor(*lattice.pattern, NestedDissection(*lattice.pattern, lattice.fixed));
 }
 
-// b in elimination order.
+// The free entries of b in elimination order.
 Eigen::VectorXf Reduced(const Eigen::VectorXd& b, const EliminationOrder& order) {
   Eigen::VectorXf reduced(3 * order.FreeNodes());
   for (int k = 0; k < order.FreeNodes(); ++k) {
@@ -24,7 +24,7 @@ Eigen::VectorXf Reduced(const Eigen::VectorXd& b, const EliminationOrder& order)
   return reduced;
 }
 
-TEST(NestedDissection, OrdersEachFreeNodeOnceAndTheSameEachTime) {
+TEST(NestedDissection, OrdersEachFreeNodeOnceAndReproducibly) {
   const Lattice lattice(6);
   const EliminationOrder order = NestedDissection(*lattice.pattern, lattice.fixed);
   ASSERT_EQ(order.FreeNodes(), 6 * 6 * 5);
@@ -36,7 +36,7 @@ TEST(NestedDissection, OrdersEachFreeNodeOnceAndTheSameEachTime) {
   EXPECT_EQ(NestedDissection(*lattice.pattern, lattice.fixed).node, order.node);
 }
 
-TEST(AssemblyTree, HasAPlaceForEachEntryOfTheFactor) {
+TEST(AssemblyTree, ContainsEachEntryOfTheFactor) {
   const Lattice lattice(6);
   const AssemblyTree tree =
       MakeAssemblyTree(*lattice.pattern, NestedDissection(*lattice.pattern, lattice.fixed));
@@ -67,7 +67,7 @@ TEST(AssemblyTree, HasAPlaceForEachEntryOfTheFactor) {
         EXPECT_TRUE(!filled(i, j) || std::binary_search(rows, rows_end, i)) << i << ", " << j;
       }
     }
-    // The runs lead each update row to the same row of the parent.
+    // The runs map each update row to the same row of the parent.
     for (const RowRun& run : tree.runs[s]) {
       const int p = tree.parent[s];
       for (int k = 0; k < run.length; ++k) {
@@ -80,7 +80,7 @@ TEST(AssemblyTree, HasAPlaceForEachEntryOfTheFactor) {
   }
 }
 
-// 16³ nodes have fronts that are cut into several tiles, 4³ make a single front.
+// With 16³ nodes some fronts are divided into several tiles; 4³ nodes make a single front.
 class SupernodalFactorOfSize : public testing::TestWithParam<int> {};
 
 TEST_P(SupernodalFactorOfSize, SolvesToSinglePrecision) {
@@ -120,7 +120,7 @@ TEST_P(SupernodalFactorOfSize, GivesTheSameBitsOnOneAndTwoThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Nodes, SupernodalFactorOfSize, testing::Values(2, 4, 9, 16));
 
-TEST(SupernodalFactor, TellsIndefiniteFromIllConditioned) {
+TEST(SupernodalFactor, DistinguishesIndefiniteFromIllConditionedMatrices) {
   Lattice lattice(6);
   SupernodalFactor held = FactorFor(lattice);
   EXPECT_EQ(held.Factorise(lattice.Stiffness(0, 0.01)), Pivots::kPositive);
@@ -129,13 +129,13 @@ TEST(SupernodalFactor, TellsIndefiniteFromIllConditioned) {
   not_a_number.Block(not_a_number.pattern().BlockCount() - 1).setConstant(std::nan(""));
   EXPECT_EQ(held.Factorise(not_a_number), Pivots::kInDoubt);
 
-  // Free everywhere the lattice can be moved at no cost: a pivot would be 0. A slight negative mass
-  // makes it negative, but by less than rounding could.
+  // Without fixed nodes the lattice can be translated without a force, so a pivot would be 0. A
+  // small negative mass makes it negative, but by less than rounding errors.
   std::fill(lattice.fixed.begin(), lattice.fixed.end(), 0);
   EXPECT_EQ(FactorFor(lattice).Factorise(lattice.Stiffness(0, -1e-6)), Pivots::kInDoubt);
 }
 
-TEST(SupernodalFactor, IsUsableAgainAfterAFailure) {
+TEST(SupernodalFactor, CanBeUsedAfterAFailure) {
   const Lattice lattice(6);
   const Eigen::VectorXd b = RandomVector(3 * lattice.Nodes());
   SupernodalFactor fresh = FactorFor(lattice), used = FactorFor(lattice);

@@ -16,16 +16,16 @@ namespace {
 
 constexpr int kSteps = 12;
 constexpr double kTimeStep = 0.01;  // s
-constexpr int kDamped = 2;          // in Case::effects
+constexpr int kDamped = 2;          // index of the damping in Case::effects
 
-// A clamped bar, at rest in half its weight, that the other half sets into motion while its clamp
-// is lifted by `lift` times a smooth course and turned about the bar's axis.
+// A clamped bar that is at rest under half of its weight. The other half sets it into motion while
+// its clamp is lifted smoothly with the amplitude `lift` and rotated about the axis of the bar.
 struct Case {
   std::shared_ptr<const Body> body;
   std::vector<std::shared_ptr<const Effect>> effects;
   Eigen::VectorXi clamped;
   double lift = 0.3;  // m/s²
-  double turn = 0;    // rad/s²
+  double spin = 0;    // rad/s²
   TimeScheme scheme = TimeScheme::kBdf2;
 
   Case() {
@@ -51,7 +51,7 @@ struct Case {
     Grip grip{clamped, {}};
     grip.motion = [this](double time) -> Eigen::Matrix3Xd {
       const Eigen::Matrix3d turned =
-          Eigen::AngleAxisd(turn * 0.5 * time * time, Eigen::Vector3d::UnitX()).matrix();
+          Eigen::AngleAxisd(spin * 0.5 * time * time, Eigen::Vector3d::UnitX()).matrix();
       Eigen::Matrix3Xd places = turned * body->mesh.nodes(Eigen::all, clamped);
       places.row(2).array() += lift * 0.5 * time * time;
       return places;
@@ -59,7 +59,7 @@ struct Case {
     return {body, effects, {grip}};
   }
 
-  // The last position and velocity, and their sensitivities to `perturbations`.
+  // The final position and velocity and their sensitivities to `perturbations`.
   void Run(const std::vector<Perturbation>& perturbations, Eigen::VectorXd* position,
            Eigen::VectorXd* velocity, Eigen::MatrixXd* by_position = nullptr,
            Eigen::MatrixXd* by_velocity = nullptr) const {
@@ -87,8 +87,8 @@ struct Case {
   }
 };
 
-// Compares with central differences of whole trajectories. `tolerance`: relative; of symmetric
-// tangents 1e-5 is truncation and the trajectories' own accuracy.
+// Compares with central differences of whole trajectories. `tolerance` is relative; with symmetric
+// tangents, truncation errors and errors of the trajectories amount to 1e-5.
 void ExpectDerivative(const Case& motion, const Perturbation& perturbation, double step,
                       const std::function<void(double)>& shift, double tolerance,
                       const std::string& name) {
@@ -138,10 +138,10 @@ TEST(TangentLinear, AgreesWithDifferencesForEveryParameterOfTheModel) {
 }
 
 TEST(TangentLinear, HoldsForTangentsThatAreNotSymmetric) {
-  // Of a strained body that turns, ∂f/∂x and ∂f/∂v of damping must cancel but for their last
-  // digits.
+  // In a strained body that rotates, the contributions of ∂f/∂x and ∂f/∂v of the damping nearly
+  // cancel.
   Case motion;
-  motion.turn = 100;
+  motion.spin = 100;
   motion.effects.push_back(
       MakeEffect("swelling", {{"strain", 0.01}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}));
   ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
@@ -152,7 +152,7 @@ TEST(TangentLinear, HoldsForTangentsThatAreNotSymmetric) {
 
 TEST(TangentLinear, HoldsForForcesWithoutAPotential) {
   Case motion;
-  motion.turn = 100;
+  motion.spin = 100;
   motion.effects[kDamped] = MakeEffect("follower_force", {{"force_x", 0},
                                                           {"force_y", 0},
                                                           {"force_z", -0.01},
@@ -177,7 +177,7 @@ TEST(TangentLinear, FollowsTheMemoryOfEffects) {
   ExpectParameterDerivative(motion, motion.effects[kDamped], 1, 1e-4, 1e-4);
 }
 
-TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAMemoryThatIsNotInTheModel) {
+TEST(TangentLinear, GivesTheResponseToAnEffectWithMemoryOutsideTheModel) {
   Case motion;
   motion.effects.resize(2);
   const auto branch = MakeEffect(
@@ -187,14 +187,15 @@ TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAMemoryThatIsNotInTheModel) {
   Eigen::VectorXd position, velocity, plus, without;
   Eigen::MatrixXd by_position;
   motion.Run({{branch, 0}}, &without, &velocity, &by_position);
-  const double little = 5;  // Pa, of a body of 50 kPa: what is quadratic in it is 1e-4 of it
+  const double little =
+      5;  // Pa, for a body of 50 kPa: the quadratic term is 1e-4 of the linear one
   with.effects.back() = branch->WithParameters(Eigen::Vector3d(little, 0.03, 0.4));
   with.Run({}, &plus, &velocity);
   const Eigen::VectorXd difference = (plus - without) / little;
   EXPECT_LT((by_position.col(0) - difference).norm(), 1e-3 * difference.norm());
 }
 
-TEST(TangentLinear, TellsHowTheMotionWouldAnswerToAnEffectThatIsNotInTheModel) {
+TEST(TangentLinear, GivesTheResponseToAnEffectOutsideTheModel) {
   Case motion;
   motion.effects.resize(2);
   const auto damping = MakeEffect("mass_damping", {{"alpha", 0}});
@@ -222,7 +223,7 @@ TEST(TangentLinear, FollowsTheGrip) {
       motion, higher, 1e-3, [&](double by) { motion.lift = lift + by; }, 1e-5, "lift");
 }
 
-TEST(TangentLinear, DoesNotMixItsColumns) {
+TEST(TangentLinear, TreatsItsPerturbationsIndependently) {
   const Case motion;
   const std::vector<Perturbation> all{
       {motion.effects[0], 0, {}}, {motion.effects[0], 1, {}}, {motion.effects[1], 2, {}}};
@@ -231,7 +232,7 @@ TEST(TangentLinear, DoesNotMixItsColumns) {
   motion.Run(all, &position, &velocity, &together);
   for (size_t k = 0; k < all.size(); ++k) {
     motion.Run({all[k]}, &position, &velocity, &alone);
-    // Many right-hand sides take another path through the triangular solves: rounding.
+    // Rounding: triangular solves use a different algorithm for many right-hand sides.
     EXPECT_LT((together.col(k) - alone.col(0)).norm(), 1e-10 * alone.norm());
   }
 }

@@ -17,8 +17,9 @@ QuadraticCost CostOf(const Eigen::MatrixXd& J, const Eigen::VectorXd& r) {
   return {0.5 * r.squaredNorm(), J.transpose() * r, J.transpose() * J};
 }
 
-TEST(StepWithin, CountsOnNothingBeyondABound) {
-  // Two that do nearly the same: the gradients of both point inwards, the best of one is outside.
+TEST(StepWithin, AccountsForBoundsInAllParameters) {
+  // Two parameters with nearly the same effect. Both gradients point inwards, but the unconstrained
+  // minimum of one parameter lies outside of its bounds.
   Eigen::MatrixXd J(3, 2);
   J << 1, 1.01, 1, 0.99, 0.1, 0.1;
   const QuadraticCost model = CostOf(J, -J * Eigen::Vector2d(-5, 7));
@@ -35,15 +36,15 @@ TEST(StepWithin, CountsOnNothingBeyondABound) {
   }
 }
 
-TEST(StepWithin, DoesNotMoveWhatIsNotSeen) {
+TEST(StepWithin, DoesNotMoveParametersWithoutInfluence) {
   Eigen::MatrixXd J = Eigen::MatrixXd::Identity(3, 3);
   J(1, 1) = 0;
   const Eigen::Vector3d far = Eigen::Vector3d::Constant(kInfinity);
   EXPECT_EQ(StepWithin(CostOf(J, Eigen::Vector3d(-1, 2, 3)), -far, far)[1], 0);
 }
 
-// Of all sets of bounds at which the rest is best and within its own, none costs less.
-TEST(StepWithin, IsTheBestOfAll) {
+// Compares with all active sets whose free parameters have their minimum within the bounds.
+TEST(StepWithin, HasTheLeastCostOfAllActiveSets) {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   constexpr int kCount = 4;
@@ -68,8 +69,8 @@ TEST(StepWithin, IsTheBestOfAll) {
       }
       if (!free.empty()) {
         const Eigen::MatrixXd theirs = J(Eigen::all, free);
-        const Eigen::VectorXd left = r + J * step;
-        step(free) = -theirs.colPivHouseholderQr().solve(left);
+        const Eigen::VectorXd residual = r + J * step;
+        step(free) = -theirs.colPivHouseholderQr().solve(residual);
       }
       const double slack = 1e-12;
       if ((step - low).minCoeff() >= -slack && (high - step).minCoeff() >= -slack)

@@ -11,7 +11,7 @@ namespace {
 
 using Verdict = ParameterEstimate::Verdict;
 
-// a·exp(−t/τ) at 40 times, with noise of the given deviation (the whitening's unit).
+// a·exp(−t/τ) at 40 times, with noise of a given deviation, which is also the unit of the residual.
 struct Decay {
   Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(40, 0, 2);
   Eigen::VectorXd measured;
@@ -41,8 +41,9 @@ std::vector<CalibratedParameter> AmplitudeAndTime() {
           {.name = "tau", .start = 0.2, .min = 0.01, .max = 100, .log_scale = true}};
 }
 
-TEST(Calibration, FindsParametersAndItsIntervalsCoverThem) {
-  // 95 % of 300 intervals: binomial standard deviation 1.3 %, so 91 to 99 % is three of them.
+TEST(Calibration, RecoversParametersWithinItsIntervals) {
+  // For 95 % of 300 intervals the binomial standard deviation is 1.3 %; 91 to 99 % is three of
+  // these.
   int covered[2] = {0, 0};
   constexpr int kTrials = 300;
   for (unsigned seed = 0; seed < kTrials; ++seed) {
@@ -63,14 +64,15 @@ TEST(Calibration, FindsParametersAndItsIntervalsCoverThem) {
   }
 }
 
-TEST(Calibration, ItsIntervalsCoverTheTruthUnderErrorsThatLast) {
-  // A constant and a slope, seen six times in 50 frames, with errors that keep 0.5 of themselves.
+TEST(Calibration, ItsIntervalsCoverTheTruthUnderCorrelatedErrors) {
+  // A constant and a slope, in six series of 50 frames, with a lag-one correlation of 0.5 of the
+  // errors.
   constexpr int kTrials = 300, kSeries = 6, kRows = 50 * kSeries;
   constexpr double kMemory = 0.5;
-  Eigen::MatrixXd by(kRows, 2);
+  Eigen::MatrixXd jacobian(kRows, 2);
   std::vector<Eigen::Index> before;
   for (Eigen::Index row = 0; row < kRows; ++row) {
-    by.row(row) << 1, static_cast<double>(row) / kRows;
+    jacobian.row(row) << 1, static_cast<double>(row) / kRows;
     before.push_back(row < kSeries ? -1 : row - kSeries);
   }
   std::mt19937 random(3);
@@ -85,7 +87,7 @@ TEST(Calibration, ItsIntervalsCoverTheTruthUnderErrorsThatLast) {
     for (const bool is_ordered : {false, true}) {
       const Calibration found = Calibrate(
           {{.name = "constant"}, {.name = "slope"}}, [&](const Eigen::VectorXd& at, bool) {
-            return Prediction{true, "", by * at + error, by,
+            return Prediction{true, "", jacobian * at + error, jacobian,
                               is_ordered ? before : std::vector<Eigen::Index>{}};
           });
       ASSERT_TRUE(found.usable) << found.message;
@@ -94,17 +96,17 @@ TEST(Calibration, ItsIntervalsCoverTheTruthUnderErrorsThatLast) {
     }
   }
   for (int k = 0; k < 2; ++k) {
-    // As if errors were unrelated: √3 too narrow, 74 %. Else 95 ± 1.3 %, less what is too small in
-    // a memory estimated from what is left.
+    // Intervals for independent errors would be too narrow by √3 and cover 74 %. The correct ones
+    // cover 95 ± 1.3 %, less a little because the correlation is estimated from fitted residuals.
     EXPECT_LE(covered[false][k], 0.82 * kTrials);
     EXPECT_GE(covered[true][k], 0.91 * kTrials);
     EXPECT_LE(covered[true][k], 0.99 * kTrials);
   }
 }
 
-TEST(Calibration, SaysWhatTheDataDoesNotPinDown) {
-  // r = θ0 + θ1 − 1 + 0·θ2 + 1e-3·θ3: two that can stand in for each other, one that does nothing,
-  // one that hardly does.
+TEST(Calibration, ReportsParametersThatTheDataDoNotDetermine) {
+  // r = θ0 + θ1 − 1 + 0·θ2 + 1e-3·θ3: two interchangeable parameters, one without influence, and
+  // one with little influence.
   const auto predict = [](const Eigen::VectorXd& at, bool) {
     Prediction prediction{true, "", Eigen::VectorXd(8), Eigen::MatrixXd::Zero(8, 4)};
     for (int i = 0; i < 8; ++i) {
@@ -119,14 +121,14 @@ TEST(Calibration, SaysWhatTheDataDoesNotPinDown) {
   EXPECT_EQ(found.estimates[0].verdict, Verdict::kTradedOff);
   EXPECT_EQ(found.estimates[0].traded_with, "b");
   EXPECT_EQ(found.estimates[1].verdict, Verdict::kTradedOff);
-  EXPECT_NEAR(found.estimates[1].posterior_deviation, 3, 1e-3);  // the prior's
+  EXPECT_NEAR(found.estimates[1].posterior_deviation, 3, 1e-3);  // that of the prior
   EXPECT_EQ(found.estimates[2].verdict, Verdict::kDead);
   EXPECT_TRUE(std::isinf(found.estimates[2].posterior_deviation));
   EXPECT_EQ(found.estimates[3].verdict, Verdict::kFlat);
 }
 
-TEST(Calibration, StepsMeanTheSameInEveryUnit) {
-  // A modulus of 80 000 Pa that does nothing must not make 0.3 N look like no step at all.
+TEST(Calibration, DoesNotDependOnTheUnitsOfOtherParameters) {
+  // Beside a modulus of 80 000 Pa without influence, a step of 0.3 N must not count as negligible.
   const auto predict = [](const Eigen::VectorXd& at, bool) {
     Prediction prediction{true, "", Eigen::VectorXd(8), Eigen::MatrixXd::Zero(8, 2)};
     prediction.residual.setConstant(50 * (at[1] - 0.3));
@@ -138,7 +140,7 @@ TEST(Calibration, StepsMeanTheSameInEveryUnit) {
   EXPECT_NEAR(found.parameters[1], 0.3, 1e-6);
 }
 
-TEST(Calibration, StaysWithinBoundsAndSaysSo) {
+TEST(Calibration, StaysWithinBoundsAndReportsIt) {
   auto parameters = AmplitudeAndTime();
   parameters[0].max = 1.5;
   const Calibration found = Calibrate(parameters, Decay(2, 0.7, 1));
@@ -146,9 +148,9 @@ TEST(Calibration, StaysWithinBoundsAndSaysSo) {
   EXPECT_EQ(found.estimates[0].verdict, Verdict::kAtBound);
 }
 
-// Two dampings that do nearly the same, of which there can be no less than none. The fit starts, or
-// comes by, where one is all but none, and has to leave that bound or to stay there.
-TEST(Calibration, IsNotCaughtAtABound) {
+// Two kinds of damping with nearly the same effect, both bounded below by 0. The fit starts near
+// the bound of one of them or passes it, and has to leave the bound or to stay on it.
+TEST(Calibration, IsNotTrappedAtABound) {
   const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(80, 0, 2);
   const auto swing = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
     const Eigen::ArrayXd rate = at[0] + at[1] * (1 + 0.1 * times.array());
@@ -186,8 +188,8 @@ TEST(Calibration, IsNotCaughtAtABound) {
   }
 }
 
-// Nothing is left to search where the one parameter is at its bound.
-TEST(Calibration, EndsAtTheBoundBeyondWhichItsOnlyParameterWouldFit) {
+// Once the only parameter is at its bound, nothing remains to be searched.
+TEST(Calibration, EndsAtTheBoundIfItsOnlyParameterWouldFitBeyondIt) {
   const auto predict = [](const Eigen::VectorXd& at, bool) {
     Prediction prediction{true, "", Eigen::VectorXd::Constant(3, at[0] + 2), {}};
     prediction.jacobian = Eigen::MatrixXd::Ones(3, 1);
@@ -203,7 +205,7 @@ TEST(Calibration, EndsAtTheBoundBeyondWhichItsOnlyParameterWouldFit) {
   }
 }
 
-TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
+TEST(Calibration, WidensItsIntervalsIfTheModelDoesNotFit) {
   Decay decay(2, 0.7, 1);
   const Calibration good = Calibrate(AmplitudeAndTime(), decay);
   decay.measured.array() += 0.2 * (7 * decay.times.array()).sin();
@@ -213,7 +215,7 @@ TEST(Calibration, WidensItsIntervalsWhereTheModelMissesTheData) {
               poor.inflation / good.inflation, 0.3 * poor.inflation);
 }
 
-TEST(Calibration, AnIntervalCountsAKnownErrorOfTheModel) {
+TEST(Calibration, AnIntervalIncludesAKnownModelError) {
   CalibratedParameter modulus;
   modulus.min = 1e3;
   modulus.max = 1e6;
@@ -226,10 +228,10 @@ TEST(Calibration, AnIntervalCountsAKnownErrorOfTheModel) {
   EXPECT_NEAR(std::log(estimate.low / 1e5), -1.96 * 0.05, 1e-4);
   EXPECT_EQ(estimate.posterior_deviation, 0.03);
   CountModelError(modulus, 1e6, &estimate);
-  EXPECT_EQ(estimate.high, 1e6) << "its bound";
+  EXPECT_EQ(estimate.high, 1e6) << "the upper bound";
 }
 
-TEST(Calibration, SecantsComeToTheSameEndWithFewJacobians) {
+TEST(Calibration, SecantsReachTheSameSolutionWithFewJacobians) {
   const Decay decay(2, 0.7, 1);
   int jacobians = 0;
   const auto counted = [&](const Eigen::VectorXd& at, bool with_jacobian) {
@@ -250,8 +252,9 @@ TEST(Calibration, SecantsComeToTheSameEndWithFewJacobians) {
                 0.1 * exact.estimates[k].posterior_deviation);
 }
 
-// A drift is added to a decay: what the decay's curvature does is not blamed on the drift.
-TEST(Calibration, SecantsLeaveTheColumnsOfLinearParametersAlone) {
+// A drift is added to a decay. Changes caused by the curvature of the decay must not alter the
+// column of the drift.
+TEST(Calibration, SecantsDoNotChangeTheColumnsOfLinearParameters) {
   const Decay decay(2, 0.7, 1);
   const auto drifting = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     Prediction prediction = decay(at.head(2), with_jacobian);
@@ -272,8 +275,8 @@ TEST(Calibration, SecantsLeaveTheColumnsOfLinearParametersAlone) {
                 0.3 * without.estimates[k].posterior_deviation);
 }
 
-TEST(Calibration, EndsWhereTheStepThatADerivativePromisesGainsNothing) {
-  // A kink: the derivative at its bottom promises to halve the residual.
+TEST(Calibration, EndsIfTheStepThatTheJacobianPredictsGainsNothing) {
+  // At the bottom of a kink the derivative predicts half the residual, but every step increases it.
   const auto kink = [](const Eigen::VectorXd& at, bool) {
     return Prediction{true, "", Eigen::VectorXd::Constant(100, 2 + std::abs(at[0])),
                       Eigen::MatrixXd::Constant(100, 1, at[0] < 0 ? -1 : 1)};
@@ -284,7 +287,7 @@ TEST(Calibration, EndsWhereTheStepThatADerivativePromisesGainsNothing) {
   EXPECT_LE(found.predictions, 15);
 }
 
-TEST(Calibration, ReportsAPredictionThatFails) {
+TEST(Calibration, ReportsAFailedPrediction) {
   const auto fails = [](const Eigen::VectorXd&, bool) {
     return Prediction{false, "element 3 is inverted", {}, {}};
   };

@@ -1,5 +1,3 @@
-#include "fit/force_fit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,12 +8,14 @@
 #include "fem/simulate.h"
 #include "fit/coefficient_fit.h"
 #include "fit/position_fit.h"
+#include "fit/step_force_fitter.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {
 namespace {
 
-// A clamped bar, 100 × 30 × 30 mm, as the truth (quadratic, fine) or the model (another mesh).
+// A clamped bar of 100 × 30 × 30 mm: the truth on a fine quadratic mesh, or the model on another
+// mesh.
 struct Bar {
   std::shared_ptr<Body> body;
   Model model;
@@ -39,7 +39,7 @@ Bar MakeBar(const std::array<int, 3>& cells, int order) {
   return bar;
 }
 
-// What a scanner would see of the truth under a force at its tip: points with range noise.
+// A scan of the truth under a force at its tip: surface points with noise.
 struct Truth {
   PointCloud scan;
   Eigen::Vector3d force;
@@ -68,7 +68,7 @@ Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
   return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
 }
 
-// Fits to the scan alone, taking correspondence anew eight times, as the reconstruction does.
+// Fits to the scan alone with eight updates of the correspondences, as the reconstruction does.
 ForceFit FitToScan(const Bar& bar, const ForceModel& forces, const PointCloud& scan,
                    const Eigen::VectorXd& start_position) {
   const MotionHistory rest = RestHistory(bar.model);
@@ -96,15 +96,16 @@ TEST(ForceFit, RecoversAKnownForceOnAnotherMesh) {
   const ForceFit fit = FitToScan(bar, FootprintForce(*bar.body, bar.tip, 0.3), truth.scan);
   ASSERT_TRUE(fit.IsUsable()) << fit.message;
   const NetForce net = NetForceOf(fit.force, fit.position, Eigen::Vector3d::Zero());
-  // The coarser mesh is stiffer by about 1 %; the axial part, which barely shows, is worse known.
+  // The coarser mesh is about 1 % stiffer. The axial component has little effect and is less
+  // certain.
   EXPECT_NEAR(net.force.z(), truth.force.z(), 0.03 * 0.15);
   EXPECT_NEAR(net.force.y(), truth.force.y(), 0.03 * 0.15);
   EXPECT_NEAR(net.force.x(), truth.force.x(), 0.3 * 0.15);
-  EXPECT_LT(fit.weighted_rms, 1.3);  // the noise, and the chords of the coarse mesh's faces
+  EXPECT_LT(fit.weighted_rms, 1.3);  // noise, and the flat faces of the coarse mesh
   EXPECT_LE(fit.factorisations, 12);
 }
 
-// Of the net force's components, N.
+// The standard deviations of the components of the net force, N.
 Eigen::Vector3d FitDeviation(const Bar& bar, const ForceModel& forces, const ForceFit& fit,
                              const PointCloud& scan) {
   const MotionHistory rest = RestHistory(bar.model);
@@ -115,10 +116,10 @@ Eigen::Vector3d FitDeviation(const Bar& bar, const ForceModel& forces, const For
       forces, StepForceFitter(bar.model, equation, forces, fit.position).Covariance(fit, seen));
 }
 
-TEST(ForceFit, TellsHowWellTheForceIsKnown) {
-  // Over several forces the error of the smooth field's resultant is what its deviation says: its
-  // mean square in units of the deviation is 1 on average over 12 components, and below 2.1 in all
-  // but 1 % of cases; a deviation ten times too large would leave it near 0.01.
+TEST(ForceFit, GivesTheStandardDeviationOfTheForce) {
+  // The mean square error of the net force of a smooth field, in units of its standard deviation,
+  // has the expectation 1. Over 12 components it is below 2.1 in all but 1 % of cases; with a
+  // deviation ten times too large it would be near 0.01.
   const Bar bar = MakeBar({7, 3, 2}, 2);
   const ForceModel forces = SmoothForces(*bar.body, bar.body->boundary.node, 0.03, 300);
   double squares = 0;
@@ -137,7 +138,7 @@ TEST(ForceFit, TellsHowWellTheForceIsKnown) {
   EXPECT_GT(squares / count, 0.01);
 }
 
-TEST(ForceFit, TheFittedForcesLeadAnOrdinaryStepToTheFittedPlace) {
+TEST(ForceFit, AStepUnderTheFittedForcesReachesTheFittedPositions) {
   const Truth truth = ScanLoadedBar({0, 0, -0.1});
   const Bar bar = MakeBar({6, 2, 2}, 2);
   const ForceFit fit = FitToScan(bar, FootprintForce(*bar.body, bar.tip, 0.3), truth.scan);
@@ -146,7 +147,7 @@ TEST(ForceFit, TheFittedForcesLeadAnOrdinaryStepToTheFittedPlace) {
   StepOptions options;
   options.scheme = TimeScheme::kQuasiStatic;
   ASSERT_TRUE(Stepper(bar.model, options).Equilibrium(fit.force, &history).IsUsable());
-  // Both solve the same equation, to 1e-8 of the forces at work.
+  // Both solve the same equation, to 1e-8 of the acting forces.
   EXPECT_LT((history.position - fit.position).lpNorm<Eigen::Infinity>(), 1e-7);
 }
 
@@ -157,8 +158,8 @@ TEST(ForceFit, SmoothAndFreeForcesFollowTheScanToItsNoise) {
   const ForceFit smooth = FitToScan(bar, SmoothForces(*bar.body, surface, 0.03, 3e3), truth.scan);
   ASSERT_TRUE(smooth.IsUsable()) << smooth.message;
   EXPECT_LT(smooth.weighted_rms, 1.3);
-  // Free forces have far more freedom than a scan without correspondence can pin down, so they
-  // start near, as they do in a sequence.
+  // A scan without correspondences does not determine free forces, so they start close to the
+  // solution, as in a sequence.
   const ForceFit free = FitToScan(bar, FreeForces(*bar.body, surface), truth.scan, smooth.position);
   ASSERT_TRUE(free.IsUsable()) << free.message;
   EXPECT_LT(free.weighted_rms, 1.2);
@@ -181,7 +182,7 @@ TEST(ForceFit, BothFormulationsFindTheSameForces) {
   const Bar bar = MakeBar({6, 2, 2}, 1);
   const MotionHistory rest = RestHistory(bar.model);
   const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
-  // At gripped nodes a force moves nothing, and only the eliminated formulation names one.
+  // Forces at gripped nodes have no effect, and only the formulation by elimination reports them.
   std::vector<int> loaded;
   for (const int node : bar.body->boundary.node)
     if (bar.body->mesh.nodes(0, node) > 1e-9) loaded.push_back(node);
@@ -199,18 +200,18 @@ TEST(ForceFit, BothFormulationsFindTheSameForces) {
   ASSERT_TRUE(eliminated.IsUsable()) << eliminated.message;
   PositionFitStart start{rest.position, zero, no_force};
   ForceFit sparse;
-  for (int round = 0; round < 4; ++round) {  // until the multiplier has settled
+  for (int round = 0; round < 4; ++round) {  // until the multiplier has converged
     sparse = FitPositions(bar.model, equation, forces, seen, start, {no_force, zero}, options);
     ASSERT_TRUE(sparse.IsUsable()) << sparse.message;
     start = {sparse.position, sparse.coefficients, sparse.multiplier};
   }
-  // A thousandth of the noise; and of the largest force.
+  // A thousandth of the noise and of the largest force.
   EXPECT_LT((sparse.position - eliminated.position).lpNorm<Eigen::Infinity>(), 1e-3 * kNoise);
   EXPECT_LT((sparse.force - eliminated.force).lpNorm<Eigen::Infinity>(),
             1e-3 * eliminated.force.lpNorm<Eigen::Infinity>());
 }
 
-TEST(ForceFit, SaysWhatIsMissing) {
+TEST(ForceFit, ReportsMissingUnknownsAndObservations) {
   const Bar bar = MakeBar({3, 1, 1}, 1);
   const MotionHistory rest = RestHistory(bar.model);
   const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);

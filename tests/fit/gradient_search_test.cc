@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// A curved valley over [0, 1]², least at `least` where that lies inside.
+// A curved valley over [0, 1]² with its minimum at `least` if that lies inside.
 struct Valley {
   Vector2d least{0.3, 0.6};
   int evaluations = 0;
@@ -52,38 +52,39 @@ SearchControl Budget(int evaluations) {
   return control;
 }
 
-TEST(GradientSearch, FindsTheLeastValueInFewEvaluations) {
+TEST(GradientSearch, FindsTheMinimumInFewEvaluations) {
   Valley valley;
   const SearchResult found = MinimiseByGradient(valley.Problem(), Budget(100), {});
   EXPECT_EQ(found.status, SearchStatus::kConverged);
   EXPECT_LT((found.x() - valley.least).norm(), 1e-2);  // ten final radii
-  EXPECT_LT(valley.evaluations, 25);                   // a simplex search takes some fifty
+  EXPECT_LT(valley.evaluations, 25);                   // a simplex search needs about fifty
   EXPECT_NE(found.message.find(" 0 derivatives by differences"), std::string::npos)
       << found.message;
 }
 
-TEST(GradientSearch, TheFirstStepHasTheLengthAskedFor) {
+TEST(GradientSearch, TheFirstStepHasTheGivenLength) {
   Valley valley;
   for (const double radius : {0.05, 0.2}) {
     GradientSearchOptions options;
     options.initial_radius = radius;
     const SearchResult found = MinimiseByGradient(valley.Problem(), Budget(2), options);
-    // Off mid-range steps are shorter: sin t is 0.8 at the start.
+    // Outside mid-range steps are shorter; sin t is 0.8 at the start.
     const double length = (found.trace[1].x - found.trace[0].x).norm();
     EXPECT_GT(length, 0.6 * radius);
     EXPECT_LE(length, 1.05 * radius);
   }
 }
 
-TEST(GradientSearch, TakesDifferencesForWhatIsNotKnownAndCountsThem) {
+TEST(GradientSearch, ReplacesMissingDerivativesByDifferencesAndCountsThem) {
   Valley valley;
   valley.knows_first = false;
   const SearchResult found = MinimiseByGradient(valley.Problem(), Budget(200), {});
-  EXPECT_LT((found.x() - valley.least).norm(), 1e-2);  // central differences of a parabola
+  EXPECT_LT((found.x() - valley.least).norm(),
+            1e-2);  // central differences are exact for a parabola
   EXPECT_EQ(static_cast<int>(found.trace.size()), valley.evaluations);
   EXPECT_EQ(found.message.find(" 0 derivatives by differences"), std::string::npos);
 
-  // Without any gradient at all, two differences a point.
+  // Without any derivatives, two differences are needed at each point.
   Valley blind;
   SearchProblem problem = blind.Problem();
   problem.gradient = nullptr;
@@ -91,14 +92,14 @@ TEST(GradientSearch, TakesDifferencesForWhatIsNotKnownAndCountsThem) {
   EXPECT_GT(blind.evaluations, valley.evaluations);
 }
 
-TEST(GradientSearch, StaysWithinBoundsWhenTheLeastValueLiesBeyond) {
+TEST(GradientSearch, StaysWithinBoundsIfTheMinimumLiesOutside) {
   Valley valley;
   valley.least = {-0.4, 0.25};
   const SearchResult found = MinimiseByGradient(valley.Problem(), Budget(200), {});
-  EXPECT_LT(found.x()[0], 1e-2);  // the bound is a stationary point of t: reached to some radii
+  EXPECT_LT(found.x()[0], 1e-2);  // a bound is a stationary point of t and reached to some radii
 }
 
-TEST(GradientSearch, AFailedSideLeavesAOneSidedDifference) {
+TEST(GradientSearch, UsesAOneSidedDifferenceIfOneSideFails) {
   Valley valley;
   valley.knows_first = false;
   SearchProblem problem = valley.Problem();
@@ -114,7 +115,7 @@ TEST(GradientSearch, AFailedSideLeavesAOneSidedDifference) {
   EXPECT_LT((found.x() - valley.least).norm(), 2e-2);
 }
 
-TEST(GradientSearch, AStoppedOneComesToTheSameTrace) {
+TEST(GradientSearch, AnInterruptedSearchResumesWithTheSameTrace) {
   const TemporaryFolder folder;
   Valley valley;
   valley.knows_second = false;
@@ -140,7 +141,7 @@ TEST(GradientSearch, AStoppedOneComesToTheSameTrace) {
   }
 }
 
-TEST(GradientSearch, NothingFreeIsOneEvaluation) {
+TEST(GradientSearch, WithoutFreeVariablesTakesOneEvaluation) {
   Valley valley;
   SearchProblem problem = valley.Problem();
   problem.lower = problem.upper = problem.start;

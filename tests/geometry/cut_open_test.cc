@@ -12,11 +12,11 @@ TetMesh Box(int order) {
   return BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d(4, 2, 3), {4, 2, 3}, order);
 }
 
-TEST(CutOpenTest, APlaneBetweenCellsLaysItsSectionBare) {
+TEST(CutOpenTest, APlaneBetweenCellsExposesItsSection) {
   for (const int order : {1, 2}) {
     const CutMesh cut = CutOpen(Box(order), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(2, 0, 0));
-    // The section is 2 m × 3 m; of the surface three quarters of the sides and one end are gone.
-    // Areas are sums of a few dozen exact ones.
+    // The section is 2 m × 3 m; three quarters of the sides and one end of the surface are removed.
+    // Areas are sums of a few dozen exact numbers.
     EXPECT_NEAR(TriangleAreas(cut.inner).sum(), 6, 1e-12);
     EXPECT_NEAR(TriangleAreas(cut.skin).sum(), 6 + 2 * (2 + 3) * 1, 1e-12);
     TriMesh closed = cut.skin;
@@ -28,7 +28,7 @@ TEST(CutOpenTest, APlaneBetweenCellsLaysItsSectionBare) {
   }
 }
 
-TEST(CutOpenTest, APlaneBesideTheMeshLeavesAllOrNothing) {
+TEST(CutOpenTest, APlaneBesideTheMeshKeepsAllOrNothing) {
   const Eigen::Vector3d beside(5, 0, 0);
   const CutMesh whole = CutOpen(Box(1), beside, Eigen::Vector3d::UnitX());
   EXPECT_EQ(whole.inner.triangles.cols(), 0);

@@ -44,7 +44,7 @@ TEST(Embedding, FollowsAQuadraticMotionWithQuadraticElements) {
   EXPECT_LT((DeformationGradientAt(embedding, 0, mesh, moved) - gradient).norm(), 1e-12);
 }
 
-TEST(Embedding, SaysHowFarOutsideAPointIs) {
+TEST(Embedding, ReportsHowFarOutsideAPointIs) {
   const TetMesh mesh =
       BoxMesh(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones(), std::array<int, 3>{1, 1, 1});
   EXPECT_GT(Embed(mesh, Eigen::Vector3d(0.5, 0.4, 1.2)).outside[0], 0.1);

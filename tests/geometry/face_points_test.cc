@@ -42,7 +42,7 @@ TEST(FacePoints, FollowTheCurvedFaceOfAQuadraticMesh) {
     for (int a = 0; a < 3; ++a) expected += at[a] * surface.vertices.col(surface.triangles(a, t));
     EXPECT_LT((rest.position - expected).norm(), 1e-14);
     EXPECT_LT((rest.normal - flat_normals.col(t)).norm(), 1e-13);
-    // Exactly where the map has it, with the normal that Nanson's formula carries along.
+    // The point lies where the map takes it, with the normal given by Nanson's formula.
     const FaceGeometry now = Evaluate(point, warped.boundary, warped.nodes);
     EXPECT_LT((now.position - Warped::Map(expected)).norm(), 1e-14);
     const Eigen::Vector3d carried =
@@ -51,7 +51,7 @@ TEST(FacePoints, FollowTheCurvedFaceOfAQuadraticMesh) {
   }
 }
 
-TEST(FacePoints, AreThoseOfTheTrianglesOfALinearMesh) {
+TEST(FacePoints, LieInTheTrianglesOfALinearMesh) {
   const Warped warped(1);
   const TriMesh surface = BoundaryAt(warped.boundary, warped.nodes);
   const Eigen::Matrix3Xd normals = TriangleNormals(surface);

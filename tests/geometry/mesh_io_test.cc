@@ -54,7 +54,7 @@ struct TextFile {
   const char* name;
   const char* content;
 };
-// Names the test; GoogleTest's own printer would put the strings' addresses there.
+// Names the test case; GoogleTest's own printer would print the addresses of the strings.
 void PrintTo(const TextFile& file, std::ostream* out) { *out << file.name; }
 
 class TriFormat : public ::testing::TestWithParam<TextFile> {};
@@ -78,7 +78,7 @@ TEST_P(TriFormat, RefusesATruncatedFile) {
   const TemporaryFolder folder;
   const auto& [name, content] = GetParam();
   const std::string whole(content);
-  // Cut within the last face (of an OBJ, which ends anywhere, within its number).
+  // Cut within the last face; an OBJ file may end after any number, so cut within a number.
   const size_t cut = whole.find_last_not_of('\n') + 1 - (whole.starts_with("solid") ? 40 : 2);
   const auto file = Write(folder / name, whole.substr(0, cut));
   EXPECT_THAT(TriFailure(file), HasSubstr(file.string() + ":"));
@@ -111,7 +111,7 @@ TEST(ReadTriMesh, RefusesIndicesOutOfRange) {
   }
 }
 
-TEST(ReadTriMesh, NamesTheFileThatIsAbsentEmptyOrOfNoKnownFormat) {
+TEST(ReadTriMesh, ErrorNamesAFileThatIsAbsentEmptyOrOfUnknownFormat) {
   const TemporaryFolder folder;
   EXPECT_THAT(TriFailure(folder / "none.ply"), HasSubstr("none.ply: cannot be opened"));
   EXPECT_THAT(TriFailure(Write(folder / "a.xyz", "0 0 0")),
@@ -123,7 +123,7 @@ TEST(ReadTriMesh, NamesTheFileThatIsAbsentEmptyOrOfNoKnownFormat) {
               HasSubstr("2 vertices and 0 faces"));
 }
 
-TEST(ReadTriMesh, CutsPolygonsIntoTrianglesAndSaysSo) {
+TEST(ReadTriMesh, CutsPolygonsIntoTrianglesWithANote) {
   const TemporaryFolder folder;
   const auto file =
       Write(folder / "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/2 3/3 4/4\n");
@@ -143,7 +143,7 @@ TEST(WriteTriMesh, RoundTripsBitByBit) {
   EXPECT_THAT(read.notes, IsEmpty());
 }
 
-TEST(WriteTriMesh, LeavesATruncatedCopyUnreadable) {
+TEST(WriteTriMesh, WritesAFileWhoseTruncatedCopyIsRefused) {
   const TemporaryFolder folder;
   WriteTriMesh(folder / "a.ply", Icosphere(1, 2));
   const std::string whole = FileContent(folder / "a.ply");
@@ -205,8 +205,8 @@ TEST_P(TetFormat, RefusesEveryTruncation) {
   Write(folder / "a.node", kNode);
   const auto& [name, content] = GetParam();
   const std::string whole(content);
-  // A comment at the end of the .ele file may go; the .tet format cannot tell its own end, but a
-  // line cut in the middle shows.
+  // A comment at the end of the .ele file may be missing. The .tet format has no end mark, but a
+  // line cut in the middle is noticed.
   const std::string needed = whole.substr(0, whole.find(" # the other"));
   for (size_t cut = 0; cut + 1 < needed.size(); ++cut) {
     if (std::string(name) == "a.tet" &&
@@ -248,7 +248,7 @@ TEST_P(TetFormat, NamesTheLineOfANumberThatIsNotFinite) {
                                       HasSubstr("not finite")));
 }
 
-TEST(ReadTetMesh, TurnsNegativeTetrahedraOverAndSaysSo) {
+TEST(ReadTetMesh, ReordersNegativeTetrahedraWithANote) {
   const TemporaryFolder folder;
   for (const int order : {1, 2}) {
     const TetMesh box = BoxMesh({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, order);
@@ -258,14 +258,14 @@ TEST(ReadTetMesh, TurnsNegativeTetrahedraOverAndSaysSo) {
     const TetMeshFile read = ReadTetMesh(folder / "a.msh");
     EXPECT_THAT(read.notes, ElementsAre(HasSubstr("turned over 48 of 48")));
     EXPECT_GT(TetVolumes(read.mesh).minCoeff(), 0);
-    // Edge nodes still stand on the middle of their edges: the boundary stays whole and flat.
+    // Edge nodes are still the midpoints of their edges: the boundary stays closed and flat.
     const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
     EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
     EXPECT_NEAR(report.area, 6, 1e-12);
   }
 }
 
-TEST(ReadTetMesh, DropsUnusedNodesAndSaysWhichRemain) {
+TEST(ReadTetMesh, DropsUnusedNodesAndReportsWhichRemain) {
   const TemporaryFolder folder;
   const TetMeshFile read = ReadTetMesh(
       Write(folder / "a.tet", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 0 0 1\nt 1 2 4 5\n"));
@@ -275,7 +275,7 @@ TEST(ReadTetMesh, DropsUnusedNodesAndSaysWhichRemain) {
   EXPECT_THAT(read.notes, ElementsAre(HasSubstr("dropped 2 nodes")));
 }
 
-TEST(ReadTetMesh, RefusesTetrahedraThatMakeNoMesh) {
+TEST(ReadTetMesh, RefusesTetrahedraThatFormNoMesh) {
   const TemporaryFolder folder;
   const std::string nodes = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.2 0.2 3\nv 1 1 0\nv 0 0 -1\n";
   const auto failure = [&](const std::string& tets) {
@@ -296,7 +296,7 @@ TEST(ReadTetMesh, RefusesOtherVersionsOfGmsh) {
               HasSubstr("binary"));
 }
 
-TEST(ReadTetMesh, NamesTheFileThatIsAbsentOrOfNoKnownFormat) {
+TEST(ReadTetMesh, ErrorNamesAFileThatIsAbsentOrOfUnknownFormat) {
   const TemporaryFolder folder;
   EXPECT_THAT(TetFailure(folder / "none.msh"), HasSubstr("none.msh: cannot be opened"));
   EXPECT_THAT(TetFailure(folder / "a.vtu"), HasSubstr("expected .msh"));

@@ -23,8 +23,8 @@ Eigen::Matrix3Xd RandomPoints(int count, double scale, uint64_t seed) {
   return points;
 }
 
-// An independent way to the distance: projected gradient steps on the barycentric triangle are
-// replaced by a dense search that is refined around the best place.
+// An independent computation of the distance: a dense search over the barycentric triangle that is
+// refined around the best point.
 double DistanceBySearch(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                         const Vector3d& p) {
   double best = std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ double DistanceBySearch(const Vector3d& a, const Vector3d& b, const Vector3d& c,
   return best;
 }
 
-TEST(SurfaceSearch, AgreesWithASearchThroughAllTriangles) {
+TEST(SurfaceSearch, AgreesWithAnExhaustiveSearch) {
   const TriMesh body = OrganicSurface(2);
   const Eigen::Matrix3Xd queries = RandomPoints(40, 2.5, 1);
   const SurfaceHits hits = SurfaceSearch(body).Nearest(queries);
@@ -74,11 +74,11 @@ TEST(SurfaceSearch, ResultsBelongTogether) {
   }
 }
 
-TEST(SurfaceSearch, FindsPointsOfTheSurfaceThemselves) {
+TEST(SurfaceSearch, FindsPointsOnTheSurface) {
   const TriMesh body = OrganicSurface(4);
   const SurfaceSamples samples = SampleSurface(body, 5000, 3);
   const SurfaceHits hits = SurfaceSearch(body).Nearest(EvaluateSamples(body, samples).points);
-  // A few roundings of coordinates of size 2.
+  // A few rounding errors of coordinates of size 2.
   EXPECT_LT(hits.distance.maxCoeff(), 2e-15);
 }
 
@@ -133,7 +133,7 @@ TEST(SurfaceSearch, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.distance, two.distance);
 }
 
-TEST(PointSearch, AgreesWithASearchThroughAllPoints) {
+TEST(PointSearch, AgreesWithAnExhaustiveSearch) {
   const Eigen::Matrix3Xd points = RandomPoints(1500, 1, 8), queries = RandomPoints(200, 1.2, 9);
   constexpr int kNeighbours = 7;
   const PointHits hits = PointSearch(points).Nearest(queries, kNeighbours);

@@ -28,7 +28,7 @@ TEST(RigidFit, FindsTheMotionOfPointsOnAPlane) {
   EXPECT_LT(Difference(fit.motion, Turned()), 1e-12);
 }
 
-TEST(RigidFit, IsARotationWhereNoiseWouldRatherMirror) {
+TEST(RigidFit, IsARotationWhereAReflectionWouldFitBetter) {
   Eigen::Matrix3Xd points(3, 4);
   points << 0, 1, 0, 1, 0, 0, 1, 1, 1e-3, -1e-3, -1e-3, 1e-3;
   Eigen::Matrix3Xd mirrored = points;
@@ -38,7 +38,7 @@ TEST(RigidFit, IsARotationWhereNoiseWouldRatherMirror) {
   EXPECT_LT(Difference(fit.motion, Eigen::Isometry3d::Identity()), 0.01);
 }
 
-TEST(RigidFit, LeavesOutWhatIsNotSeen) {
+TEST(RigidFit, IgnoresPointsThatAreNotSeen) {
   Eigen::Matrix3Xd points(3, 4);
   points << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1;
   Eigen::Matrix3Xd seen = Turned() * points;
@@ -48,7 +48,7 @@ TEST(RigidFit, LeavesOutWhatIsNotSeen) {
   EXPECT_LT(Difference(fit.motion, Turned()), 1e-12);
 }
 
-TEST(RigidFit, DoesNotTurnAboutALine) {
+TEST(RigidFit, DoesNotRotateAboutALine) {
   Eigen::Matrix3Xd points(3, 3);
   points << 0, 1, 2, 0, 0, 0, 0, 0, 0;
   EXPECT_LT(Difference(FitRigidMotion(points, points).motion, Eigen::Isometry3d::Identity()),
@@ -62,7 +62,7 @@ TEST(RigidFit, DoesNotTurnAboutALine) {
   EXPECT_NEAR((fit.motion.linear() * up).z(), 0, 1e-12);
 }
 
-TEST(RigidFit, OnePointTellsAPlaceAndNoneNothing) {
+TEST(RigidFit, OnePointDeterminesATranslationAndNoneNothing) {
   const Eigen::Matrix3Xd point = Eigen::Vector3d(1, 2, 3);
   const RigidFit fit = FitRigidMotion(point, Turned() * point);
   EXPECT_EQ(fit.span, 0);
@@ -71,7 +71,7 @@ TEST(RigidFit, OnePointTellsAPlaceAndNoneNothing) {
   EXPECT_EQ(FitRigidMotion(Eigen::Matrix3Xd(3, 0), Eigen::Matrix3Xd(3, 0)).span, -1);
 }
 
-TEST(AffineFit, StretchesAlongWhatThePointsSpan) {
+TEST(AffineFit, StretchesAlongTheAxesThatThePointsSpan) {
   Eigen::Matrix3Xd points(3, 4);
   points << 0, 1, 0, 1, 0, 0, 1, 1, 2, 2, 2, 2;
   Eigen::Affine3d stretched = Eigen::Affine3d::Identity();

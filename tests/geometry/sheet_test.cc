@@ -42,7 +42,7 @@ TEST(ThickenSheet, MakesAClosedBodyOfTheRightVolume) {
   EXPECT_NEAR(report.volume, 0.3 * 0.1 * 0.002, 1e-17);  // to rounding
 }
 
-TEST(ThickenSheet, RemembersWhereEachVertexComesFrom) {
+TEST(ThickenSheet, MapsEachVertexToTheSheet) {
   const TriMesh sheet = HalfCylinder(0.5, 20);
   const ThickSheet thick = ThickenSheet(sheet, 0.02);
   ASSERT_EQ(thick.origin.size(), 2 * sheet.vertices.cols());
@@ -52,7 +52,7 @@ TEST(ThickenSheet, RemembersWhereEachVertexComesFrom) {
   }
 }
 
-TEST(ThickenSheet, PutsTheMaterialOnTheSideAskedFor) {
+TEST(ThickenSheet, PutsTheMaterialOnTheRequestedSide) {
   const TriMesh sheet = FlatSheet(1, 1, 2, 2);
   const auto heights = [&](SheetPosition position) {
     const Eigen::VectorXd z = ThickenSheet(sheet, 0.1, position).surface.vertices.row(2);
@@ -69,7 +69,7 @@ TEST(ThickenToTets, FillsTheSheetWithConformingTets) {
   const Eigen::VectorXd volumes = TetVolumes(mesh);
   EXPECT_GT(volumes.minCoeff(), 0);
   EXPECT_NEAR(volumes.sum(), 0.3 * 0.1 * 0.002, 1e-17);
-  // Were the prisms' diagonals to disagree, the cracks would add faces to the boundary.
+  // If the diagonals of neighbouring prisms disagreed, cracks would add faces to the boundary.
   const SurfaceReport report = CheckSurface(ExtractBoundary(mesh).surface);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
   EXPECT_EQ(report.triangles, 2 * (2 * 12 * 4) + 2 * 3 * 2 * (12 + 4));
@@ -89,7 +89,7 @@ TEST(ThickenToTets, StacksItsNodesByLevels) {
   }
 }
 
-TEST(ThickenSheet, RefusesWhatIsNoSheetAndSaysWhy) {
+TEST(ThickenSheet, RefusesInvalidSheetsWithTheReason) {
   EXPECT_THAT(FailureOf([] { ThickenSheet(Icosphere(1, 1), 0.1); }), HasSubstr("closed"));
 
   TriMesh twisted = FlatSheet(1, 1, 2, 2);

@@ -31,7 +31,7 @@ TriMesh Together(const TriMesh& a, const TriMesh& b) {
   return both;
 }
 
-TEST(CheckSurface, FindsNothingWrongWithASphere) {
+TEST(CheckSurface, FindsNoFaultInASphere) {
   const SurfaceReport report = CheckSurface(Icosphere(0.1, 3));
   EXPECT_TRUE(report.BoundsVolume());
   EXPECT_EQ(DescribeFaults(report), "");
@@ -65,7 +65,7 @@ TEST(CheckSurface, CountsTheHandleOfATorus) {
   EXPECT_EQ(report.euler_characteristic, 0);
 }
 
-TEST(CheckSurface, SaysWhereTheHolesAre) {
+TEST(CheckSurface, ReportsTheLocationsOfHoles) {
   const TriMesh sphere = Icosphere(1, 2);
   const SurfaceReport report = CheckSurface(Without(sphere, {0, 200}));
   EXPECT_FALSE(report.IsClosed());
@@ -85,7 +85,7 @@ TEST(CheckSurface, SaysWhereTheHolesAre) {
   EXPECT_THAT(DescribeFaults(report), HasSubstr("2 holes"));
 }
 
-TEST(CheckSurface, FindsTheTriangleThatIsTurnedOver) {
+TEST(CheckSurface, FindsAReversedTriangle) {
   TriMesh sphere = Icosphere(1, 2);
   std::swap(sphere.triangles(0, 17), sphere.triangles(1, 17));
   const SurfaceReport report = CheckSurface(sphere);
@@ -161,32 +161,32 @@ TEST(FindSelfIntersections, FindsWhereTwoSpheresCross) {
   }
 }
 
-TEST(FindSelfIntersections, IsNotMisledByNestedOrDistantBodies) {
+TEST(FindSelfIntersections, FindsNoneBetweenNestedOrDistantBodies) {
   TriMesh distant = Icosphere(1, 2);
   distant.vertices.row(0).array() += 2.001;
   EXPECT_TRUE(FindSelfIntersections(Together(Icosphere(1, 2), distant)).empty());
   EXPECT_TRUE(FindSelfIntersections(Together(Icosphere(1, 2), Icosphere(0.5, 2))).empty());
 }
 
-// Pairs that share vertices: each a case of its own in the test.
-TEST(FindSelfIntersections, KnowsTrianglesThatShareAnEdge) {
+// Pairs of triangles that share vertices are separate cases in the implementation.
+TEST(FindSelfIntersections, HandlesTrianglesThatShareAnEdge) {
   const std::vector<Vector3d> v{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.2, 0.5, 0}};
   EXPECT_TRUE(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {2, 1, 3}})).empty());
   EXPECT_EQ(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {2, 1, 4}})).size(), 1u);  // folded back
   EXPECT_EQ(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {1, 0, 2}})).size(), 1u);  // the same again
 }
 
-TEST(FindSelfIntersections, KnowsTrianglesThatShareAVertex) {
+TEST(FindSelfIntersections, HandlesTrianglesThatShareAVertex) {
   const std::vector<Vector3d> v{{0, 0, 0},     {1, 0, 0},      {0, 1, 0},
                                 {-1, 0, 0},    {0, -1, 0},     {0.3, 0.3, -1},
                                 {0.3, 0.3, 1}, {0.6, 0.6, -1}, {0.6, 0.6, 1}};
   EXPECT_TRUE(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {0, 3, 4}})).empty());
   EXPECT_EQ(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {0, 5, 6}})).size(), 1u);
-  // The other cuts across the whole of the first, from their common vertex to the far edge.
+  // The second triangle crosses the first from their common vertex to the opposite edge.
   EXPECT_EQ(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {0, 7, 8}})).size(), 1u);
 }
 
-TEST(FindSelfIntersections, CountsTouchingAsMeeting) {
+TEST(FindSelfIntersections, CountsTouchingTriangles) {
   const std::vector<Vector3d> v{{0, 0, 0},     {1, 0, 0},     {0, 1, 0},       {0.2, 0.2, 0},
                                 {0.2, 0.2, 1}, {0.5, 0.2, 1}, {0.2, 0.2, 1e-9}};
   EXPECT_EQ(FindSelfIntersections(MeshOf(v, {{0, 1, 2}, {3, 4, 5}})).size(), 1u);

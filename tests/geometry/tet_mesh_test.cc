@@ -40,7 +40,7 @@ TEST(ToQuadratic, PutsOneNodeOnTheMiddleOfEachEdge) {
   }
 }
 
-TEST(ToQuadratic, LeavesAQuadraticMeshAsItIs) {
+TEST(ToQuadratic, ReturnsAQuadraticMeshUnchanged) {
   const TetMesh once = ToQuadratic(Box()), twice = ToQuadratic(once);
   EXPECT_EQ(once.nodes, twice.nodes);
   EXPECT_EQ(once.tets, twice.tets);

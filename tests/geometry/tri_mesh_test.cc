@@ -88,7 +88,7 @@ TEST(SampleSurface, SpreadsPointsInProportionToArea) {
   EXPECT_LT((samples.barycentric.rowwise().mean().array() - 1.0 / 3).abs().maxCoeff(), 0.003);
 }
 
-TEST(SampleSurface, RepeatsItselfForTheSameSeedOnly) {
+TEST(SampleSurface, IsReproducibleForTheSameSeedOnly) {
   const TriMesh body = OrganicSurface(2);
   const SurfaceSamples first = SampleSurface(body, 100, 1);
   EXPECT_EQ(first.barycentric, SampleSurface(body, 100, 1).barycentric);
@@ -96,7 +96,7 @@ TEST(SampleSurface, RepeatsItselfForTheSameSeedOnly) {
   EXPECT_NE(first.barycentric, SampleSurface(body, 100, 2).barycentric);
 }
 
-TEST(SampleSurface, NeverTakesATriangleWithoutArea) {
+TEST(SampleSurface, NeverSamplesATriangleWithoutArea) {
   const TriMesh mesh =
       MeshOf({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}}, {{0, 1, 3}, {0, 1, 2}, {0, 1, 3}});
   for (const int t : SampleSurface(mesh, 1000, 3).triangle) EXPECT_EQ(t, 1);

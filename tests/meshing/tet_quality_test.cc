@@ -16,7 +16,7 @@ TetMesh OneTet(const Eigen::Matrix<double, 3, 4>& corners) {
   return {corners, Eigen::Vector4i(0, 1, 2, 3)};
 }
 
-TEST(MeasureTets, KnowsTheRegularTetrahedron) {
+TEST(MeasureTets, GivesTheKnownValuesOfARegularTetrahedron) {
   Eigen::Matrix<double, 3, 4> corners;
   corners << 1, 1, -1, -1, 1, -1, -1, 1, 1, -1, 1, -1;
   const TetQuality quality = MeasureTets(OneTet(corners));
@@ -30,7 +30,7 @@ TEST(MeasureTets, KnowsTheRegularTetrahedron) {
   EXPECT_EQ(quality.inverted, 0);
 }
 
-TEST(MeasureTets, KnowsTheCornerOfACube) {
+TEST(MeasureTets, GivesTheKnownValuesOfTheCornerOfACube) {
   Eigen::Matrix<double, 3, 4> corners;
   corners << 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1;
   const TetQuality quality = MeasureTets(OneTet(corners));
@@ -51,7 +51,7 @@ TEST(MeasureTets, ShapeDoesNotDependOnSize) {
   EXPECT_NEAR(metres.min_dihedral_angle, micrometres.min_dihedral_angle, 1e-12);
 }
 
-TEST(MeasureTets, CountsWhatIsInvertedAndAboveTheBounds) {
+TEST(MeasureTets, CountsTetrahedraThatAreInvertedOrAboveTheBounds) {
   TetMesh mesh = BoxMesh({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
   // Six congruent tetrahedra of volume 1/6 around the diagonal, with the cube's circumsphere.
   EXPECT_EQ(MeasureTets(mesh, 0.86, 0.16).above_ratio, 6);
@@ -62,7 +62,7 @@ TEST(MeasureTets, CountsWhatIsInvertedAndAboveTheBounds) {
   EXPECT_EQ(MeasureTets(mesh).inverted, 1);
 }
 
-TEST(MeasureTets, OfNothingIsNothing) { EXPECT_EQ(MeasureTets({}).tets, 0); }
+TEST(MeasureTets, OfAnEmptyMeshIsEmpty) { EXPECT_EQ(MeasureTets({}).tets, 0); }
 
 }  // namespace
 }  // namespace lacuna

@@ -37,7 +37,7 @@ TEST(MeshTetrahedra, FillsTheSurfaceExactly) {
   }
 }
 
-TEST(MeshTetrahedra, KeepsTheSurfaceWhenAskedTo) {
+TEST(MeshTetrahedra, KeepsTheSurfaceOnRequest) {
   for (const auto& [name, surface] : Bodies()) {
     const MeshResult result = MeshTetrahedra(surface, {.preserve_surface = true});
     ASSERT_TRUE(result.IsUsable()) << name << ": " << result.message;
@@ -70,7 +70,7 @@ TEST(MeshTetrahedra, ObeysTheRadiusEdgeBound) {
   }
 }
 
-TEST(MeshTetrahedra, AStricterRatioMakesMoreEvenTetrahedra) {
+TEST(MeshTetrahedra, AStricterRatioGivesBetterShapedTetrahedra) {
   const TriMesh surface = OrganicSurface(4);
   const auto worst = [&](double bound) {
     const Eigen::VectorXd ratios =
@@ -94,7 +94,7 @@ TEST(MeshTetrahedra, ObeysTheLargestVolume) {
   }
 }
 
-TEST(MeshTetrahedra, SaysWhenAKeptSurfaceIsTooCoarseForTheLargestVolume) {
+TEST(MeshTetrahedra, NotesAPreservedSurfaceThatIsTooCoarse) {
   const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {14, 2, 3});
   const MeshResult result = MeshTetrahedra(box, {.max_volume = 1e-8});
   ASSERT_TRUE(result.IsUsable());
@@ -103,12 +103,12 @@ TEST(MeshTetrahedra, SaysWhenAKeptSurfaceIsTooCoarseForTheLargestVolume) {
   EXPECT_THAT(result.notes[0], HasSubstr("are larger than 1e-08 m^3"));
 }
 
-TEST(MeshTetrahedra, SaysWhenASurfaceIsFarFinerThanTheLargestVolume) {
+TEST(MeshTetrahedra, NotesASurfaceThatIsMuchFinerThanTheLargestVolume) {
   const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {80, 12, 16});
   const MeshResult coarse = MeshTetrahedra(box, {.max_volume = 1e-5});
   ASSERT_TRUE(coarse.IsUsable());
   ASSERT_EQ(coarse.notes.size(), 1u);
-  EXPECT_THAT(coarse.notes[0], HasSubstr("would be some 24: they must fit the surface's"));
+  EXPECT_THAT(coarse.notes[0], HasSubstr("would need about 24"));
   const MeshResult fitting = MeshTetrahedra(box, {.max_volume = 1e-8});
   ASSERT_TRUE(fitting.IsUsable());
   EXPECT_TRUE(fitting.notes.empty()) << fitting.notes[0];
@@ -134,7 +134,7 @@ TEST(MeshTetrahedra, DoesNotDependOnUnitsOrPlace) {
   EXPECT_EQ(small.mesh.nodes, scale * metres.mesh.nodes);
 }
 
-TEST(MeshTetrahedra, RepeatsItselfBitByBit) {
+TEST(MeshTetrahedra, IsReproducibleBitByBit) {
   const TriMesh surface = OrganicSurface(4);
   const MeshResult first = MeshTetrahedra(surface, {.max_volume = 0.002});
   MeshTetrahedra(Icosphere(1, 2), {});
@@ -153,7 +153,7 @@ TEST(MeshTetrahedra, GivesQuadraticMeshes) {
   EXPECT_EQ(quadratic.quality.nodes, quadratic.mesh.NodeCount());
 }
 
-TEST(MeshTetrahedra, MeshesBodiesBesideEachOther) {
+TEST(MeshTetrahedra, MeshesSeparateBodies) {
   const TriMesh one = Icosphere(1, 2);
   TriMesh two{Eigen::Matrix3Xd(3, 2 * one.vertices.cols()),
               Eigen::Matrix3Xi(3, 2 * one.triangles.cols())};
@@ -174,7 +174,7 @@ void ExpectRefused(const TriMesh& surface, const std::string& cause) {
   EXPECT_EQ(result.mesh.TetCount(), 0);
 }
 
-TEST(MeshTetrahedra, NamesTheFaultOfASurfaceThatBoundsNoVolume) {
+TEST(MeshTetrahedra, ReportsTheFaultOfASurfaceThatBoundsNoVolume) {
   const TriMesh sphere = Icosphere(1, 2);
   ExpectRefused({}, "no triangles");
 
@@ -199,19 +199,19 @@ TEST(MeshTetrahedra, RefusesVerticesOutsideTheSurface) {
   ExpectRefused(sphere, "1 vertices of the surface belong to no triangle");
 }
 
-TEST(MeshTetrahedra, NamesVerticesTooCloseForTetGen) {
+TEST(MeshTetrahedra, ReportsVerticesTooCloseForTetGen) {
   TriMesh plate = BoxSurface({1, 1, 1e-10}, {2, 2, 1});
   const MeshResult result = MeshTetrahedra(plate, {});
   EXPECT_EQ(result.status, MeshStatus::kTooSmallFeature);
   EXPECT_THAT(result.message, HasSubstr("are 1e-10 m apart"));
 }
 
-TEST(MeshTetrahedra, RefusesMoreTetrahedraThanMemoryHolds) {
+TEST(MeshTetrahedra, RefusesTooManyTetrahedra) {
   TetOptions options;
   options.max_volume = 1e-9;
   const MeshResult result = MeshTetrahedra(BoxSurface({1, 1, 1}, {2, 2, 2}), options);
   EXPECT_EQ(result.status, MeshStatus::kOutOfMemory);
-  EXPECT_THAT(result.message, HasSubstr("max_volume asks for 1000 million"));
+  EXPECT_THAT(result.message, HasSubstr("max_volume requires at least 1000 million"));
 }
 
 TEST(MeshTetrahedra, RefusesCavities) {
@@ -226,8 +226,8 @@ TEST(MeshTetrahedra, RefusesCavities) {
   ExpectRefused(shell, "inside out");
 }
 
-// Stars with random spikes: sharp, thin and uneven, but without fault.
-TEST(MeshTetrahedra, EndsInOrderOnSpikyBodies) {
+// Stars with random spikes: sharp, thin and irregular, but valid surfaces.
+TEST(MeshTetrahedra, GivesAMeshOrAReasonOnSpikyBodies) {
   std::mt19937_64 generator(3);
   for (int trial = 0; trial < 12; ++trial) {
     TriMesh star = Icosphere(1, 2);
@@ -245,11 +245,11 @@ TEST(MeshTetrahedra, EndsInOrderOnSpikyBodies) {
   }
 }
 
-// Two boxes a hair apart: the surface is without fault, yet at the limits of double precision.
+// Two boxes with a tiny gap: a valid surface at the limits of double precision.
 class NarrowGap : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Widths, NarrowGap, ::testing::Values(1e-5, 1e-8, 1e-11, 1e-14));
 
-TEST_P(NarrowGap, IsMeshedOrNamed) {
+TEST_P(NarrowGap, IsMeshedOrReported) {
   const TriMesh box = BoxSurface({1, 1, 1}, {2, 2, 2});
   TriMesh two{Eigen::Matrix3Xd(3, 2 * box.vertices.cols()),
               Eigen::Matrix3Xi(3, 2 * box.triangles.cols())};

@@ -122,7 +122,7 @@ TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
 
 TEST_F(ReadingAPredictionStudy, RefusesMarkersWithoutAShape) {
   EXPECT_THAT(MessageAfterInRecording({{"reference: {from: mesh, file: box.off}\n", ""}}),
-              HasSubstr("reference: markers do not tell the shape"));
+              HasSubstr("reference: the frames do not show the surface"));
   EXPECT_THAT(MessageAfterInRecording({{"    - {name: m3,", "    #- {name: m3,"}}),
               HasSubstr("recordings[0].recording: lacks marker_places"));
 }

@@ -58,8 +58,9 @@ TEST(StudyErrors, NameTheLineAndTheField) {
   EXPECT_THAT(MessageAfter("recordings/bend/truth", "recordings/bend/lies"),
               HasSubstr("validation.true_surfaces: there is no "));
   EXPECT_THAT(MessageAfter("{every: 1}", "{last: 0}"), HasSubstr("has one frame"));
-  EXPECT_THAT(MessageAfter("poisson_ratio: 0.35", "poison_ratio: 0.35"),
-              HasSubstr("material.poisson_ratio: is missing (\"poison_ratio\" is no key)"));
+  EXPECT_THAT(
+      MessageAfter("poisson_ratio: 0.35", "poison_ratio: 0.35"),
+      HasSubstr("material.poisson_ratio: is missing (\"poison_ratio\" is not a known key)"));
   const std::string gravity = "{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}";
   EXPECT_THAT(MessageAfter("effects: []", "effects: [" + gravity + ", " + gravity + "]"),
               HasSubstr("effects[1].type: gravity is listed twice"));

@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(CsvTableTest, NumbersComeBackExactlyAndNanStaysNan) {
+TEST(CsvTableTest, NumbersAreReadBackExactlyAndNanStaysNan) {
   const TemporaryFolder folder;
   const Eigen::Vector3d values(0.1, 1e-310, -std::numeric_limits<double>::max());
   const Eigen::Vector3d others(std::nan(""), 1.0 / 3, std::numeric_limits<double>::infinity());
@@ -32,7 +32,7 @@ TEST(CsvTableTest, NumbersComeBackExactlyAndNanStaysNan) {
   EXPECT_EQ(table[1].values.tail(2), others.tail(2));
 }
 
-TEST(CsvTableTest, TextIsWhatASpreadsheetExpects) {
+TEST(CsvTableTest, TextHasTheFormThatSpreadsheetsExpect) {
   const TemporaryFolder folder;
   SaveCsv({{"a", Eigen::Vector2d(1, 0.5)}, {"b", Eigen::Vector2d(-2, 1e20)}}, folder / "a.csv");
   EXPECT_EQ(FileContent(folder / "a.csv"), "a,b\n1,-2\n0.5,1e+20\n");
@@ -46,7 +46,7 @@ TEST(CsvTableTest, TableWithoutRowsKeepsItsHeader) {
   EXPECT_EQ(table[0].values.size(), 0);
 }
 
-TEST(CsvTableTest, BrokenFilesAreNamedWithTheirLine) {
+TEST(CsvTableTest, ErrorsInDamagedFilesNameTheLine) {
   const TemporaryFolder folder;
   const auto file = folder / "a.csv";
   const auto expect = [&](const std::string& text, const std::string& cause) {

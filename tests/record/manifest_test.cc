@@ -31,7 +31,7 @@ Manifest Example() {
   return manifest;
 }
 
-TEST(ManifestTest, ComesBackWhole) {
+TEST(ManifestTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
   const Manifest written = Example();
   SaveManifest(written, folder / "manifest.json");
@@ -61,15 +61,15 @@ TEST(ManifestTest, DamagedOrNewerFilesAreRefused) {
     EXPECT_THAT([&] { LoadManifest(file); },
                 ThrowsMessage<InputError>(AllOf(HasSubstr(file.string()), HasSubstr(cause))));
   };
-  expect(whole.substr(0, whole.size() / 2), "is not a sound manifest");
+  expect(whole.substr(0, whole.size() / 2), "is not a valid manifest");
   expect("{}", "schema_version");
-  expect("[]", "is not a sound manifest");
+  expect("[]", "is not a valid manifest");
   expect("{\"schema_version\": 99}", "from a later version of Lacuna");
   EXPECT_THAT([&] { LoadManifest(folder / "absent.json"); },
               ThrowsMessage<InputError>(HasSubstr("no such file")));
 }
 
-TEST(StageKeyTest, EveryPartOfTheIdentityMatters) {
+TEST(StageKeyTest, DependsOnEveryPartOfTheIdentity) {
   const StageIdentity base{"fit", 1, {{"tolerance", 1e-6}}, {{"mesh", "00"}}};
   std::set<std::string> keys{StageKey(base)};
   StageIdentity other = base;
@@ -81,7 +81,7 @@ TEST(StageKeyTest, EveryPartOfTheIdentityMatters) {
   other = base;
   other.inputs["mesh"] = "01";
   keys.insert(StageKey(other));
-  // One bit more, and the values that JSON text cannot tell apart.
+  // A change of one bit, and values that JSON text cannot distinguish.
   for (const double tolerance :
        {std::nextafter(1e-6, 1.0), std::nan(""), std::numeric_limits<double>::infinity()}) {
     other = base;

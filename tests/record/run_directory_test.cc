@@ -36,7 +36,7 @@ std::function<void(const fs::path&)> WriteResult(const std::string& content) {
   };
 }
 
-// Runs `body` in a process of its own that kills itself, or is killed by `body`, without clean-up.
+// Runs `body` in a process of its own, which is then killed without clean-up.
 void InKilledProcess(const std::function<void()>& body) {
   const pid_t child = fork();
   if (child == 0) {
@@ -50,7 +50,7 @@ void InKilledProcess(const std::function<void()>& body) {
 
 class RunDirectoryTest : public ::testing::Test {
  protected:
-  // A run with the stages `surface` and `fit`, closed again.
+  // Creates a run with the stages `surface` and `fit`.
   void MakeFinishedRun() {
     RunDirectory run(folder_);
     run.Begin({{"density", 1070.0}}, {{"scan.ply", "00"}}, 7);
@@ -78,7 +78,7 @@ TEST_F(RunDirectoryTest, StoredStageIsFoundAgainUnderItsKeyOnly) {
   EXPECT_EQ(FileContent(run.StageFolder("surface") / "frames" / "000.txt"), "surface of frame 0");
 }
 
-TEST_F(RunDirectoryTest, ManifestTellsConfigurationInputsSeedAndVersions) {
+TEST_F(RunDirectoryTest, ManifestContainsConfigurationInputsSeedAndVersions) {
   MakeFinishedRun();
   const Manifest manifest = LoadManifest(folder_ / "manifest.json");
   EXPECT_EQ(manifest.configuration["density"], 1070.0);
@@ -99,7 +99,7 @@ TEST_F(RunDirectoryTest, SameRunElsewhereWritesTheSameManifest) {
   EXPECT_EQ(FileContent(folder_ / "manifest.json"), first);
 }
 
-TEST_F(RunDirectoryTest, EachKindOfDamageIsDetectedAndNamed) {
+TEST_F(RunDirectoryTest, EachKindOfDamageIsDetectedAndReported) {
   const auto damaged = [this](const std::function<void(const fs::path&)>& damage) {
     fs::remove_all(folder_);
     MakeFinishedRun();
@@ -158,9 +158,9 @@ TEST_F(RunDirectoryTest, ProcessKilledWhileWritingLeavesNothingThatIsTrusted) {
   EXPECT_TRUE(run.Has("surface", "key s"));
 }
 
-// The whole of Store under fire: a process stores two results in turn until it is killed at some
-// moment. Whatever the moment, what is found afterwards is whole or not there.
-TEST_F(RunDirectoryTest, KilledAtAnyMomentAStageIsWholeOrAbsent) {
+// A process stores two results in turn until it is killed. Whatever the moment, each result is
+// afterwards complete or absent.
+TEST_F(RunDirectoryTest, AfterAKillAtAnyMomentAStageIsCompleteOrAbsent) {
   constexpr int kRounds = 12;
   int whole = 0;
   for (int round = 0; round < kRounds; ++round) {
@@ -211,7 +211,7 @@ TEST_F(RunDirectoryTest, ResultsOfAnotherVersionAreNotResumed) {
 
 TEST_F(RunDirectoryTest, ResultsUnknownToTheManifestAreNotTrusted) {
   MakeFinishedRun();
-  // As after a crash between the rename of the folder and the writing of the manifest.
+  // The state after a crash between the rename of the folder and the writing of the manifest.
   fs::copy(folder_ / "surface", folder_ / "mesh");
   RunDirectory run(folder_);
   EXPECT_EQ(run.Check("mesh", "key s").status, Status::kAbsent);
@@ -259,24 +259,24 @@ TEST_F(RunDirectoryTest, SecondRunInTheSameFolderIsRefusedWhileTheFirstLives) {
   EXPECT_NO_THROW(RunDirectory second(folder_));
 }
 
-TEST_F(RunDirectoryTest, FolderWithOtherContentsIsRefusedAndLeftAlone) {
+TEST_F(RunDirectoryTest, FolderWithOtherContentsIsRefusedAndNotChanged) {
   fs::create_directories(folder_);
   std::ofstream(folder_ / "thesis.tex") << "x";
   EXPECT_THAT([this] { RunDirectory run(folder_); },
-              ThrowsMessage<InputError>(HasSubstr("is not a run folder")));
+              ThrowsMessage<InputError>(HasSubstr("is neither empty nor a run folder")));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(RunDirectoryTest, PlaceThatCannotBeAFolderIsNamed) {
+TEST_F(RunDirectoryTest, ErrorNamesAPlaceThatCannotBeAFolder) {
   std::ofstream(parent_ / "file") << "x";
   for (const fs::path& folder : {parent_ / "file", parent_ / "file/run", fs::path("/proc/run")}) {
     EXPECT_THAT([&] { RunDirectory run(folder); },
-                ThrowsMessage<InputError>(
-                    AllOf(HasSubstr(folder.string()), HasSubstr("cannot be made a run folder"))));
+                ThrowsMessage<InputError>(AllOf(HasSubstr(folder.string()),
+                                                HasSubstr("cannot be used as a run folder"))));
   }
 }
 
-TEST_F(RunDirectoryTest, ResultHashFollowsTheContentAndTheNames) {
+TEST_F(RunDirectoryTest, ResultHashDependsOnTheContentAndTheNames) {
   RunDirectory run(folder_);
   run.Begin({}, {}, 0);
   run.Store("surface", "k", WriteResult("a"));

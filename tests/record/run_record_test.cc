@@ -48,7 +48,7 @@ RunRecord Example() {
   return record;
 }
 
-TEST(RunRecordTest, ComesBackWhole) {
+TEST(RunRecordTest, IsReadBackCompletely) {
   const TemporaryFolder folder;
   const RunRecord written = Example();
   SaveRunRecord(written, folder.Path());
@@ -89,7 +89,7 @@ TEST(RunRecordTest, ComesBackWhole) {
   EXPECT_EQ(read.point_residuals, written.point_residuals);
 }
 
-TEST(RunRecordTest, WhatWasNotMeasuredComesBackAsNotMeasured) {
+TEST(RunRecordTest, UnmeasuredValuesAreReadBackAsNotMeasured) {
   const TemporaryFolder folder;
   RunRecord empty;
   empty.frames.resize(1);
@@ -113,7 +113,7 @@ TEST(RunRecordTest, IsUsableOnlyWhenEveryStageAndFrameIs) {
   EXPECT_FALSE(record.IsUsable());
 }
 
-TEST(RunRecordTest, FramesAreATableToo) {
+TEST(RunRecordTest, FramesAreAlsoWrittenAsATable) {
   const TemporaryFolder folder;
   SaveRunRecord(Example(), folder.Path());
   const CsvTable table = LoadCsv(folder / "frames.csv");
@@ -137,13 +137,13 @@ TEST(RunRecordTest, DamagedRecordsAreRefused) {
               ThrowsMessage<InputError>(HasSubstr("no such file")));
   std::ofstream(folder / "record.json") << "{\"schema_version\": 1}";
   EXPECT_THAT([&] { LoadRunRecord(folder.Path()); },
-              ThrowsMessage<InputError>(HasSubstr("is not a sound record")));
+              ThrowsMessage<InputError>(HasSubstr("is not a valid record")));
   std::ofstream(folder / "record.json") << "{\"schema_version\": 2}";
   EXPECT_THAT([&] { LoadRunRecord(folder.Path()); },
               ThrowsMessage<InputError>(HasSubstr("has schema_version 2; expected 1")));
 }
 
-TEST(RunRecordDeathTest, MistakesOfTheProgramAreNotWritten) {
+TEST(RunRecordDeathTest, InconsistentRecordsAreNotWritten) {
   const TemporaryFolder folder;
   RunRecord record = Example();
   record.point_residuals.resize(5, 3);

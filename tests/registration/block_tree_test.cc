@@ -38,7 +38,7 @@ TEST(BlockTreeTest, SpatialOrderIsAPermutationOfCompactRuns) {
   EXPECT_LT(run, 0.25 * shuffled);
 }
 
-TEST(BlockTreeTest, NoPointWithinTheRadiusIsLeftOut) {
+TEST(BlockTreeTest, NoPointWithinTheRadiusIsMissed) {
   for (const int count : {1, 7, 8, 9, 100, 777}) {
     const Eigen::Matrix3Xf points = Ordered(SampleBody(count, 2).points.cast<float>());
     BlockTree tree(Eigen::Matrix3Xf::Zero(3, count));

@@ -55,8 +55,8 @@ Errors Register(const ScanFaults& faults, bool with_normals = false) {
 
 double MotionSize() { return Rms(Warp(Source().points) - Source().points); }
 
-// The tolerances are shares of the points' spacing, 3.2 mm; the motion is 2.6 of it. What is left
-// is slip within the surface, which no scan shows.
+// The tolerances are fractions of the point spacing, 3.2 mm; the motion is 2.6 spacings. The
+// remaining error is tangential motion, which scans do not show.
 TEST(CoherentPointDriftTest, RecoversAKnownWarp) {
   ASSERT_GT(MotionSize(), 1.0 * kSpacing);
   const Errors errors = Register({});
@@ -70,7 +70,7 @@ TEST(CoherentPointDriftTest, RecoversItWithGivenNormals) {
   EXPECT_LT(errors.normal, 0.03 * kSpacing);
 }
 
-TEST(CoherentPointDriftTest, SlipsLessThanPlainCpd) {
+TEST(CoherentPointDriftTest, HasLessTangentialErrorThanPlainCpd) {
   const PointCloud source = Source(), target = ScanOfWarpedBody(kPoints, 2);
   CpdOptions plain;
   plain.tangential_weight = 1.0;
@@ -105,7 +105,7 @@ TEST(CoherentPointDriftTest, RecoversItAmongOutliers) {
   EXPECT_LT(result.inlier.tail(kPoints / 5).mean(), 0.2);
 }
 
-TEST(CoherentPointDriftTest, RecoversItWithAPartMissingAndSaysWhere) {
+TEST(CoherentPointDriftTest, RecoversItWithAPartMissingAndReportsWhere) {
   ScanFaults faults;
   faults.missing_beyond_x = 0.05;
   const PointCloud source = Source();
@@ -149,9 +149,9 @@ TEST(CoherentPointDriftTest, TheFieldIsThatOfTheDisplacedPoints) {
   const PointCloud source = Source();
   const CpdResult result = RegisterNonrigid(source, ScanOfWarpedBody(kPoints, 2));
   const Eigen::Matrix3Xd evaluated = source.points + result.field.Evaluate(source.points);
-  // Single against double precision.
+  // The difference between single and double precision.
   EXPECT_LT((evaluated - result.displaced).cwiseAbs().maxCoeff(), 1e-4 * kSpacing);
-  // Between the points it is as good as at them.
+  // The field is as accurate between the points as at them.
   const PointCloud between = SampleBody(500, 7);
   EXPECT_LT(Rms(between.points + result.field.Evaluate(between.points) - Warp(between.points)),
             0.4 * kSpacing);
@@ -165,11 +165,11 @@ TEST(CoherentPointDriftTest, DoesNotDependOnTheUnitOrThePlace) {
   far_source.points = (1000.0 * source.points).colwise() + offset;
   far_target.points = (1000.0 * target.points).colwise() + offset;
   const CpdResult there = RegisterNonrigid(far_source, far_target);
-  // Rounding of the coordinates may turn a comparison and with it an iteration.
+  // Rounding of the coordinates may change a comparison and with it an iteration.
   EXPECT_LT(Rms((there.displaced.colwise() - offset) / 1000.0 - here.displaced), 0.01 * kSpacing);
 }
 
-TEST(CoherentPointDriftTest, IsTheSameToTheBitForOneAndTwoThreads) {
+TEST(CoherentPointDriftTest, IsBitIdenticalForOneAndTwoThreads) {
   const PointCloud source = Source(), target = ScanOfWarpedBody(kPoints, 2);
   const int threads = ThreadCount();
   SetThreadCount(1);
@@ -192,12 +192,12 @@ TEST(CoherentPointDriftTest, AgreesBetweenInstructionSets) {
     if (!IsSupported(set)) continue;
     options.kernels = &KernelsFor(set);
     const CpdResult result = RegisterNonrigid(source, target, options);
-    // The iteration stops when it moves by 0.004 spacings; rounding moves that point a little.
+    // The iteration stops when it moves by 0.004 spacings; rounding changes that point slightly.
     EXPECT_LT(Rms(result.displaced - baseline.displaced), 2e-3 * kSpacing);
   }
 }
 
-TEST(CoherentPointDriftTest, StandardDeviationIsOfTheSizeOfTheErrorAndGrowsWhereNothingIsSeen) {
+TEST(CoherentPointDriftTest, StandardDeviationMatchesTheErrorAndGrowsWithoutData) {
   ScanFaults faults;
   faults.missing_beyond_x = 0.04;
   faults.noise = 0.1 * kSpacing;
@@ -217,12 +217,12 @@ TEST(CoherentPointDriftTest, StandardDeviationIsOfTheSizeOfTheErrorAndGrowsWhere
       ++missing;
     }
   }
-  // The errors of one field are strongly correlated, so that their mean is a single draw of few
-  // degrees of freedom: a factor of four either way.
+  // The errors of one field are strongly correlated, so their mean square has few degrees of
+  // freedom: allow a factor of four either way.
   EXPECT_LT(std::sqrt(error_seen / seen), 4.0 * std::sqrt(predicted_seen / seen));
   EXPECT_GT(std::sqrt(error_seen / seen), 0.25 * std::sqrt(predicted_seen / seen));
   EXPECT_GT(std::sqrt(predicted_missing / missing), 1.2 * std::sqrt(predicted_seen / seen));
-  // Far away nothing but the prior is known.
+  // Far away only the prior is known.
   EXPECT_GT(result.field.StandardDeviation(Eigen::Vector3d(2.0, 2.0, 2.0))[0],
             2.0 * deviation.maxCoeff());
 }
@@ -232,7 +232,7 @@ TEST(CoherentPointDriftTest, AWarmStartNeedsFewerIterations) {
   const CpdResult cold = RegisterNonrigid(source, target);
   const CpdResult warm = RegisterNonrigid(source, target, {}, &cold.field);
   ASSERT_TRUE(warm.IsUsable()) << warm.message;
-  // It skips the coarse level, but σ still has to settle.
+  // It skips the coarse level, but σ still has to converge.
   EXPECT_LE(4 * warm.iterations, 3 * cold.iterations);
   EXPECT_LT(Rms(warm.displaced - cold.displaced), 0.05 * kSpacing);
 }
@@ -251,7 +251,7 @@ TEST(CoherentPointDriftTest, ReportsProgressAtEveryIteration) {
   EXPECT_EQ(last.all_points, kPoints);
 }
 
-TEST(CoherentPointDriftTest, SaysSoWhenIterationsRunOut) {
+TEST(CoherentPointDriftTest, ReportsThatIterationsRanOut) {
   CpdOptions options;
   options.max_iterations = 1;
   const CpdResult result = RegisterNonrigid(Source(), ScanOfWarpedBody(kPoints, 2), options);
@@ -267,7 +267,7 @@ CpdStatus StatusOf(const PointCloud& source, const PointCloud& target) {
   return result.status;
 }
 
-TEST(CoherentPointDriftTest, HopelessInputGetsItsStatus) {
+TEST(CoherentPointDriftTest, UnusableInputGetsItsStatus) {
   const PointCloud good = SampleBody(200, 1);
   PointCloud one, nan = good, infinite = good, together = good, line = good;
   one.points = Eigen::Vector3d(0.0, 0.0, 0.0);

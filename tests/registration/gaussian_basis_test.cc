@@ -29,7 +29,8 @@ TEST(GaussianBasisTest, ProductsOfTheFunctionsAreTheKernel) {
   ASSERT_LT(basis.Rank(), 200);
   const Eigen::MatrixXd values = basis.Values(points);
   const Eigen::MatrixXd kernel = values.transpose() * values;
-  // The rest is positive semidefinite with a diagonal up to the tolerance of k(y, y) = 1.02.
+  // The remainder is positive semidefinite with a diagonal up to the tolerance times k(y, y)
+  // = 1.02.
   for (int i = 0; i < 300; i += 7) {
     for (int j = 0; j < 300; j += 5) {
       EXPECT_NEAR(kernel(i, j), KernelAt(points.col(i), points.col(j)), 1.02 * kTolerance);
@@ -37,7 +38,7 @@ TEST(GaussianBasisTest, ProductsOfTheFunctionsAreTheKernel) {
   }
 }
 
-TEST(GaussianBasisTest, GradientsAreTheSlopesOfTheFunctions) {
+TEST(GaussianBasisTest, GradientsMatchFiniteDifferences) {
   const GaussianBasis basis = BasisOn(Body(300, 1), 40);
   const Eigen::Matrix3Xd points = Body(5, 2);
   Eigen::MatrixXd gradient[3];
@@ -48,13 +49,13 @@ TEST(GaussianBasisTest, GradientsAreTheSlopesOfTheFunctions) {
     before.row(axis).array() -= kStep;
     after.row(axis).array() += kStep;
     const Eigen::MatrixXd slope = (basis.Values(after) - basis.Values(before)) / (2.0 * kStep);
-    // Rounding of φ (about 1e-14 after L⁻¹) over the step.
+    // The rounding error of φ (about 1e-14 after L⁻¹) divided by the step.
     EXPECT_LT((slope - gradient[axis]).cwiseAbs().maxCoeff(), 1e-7);
     EXPECT_GT(slope.cwiseAbs().maxCoeff(), 0.1);
   }
 }
 
-TEST(GaussianBasisTest, LeadingFunctionsAreThoseOfTheWholeBasis) {
+TEST(GaussianBasisTest, LeadingFunctionsEqualThoseOfTheWholeBasis) {
   const Eigen::Matrix3Xd points = Body(300, 1);
   const GaussianBasis basis = BasisOn(points, 40);
   const Eigen::MatrixXd difference =
@@ -69,7 +70,7 @@ TEST(BasisTableTest, AgreesWithTheBasisInDoublePrecision) {
   const BasisTable table(basis, tree, BestKernels());
   const Eigen::MatrixXd values = basis.Values(points);
   const Eigen::Matrix3Xd coefficients = Eigen::Matrix3Xd::Random(3, basis.Rank());
-  // Coordinates and kernel values rounded to 6e-8, multiplied by |L⁻¹| ≈ 100 and √64.
+  // Coordinates and kernel values are rounded to 6e-8, multiplied by |L⁻¹| ≈ 100 and √64.
   EXPECT_LT((table.Expand(coefficients).cast<double>() - coefficients * values).norm() /
                 (coefficients * values).norm(),
             1e-4);
@@ -78,7 +79,7 @@ TEST(BasisTableTest, AgreesWithTheBasisInDoublePrecision) {
   EXPECT_LT((table.Project(forces) - projected).norm() / projected.norm(), 1e-4);
 }
 
-// Of a fine tolerance, L⁻¹ is so large that kernel values in single precision would not do.
+// With a fine tolerance L⁻¹ is so large that kernel values in single precision would not suffice.
 TEST(BasisTableTest, AgreesWithAFineBasisToo) {
   const Eigen::Matrix3Xd points = Body(333, 3).cast<float>().cast<double>();
   const GaussianBasis basis(Body(300, 1), {{1.0, 1.0}}, 1e-9, 300);
@@ -86,13 +87,13 @@ TEST(BasisTableTest, AgreesWithAFineBasisToo) {
   const BasisTable table(basis, tree, BestKernels());
   const Eigen::MatrixXd values = basis.Values(points);
   const Eigen::Matrix3Xd coefficients = Eigen::Matrix3Xd::Random(3, basis.Rank());
-  // φ rounded to 6e-8.
+  // φ is rounded to 6e-8.
   EXPECT_LT((table.Expand(coefficients).cast<double>() - coefficients * values).norm() /
                 (coefficients * values).norm(),
             1e-6);
   const Eigen::Matrix3Xf forces = Eigen::Matrix3Xf::Random(3, points.cols());
   const Eigen::Matrix3Xd projected = forces.cast<double>() * values.transpose();
-  // Function by function: those of the finest are the smallest.
+  // Compare function by function, because the finest ones have the smallest values.
   for (int k = 0; k < basis.Rank(); ++k) {
     EXPECT_LT((table.Project(forces) - projected).col(k).norm(),
               1e-5 * values.row(k).norm() * std::sqrt(333.0));

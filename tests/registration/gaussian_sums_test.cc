@@ -60,7 +60,7 @@ class GaussianSumsTest : public testing::TestWithParam<InstructionSet> {
   }
 };
 
-// Single precision, sums of some 20 terms of size 1, 2^t to 3e-6: 2e-5 leaves room.
+// Sums of about 20 terms of size 1 in single precision, 2^t with an error of 3e-6: 2e-5 is enough.
 constexpr double kTolerance = 2e-5;
 
 TEST_P(GaussianSumsTest, MassAndPosteriorAreTheSumsOfTheirTerms) {
@@ -113,7 +113,7 @@ TEST_P(GaussianSumsTest, MomentsAreTheSumsOfTheirTerms) {
   }
 }
 
-TEST_P(GaussianSumsTest, ExpandAndProjectAreTransposesWithTheKernelValuesBetween) {
+TEST_P(GaussianSumsTest, ExpandAndProjectMultiplyByTheKernelValuesAndTheirTranspose) {
   const Inputs inputs = RandomInputs();
   const GaussianKernels& kernels = KernelsFor(GetParam());
   std::mt19937 random(6);
@@ -141,7 +141,7 @@ TEST_P(GaussianSumsTest, ExpandAndProjectAreTransposesWithTheKernelValuesBetween
       const double dz = double{pivots[k].z} - inputs.queries.z[q];
       const double squared = dx * dx + dy * dy + dz * dz;
       value[k] = std::exp2(-1.2 * squared) + 0.3 * std::exp2(-9.0 * squared);
-      // 2^t to single precision, and t itself rounded.
+      // 2^t in single precision with a rounded t.
       EXPECT_NEAR(values[k].lane[q], value[k], 1e-6);
       x += coefficients[k].x * value[k];
     }

@@ -23,7 +23,7 @@ double RigidityEnergy(const Patches& patches, const Eigen::Matrix3Xd& coefficien
   return energy;
 }
 
-TEST(RigidityTest, GradientIsTheSlopeOfTheEnergy) {
+TEST(RigidityTest, GradientMatchesFiniteDifferencesOfTheEnergy) {
   const Eigen::Matrix3Xd points = SampleBody(300, 1).points / 0.05;
   const Patches patches = MakePatches(BasisOn(points), points);
   const Eigen::Index rank = patches.mean_basis.rows();
@@ -37,13 +37,14 @@ TEST(RigidityTest, GradientIsTheSlopeOfTheEnergy) {
     after.data()[i] += kStep;
     const double slope =
         (RigidityEnergy(patches, after) - RigidityEnergy(patches, before)) / (2.0 * kStep);
-    // Central differences of an energy of about 0.1: 1e-16 / 1e-5 of rounding, 1e-10 of curvature.
+    // Central differences of an energy of about 0.1 have a rounding error of 1e-16 / 1e-5 and a
+    // truncation error of 1e-10.
     EXPECT_NEAR(gradient.data()[i], slope, 1e-8);
   }
   EXPECT_GT(gradient.norm(), 1e-2);
 }
 
-TEST(RigidityTest, ARotationCostsNothingAndAStretchDoes) {
+TEST(RigidityTest, ARotationHasNoEnergyAndAStretchHas) {
   const Eigen::Matrix3d rotation =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   EXPECT_LT((NearestRotation(rotation) - rotation).norm(), 1e-12);
@@ -84,11 +85,11 @@ TEST(MotionStepTest, TheNewtonStepOfPlainCpdSolvesItsNormalEquations) {
   const Eigen::Matrix3Xd goal = coefficients * phi + posterior.shift.cast<double>();
   const Eigen::Matrix3Xd expected =
       left.llt().solve(phi * weight.asDiagonal() * goal.transpose()).transpose();
-  // The Hessian is summed in single precision, and its condition is about 1e3.
+  // The Hessian is summed in single precision and has a condition number of about 1e3.
   EXPECT_LT((found - expected).norm(), 1e-3 * expected.norm());
 }
 
-TEST(MotionStepTest, OnlyTheDistanceAlongTheNormalPulls) {
+TEST(MotionStepTest, OnlyTheDistanceAlongTheNormalExertsAForce) {
   const PointCloud body = SampleBody(64, 1);
   const Eigen::Matrix3Xd points = body.points / 0.05;
   const GaussianBasis basis = BasisOn(points);

@@ -13,7 +13,7 @@ constexpr double kSigma = 0.006;
 constexpr double kOutliers = 0.2;
 constexpr double kVolume = 1e-3;
 
-TEST(PosteriorTest, IsBayesRuleForTheTruncatedMixture) {
+TEST(PosteriorTest, FollowsBayesRuleForTheTruncatedMixture) {
   const Eigen::Matrix3Xf source = SampleBody(203, 1).points.cast<float>();
   const Eigen::Matrix3Xf target = SampleBody(150, 2).points.cast<float>();
   const BlockTree source_tree(source);
@@ -33,7 +33,7 @@ TEST(PosteriorTest, IsBayesRuleForTheTruncatedMixture) {
   }
   const Eigen::RowVectorXd density = p.colwise().sum().array() + kOutliers / kVolume;
   p = p.array().rowwise() / density.array();
-  // Single precision with 2^t to 3e-6.
+  // Single precision, and 2^t with an error of 3e-6.
   EXPECT_LT((posterior.weight.cast<double>() - p.rowwise().sum()).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((posterior.inlier.cast<double>().transpose() - p.colwise().sum()).cwiseAbs().maxCoeff(),
             1e-5);
@@ -54,7 +54,7 @@ TEST(PosteriorTest, IsBayesRuleForTheTruncatedMixture) {
   EXPECT_NEAR(posterior.total_spread, spread, 1e-5 * spread);
 }
 
-TEST(PosteriorTest, WithoutAnyNeighbourNothingIsExplainedAndNothingIsNan) {
+TEST(PosteriorTest, IsZeroAndNotNanWithoutAnyNeighbour) {
   const BlockTree source(SampleBody(20, 1).points.cast<float>());
   BlockTree target((SampleBody(20, 2).points.array() + 5.0).matrix().cast<float>());
   for (const double outliers : {0.0, 0.1}) {

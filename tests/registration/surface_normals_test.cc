@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-TEST(SurfaceNormalsTest, AreThoseOfTheBody) {
+TEST(SurfaceNormalsTest, AgreeWithThoseOfTheBody) {
   PointCloud body = SampleBody(4000, 1);
   const Eigen::Matrix3Xd truth = body.normals;
   body.normals.resize(3, 0);
@@ -23,13 +23,13 @@ TEST(SurfaceNormalsTest, AreThoseOfTheBody) {
     sine[i] = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   }
   std::sort(sine.begin(), sine.end());
-  // The neighbourhood's radius, about 3 mm, turns the normal by 0.15 over a radius of curvature of
-  // 2 cm; the mean over it cancels most of that.
+  // Over the neighbourhood's radius of about 3 mm the normal rotates by 0.15 rad at a radius of
+  // curvature of 2 cm; averaging cancels most of that.
   EXPECT_LT(sine[2000], 0.03);
   EXPECT_LT(sine[3960], 0.2);
 }
 
-TEST(SurfaceNormalsTest, SpacingIsTheRootOfTheAreaPerPoint) {
+TEST(SurfaceNormalsTest, SpacingIsTheSquareRootOfTheAreaPerPoint) {
   Eigen::Matrix3Xf square(3, 4096);
   for (int i = 0; i < 4096; ++i) square.col(i) << (i % 64) / 64.f, (i / 64) / 64.f, 0.f;
   Eigen::Matrix3Xf sorted(3, 4096);

@@ -71,7 +71,7 @@ CorrespondenceError ErrorOf(const TrackedPair& pair, const Eigen::Matrix3Xd& dis
     const auto partner = own - pair.target_row.begin();
     squared += distances[partner];
     ++count;
-    // Negated, so that a place that is not a number is a mistake.
+    // The negated comparison also catches NaN.
     if (!(distances[partner] <= distances.minCoeff())) ++error.mistaken;
   }
   error.rms = std::sqrt(squared / std::max(1, count));

@@ -1,5 +1,4 @@
-// Tracked points, of which the true correspondences are known: row i is the same point in every
-// frame.
+// Tracked points with known correspondences: row i is the same point in every frame.
 #ifndef LACUNA_TESTS_REGISTRATION_TRACKED_FRAMES_H_
 #define LACUNA_TESTS_REGISTRATION_TRACKED_FRAMES_H_
 
@@ -19,7 +18,7 @@ std::filesystem::path RubberStripFrames();
 // where a point was not seen.
 Eigen::Matrix3Xd ReadTrackedFrame(const std::filesystem::path& file);
 
-// Two frames as clouds that do not tell which point is which, and what does.
+// Two frames as unordered clouds, with the true correspondence.
 struct TrackedPair {
   PointCloud source;  // m
   PointCloud target;
@@ -29,7 +28,7 @@ struct TrackedPair {
   Eigen::Matrix3Xd held_out_target;  // 3 × h, m: in the second
 };
 
-// Points k − 1, 2k − 1, … are held out for k = hold_out_every; 0: none.
+// Points k − 1, 2k − 1, … are held out for k = hold_out_every; none for 0.
 TrackedPair MakeTrackedPair(const Eigen::Matrix3Xd& first, const Eigen::Matrix3Xd& second,
                             int hold_out_every);
 

@@ -1,4 +1,4 @@
-// Source and target that hold the same points: every error of the correspondence is known.
+// Source and target contain the same points, so that every error of the correspondence is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMillimetre = 1e-3;
 
-// Those of experiments/rubber_strip.yaml.
+// The options of experiments/rubber_strip.yaml.
 CpdOptions TrackedOptions() {
   CpdOptions options;
   options.tangential_weight = 1.0;
@@ -58,14 +58,14 @@ class RubberStripTest : public testing::Test {
   }
 };
 
-// Between frames 10 and 11, and 17 and 18, a point is not seen in one of them.
+// One point is missing in one of frames 10 and 11, and one in one of frames 17 and 18.
 constexpr int kPairs[] = {0, 5, 10, 17, 18};
 
 // What bcpd -b1 -l5 -g0.1 -w0.1 was measured to leave: its largest rms over all 19 pairs
 // (tests/benchmark/README.md).
 constexpr double kPeerError = 0.0011 * kMillimetre;
 
-TEST_F(RubberStripTest, FindsTheCorrespondenceNoWorseThanThePeer) {
+TEST_F(RubberStripTest, FindsTheCorrespondenceAtLeastAsWellAsBcpd) {
   for (const int number : kPairs) {
     const FrameError error = RegisterPair(number, 5);
     EXPECT_LT(error.seen.rms, kPeerError) << "frame " << number;
@@ -77,9 +77,9 @@ TEST_F(RubberStripTest, FindsTheCorrespondenceNoWorseThanThePeer) {
   }
 }
 
-// All points lie on a lattice of 0.7 mm that moves by 0.5 mm: a step of the lattice the other way
-// explains the points nearly as well.
-TEST_F(RubberStripTest, DoesNotSlipByAStepOfTheLattice) {
+// All points lie on a lattice of 0.7 mm that moves by 0.5 mm, so a motion in the opposite direction
+// to the neighbouring lattice points explains the data nearly as well.
+TEST_F(RubberStripTest, DoesNotMatchTheNeighbouringLatticePoints) {
   for (const int number : kPairs) {
     const FrameError error = RegisterPair(number, 0);
     EXPECT_LT(error.seen.rms, kPeerError) << "frame " << number;
@@ -87,8 +87,8 @@ TEST_F(RubberStripTest, DoesNotSlipByAStepOfTheLattice) {
   }
 }
 
-// The same without measured data: a sheet's lattice that moves on by 0.6 of its step, stretched by
-// 2 % and bent.
+// The same without measured data: the lattice of a sheet that moves by 0.6 of its spacing, is
+// stretched by 2 % and bent.
 TrackedPair MakeSheet() {
   constexpr int kAlong = 60, kAcross = 8;
   constexpr double kStep = 0.7 * kMillimetre;
@@ -105,12 +105,12 @@ TrackedPair MakeSheet() {
   return pair;
 }
 
-TEST(TrackedPointsTest, MatchedExtentsKeepALatticeFromSlipping) {
+TEST(TrackedPointsTest, MatchedExtentsPreventAWrongMatchOfALattice) {
   const TrackedPair sheet = MakeSheet();
   CpdOptions options = TrackedOptions();
   const CpdResult matched = RegisterNonrigid(sheet.source, sheet.target, options);
   ASSERT_TRUE(matched.IsUsable()) << matched.message;
-  // The motion is smooth and without noise: what is left is what the prior holds back.
+  // The motion is smooth and has no noise: the remaining error is due to the prior.
   EXPECT_LT(ErrorOf(sheet, matched.displaced).rms, 0.001 * kMillimetre);
   EXPECT_EQ(ErrorOf(sheet, matched.displaced).mistaken, 0);
   options.match_extents = false;
@@ -118,9 +118,9 @@ TEST(TrackedPointsTest, MatchedExtentsKeepALatticeFromSlipping) {
   EXPECT_GT(ErrorOf(sheet, in_place.displaced).mistaken, 100);
 }
 
-// Points at the reach of the Gaussians gain their targets between two steps: a curvature from
-// before would throw the field away.
-TEST(TrackedPointsTest, PointsThatComeIntoReachDoNotUpsetAFineBasis) {
+// Points at the cutoff of the Gaussians find their targets between two steps, so that an outdated
+// Hessian would ruin the field.
+TEST(TrackedPointsTest, PointsThatComeIntoReachDoNotRuinAFineBasis) {
   TrackedPair sheet = MakeSheet();
   for (int i = 20; i < 480; i += 40) sheet.source.points(2, i) += 0.29 * kMillimetre;
   const CpdResult result = RegisterNonrigid(sheet.source, sheet.target, TrackedOptions());
@@ -138,7 +138,7 @@ TEST(TrackedPointsTest, AFinerBasisDoesNoHarm) {
     const CpdResult result = RegisterNonrigid(sheet.source, sheet.target, options);
     ASSERT_TRUE(result.IsUsable()) << tolerance << ": " << result.message;
     const double rms = ErrorOf(sheet, result.displaced).rms;
-    // Until it is lost in the rounding of single precision, 1e-7 of the size of 12 mm.
+    // The limit is the rounding error of single precision, 1e-7 times the size of 12 mm.
     EXPECT_LT(rms, std::max(1.1 * last, 1e-5 * kMillimetre)) << tolerance;
     last = rms;
   }

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-// `count` points spread evenly over a lumpy body about 0.2 m long, in no order, with its normals.
+// `count` points with normals, spread evenly over a lumpy body about 0.2 m long, in random order.
 PointCloud SampleBody(int count, uint64_t seed);
 
 // The motion: a bend of 25° and a twist, neither of them a sum of Gaussians.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/nearest.h"
+#include "scan/recording.h"
 #include "scan/scan_writer.h"
 #include "scan/test_files.h"
 #include "support/shapes.h"
@@ -57,7 +58,7 @@ Eigen::Isometry3d Disturbance(int i) {
   return Eigen::Translation3d(1e-3 * i, -1e-3, 0.5e-3) * Eigen::AngleAxisd(0.01 * i, axis);
 }
 
-TEST(CameraAlignment, TakesOutTheDisturbanceOfThePoses) {
+TEST(CameraAlignment, RemovesADisturbanceOfThePoses) {
   Views views = Scanned(6);
   const Views exact = views;
   for (int i = 1; i < 6; ++i) {
@@ -71,7 +72,7 @@ TEST(CameraAlignment, TakesOutTheDisturbanceOfThePoses) {
     const double before = (views.clouds[i] - exact.clouds[i]).colwise().norm().mean();
     const double after = (aligned - exact.clouds[i]).colwise().norm().mean();
     ASSERT_GT(before, 1e-3);
-    // A smooth body slides and turns in itself easily: of 0.1 mm noise some 0.3 mm become.
+    // A smooth body easily slides along itself, which amplifies noise of 0.1 mm to some 0.3 mm.
     EXPECT_LT(after, 4e-4) << "camera " << i;
     EXPECT_LT(after, before / 4) << "camera " << i;
     EXPECT_LT(corrections[i].rms_after, 0.5 * corrections[i].rms_before);
@@ -90,7 +91,7 @@ TEST(CameraAlignment, LeavesGoodPosesNearlyAsTheyAre) {
   }
 }
 
-TEST(CameraAlignment, LeavesAloneWhatAPlaneDoesNotTell) {
+TEST(CameraAlignment, LeavesMotionsUnchangedThatAPlaneDoesNotDetermine) {
   Views views;
   views.positions = (Eigen::Matrix3Xd(3, 2) << 0.1, 0.1, 0, 0.1, 1, 1).finished();
   for (const int seed : {1, 2}) {
@@ -100,8 +101,8 @@ TEST(CameraAlignment, LeavesAloneWhatAPlaneDoesNotTell) {
   views.clouds[1].colwise() += Eigen::Vector3d(0.002, 0.001, 0.003);
   const CameraCorrection correction = AlignCameras(views.clouds, views.positions, {})[1];
   ASSERT_TRUE(correction.applied);
-  EXPECT_EQ(correction.free_directions, 3);  // two to slide, one to turn
-  // The offset across the plane is known exactly, that along it not at all; single precision.
+  EXPECT_EQ(correction.free_directions, 3);  // two translations and one rotation
+  // The offset across the plane is determined up to single precision, that along it not at all.
   EXPECT_NEAR(correction.correction.translation().z(), -0.003, 1e-7);
   EXPECT_LT(correction.correction.translation().head<2>().norm(), 1e-6);
   EXPECT_LT(correction.angle, 1e-6);
@@ -120,19 +121,17 @@ TEST(CameraAlignment, SaysWhyItDidNothing) {
               HasSubstr("sees too few points"));
 }
 
-TEST(CameraAlignment, OfADepthRecordingIsAppliedAndReported) {
+TEST(CameraAlignment, IsAppliedToADepthRecordingAndReported) {
   const TestFolder folder;
   std::vector<VirtualCamera> cameras = Cameras(6);
-  ScannedObject object;
-  object.name = "body";
   const std::filesystem::path exact_folder = folder / "exact", wrong_folder = folder / "wrong";
-  WriteScan(exact_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
-  // The images are those of the true poses; the recording tells wrong ones.
+  WriteScan(exact_folder, "body", {}, {{Body()}, {0}, cameras, Noise()}, WriteDepthFrames);
+  // The images belong to the true poses; recording.yaml gives wrong ones.
   for (int i = 1; i < 6; ++i) {
     Eigen::Isometry3d& pose = cameras[i].camera.world_from_camera;
     pose = Disturbance(i) * pose;
   }
-  WriteScan(wrong_folder, object, {Body()}, {0}, cameras, Noise(), ScanOutput::kDepth);
+  WriteScan(wrong_folder, "body", {}, {{Body()}, {0}, cameras, Noise()}, WriteDepthFrames);
   std::filesystem::remove_all(wrong_folder / "frames");
   std::filesystem::copy(exact_folder / "frames", wrong_folder / "frames");
   const auto error = [](const Recording& recording) {

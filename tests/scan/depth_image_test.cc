@@ -50,7 +50,7 @@ TEST(DepthImage, PointsProjectBackToTheirPixels) {
   EXPECT_EQ(BackProject(depth, camera, 0.5045, 0.5205).Size(), 2 + 7 + 1);
 }
 
-TEST(DepthImage, TellsOfTruncatedAndOtherPngs) {
+TEST(DepthImage, RefusesTruncatedAndOtherPngs) {
   const TestFolder folder;
   WriteDepthPng(folder.Path() / "whole.png", Slope(), 1e-4);
   const std::string whole = FileContent(folder.Path() / "whole.png");

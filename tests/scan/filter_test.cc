@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Points on `mesh` with noise along the normal; the normals returned are the true ones.
+// Points on `mesh` with noise along the normal, together with the exact normals.
 PointCloud Sample(const TriMesh& mesh, int count, double noise) {
   PointCloud cloud = EvaluateSamples(mesh, SampleSurface(mesh, count, 3));
   std::mt19937 random(5);
@@ -30,7 +30,7 @@ PointCloud Sample(const TriMesh& mesh, int count, double noise) {
 double WrongFraction(const TriMesh& mesh, const PointCloud& cloud) {
   const SurfaceHits hits = SurfaceSearch(mesh).Nearest(cloud.points);
   const Eigen::Matrix3Xd truth = TriangleNormals(mesh)(Eigen::all, hits.triangle);
-  // At an edge the estimated normal is a mean of both sides: it may be at a right angle to one.
+  // At an edge the estimated normal is a mean of both faces and may be at a right angle to one.
   return (truth.cwiseProduct(cloud.normals).colwise().sum().array() < -0.5).cast<double>().mean();
 }
 
@@ -73,11 +73,11 @@ TEST(Filter, LeavesOneMeanPointPerVoxel) {
   FilterOptions options = OnlyNormals();
   options.voxel_size = 1;
   const FilterResult result = FilterCloud({points, Eigen::Matrix3Xd(3, 0)}, {}, options);
-  // Ten cubes a side, or eleven where the grid begins within the first.
+  // Ten cubes along each side, or eleven when the grid begins inside the first.
   EXPECT_GE(result.cloud.Size(), 1000);
   EXPECT_LE(result.cloud.Size(), 1331);
   EXPECT_EQ(result.merged_count, 50'000 - result.cloud.Size() - result.degenerate_count);
-  // Some 50 points make a mean that lies near the middle of its cube.
+  // The mean of some 50 points lies near the middle of its cube.
   const Eigen::MatrixXd distance =
       PointSearch(result.cloud.points).Nearest(result.cloud.points, 2).distance;
   EXPECT_GT(distance.row(1).mean(), 0.7);
@@ -92,7 +92,7 @@ TEST(Filter, EstimatesNormalsOfASphereOutward) {
           .colwise()
           .sum();
   EXPECT_GT(cosine.minCoeff(), 0.97);  // noise 0.1 mm over a neighbourhood of 4 mm: some 3°
-  EXPECT_EQ(result.orientation.by, OrientedBy::kPropagation);
+  EXPECT_EQ(result.orientation.method, OrientationMethod::kPropagation);
   EXPECT_EQ(result.orientation.component_count, 1);
   EXPECT_EQ(result.orientation.doubtful_component_count, 0);
   EXPECT_EQ(result.orientation.disagreement, 0);
@@ -115,18 +115,18 @@ TEST(Filter, OrientsABodyWithHollows) {
   EXPECT_LT(WrongFraction(mesh, result.cloud), 1e-3);
 }
 
-TEST(Filter, TurnsAnOpenSheetTowardsItsSensor) {
+TEST(Filter, OrientsAnOpenSheetTowardsItsSensor) {
   const TriMesh sheet = FlatSheet(0.1, 0.05, 1, 1);  // normals along +z
   const PointCloud cloud = WithoutNormals(Sample(sheet, 1500, 1e-4));
   for (const double side : {1.0, -1.0}) {
     Sensors sensors;
     sensors.positions = Eigen::Vector3d(0.02, 0.01, side);
     const FilterResult result = FilterCloud(cloud, sensors, OnlyNormals());
-    EXPECT_EQ(result.orientation.by, OrientedBy::kSensorsAround);
+    EXPECT_EQ(result.orientation.method, OrientationMethod::kSensorsAround);
     EXPECT_EQ(result.orientation.doubtful_component_count, 0);
     EXPECT_GT((side * result.cloud.normals.row(2)).minCoeff(), 0.9);
   }
-  // Without a sensor a flat sheet has no outside; that is said.
+  // Without a sensor, either side of a flat sheet may be outside, and the result says so.
   const FilterResult blind = FilterCloud(cloud, {}, OnlyNormals());
   EXPECT_EQ(blind.orientation.doubtful_component_count, 1);
 }
@@ -147,9 +147,9 @@ TEST(Filter, FacesEachPointTowardsTheSensorThatSawIt) {
   const PointCloud seen{cloud.points(Eigen::all, faces), Eigen::Matrix3Xd(3, 0)};
   const Eigen::Matrix3Xd truth = cloud.normals(Eigen::all, faces);
   sensors.seen_by = Eigen::VectorXi(sensors.seen_by(faces));
-  // The plate is thinner than the points are apart, so its normals come from both faces at once.
+  // The plate is thinner than the spacing of the points, so points of both faces enter each normal.
   const FilterResult result = FilterCloud(seen, sensors, OnlyNormals());
-  EXPECT_EQ(result.orientation.by, OrientedBy::kSensorOfEachPoint);
+  EXPECT_EQ(result.orientation.method, OrientationMethod::kSensorOfEachPoint);
   EXPECT_GT(truth.cwiseProduct(result.cloud.normals).colwise().sum().minCoeff(), 0.5);
   EXPECT_EQ(result.sensors.seen_by, sensors.seen_by);
 }
@@ -157,10 +157,10 @@ TEST(Filter, FacesEachPointTowardsTheSensorThatSawIt) {
 TEST(Filter, KeepsGivenNormalsUnlessAsked) {
   const TriMesh sphere = Icosphere(0.05, 3);
   PointCloud cloud = Sample(sphere, 1000, 0);
-  cloud.normals *= -1;  // inward, as no estimate would have it
+  cloud.normals *= -1;  // inward, which no estimate would be
   FilterOptions options = OnlyNormals();
   const FilterResult kept = FilterCloud(cloud, {}, options);
-  EXPECT_EQ(kept.orientation.by, OrientedBy::kGiven);
+  EXPECT_EQ(kept.orientation.method, OrientationMethod::kGiven);
   EXPECT_LT((kept.cloud.normals - cloud.normals).cwiseAbs().maxCoeff(), 1e-12);
   options.renew_normals = true;
   const FilterResult renewed = FilterCloud(cloud, {}, options);
@@ -195,7 +195,7 @@ TEST(Filter, KeepsItsPrecisionFarFromTheOrigin) {
   EXPECT_LT(((b.cloud.points.colwise() - shift) - a.cloud.points).cwiseAbs().maxCoeff(), 5e-8);
 }
 
-TEST(Filter, RefusesWhatItCannotUse) {
+TEST(Filter, RefusesCloudsThatItCannotUse) {
   const PointCloud few{Eigen::Matrix3Xd::Random(3, 3), Eigen::Matrix3Xd(3, 0)};
   EXPECT_THAT(ErrorOf([&] { FilterCloud(few, {}, {}); }), HasSubstr("3 of 3 points are left"));
   const PointCloud wide{1e3 * Eigen::Matrix3Xd::Random(3, 100), Eigen::Matrix3Xd(3, 0)};

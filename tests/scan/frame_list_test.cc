@@ -58,7 +58,7 @@ TEST(FrameList, FindsFilesByPatternListAndWildcard) {
   }
 }
 
-TEST(FrameList, TellsOfMissingFrames) {
+TEST(FrameList, ReportsMissingFrames) {
   const TestFolder folder;
   for (const int i : {1, 2, 4}) folder.Write("s" + std::to_string(i) + ".xyz", "1 2 3\n");
   const auto message = [&](const std::string& yaml) {

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 
 enum Processor { kIntel = 84, kDec = 85, kMips = 86 };
 
-// Writes C3D files as the processors of the format's three kinds would have.
+// Writes C3D files in the number formats of the three kinds of processors.
 class C3dWriter {
  public:
   explicit C3dWriter(Processor processor) : processor_(processor) {}
@@ -135,7 +135,7 @@ TEST(C3d, ReadsIntegersAndRealsOfEveryProcessor) {
   }
 }
 
-TEST(C3d, TellsOfTruncatedAndForeignFiles) {
+TEST(C3d, RefusesTruncatedAndForeignFiles) {
   const TestFolder folder;
   const std::string whole = MakeC3d(kIntel, false);
   const auto message = [&](const std::string& content) {
@@ -150,7 +150,7 @@ TEST(C3d, TellsOfTruncatedAndForeignFiles) {
   std::string foreign = whole;
   foreign[512 + 3] = 90;
   EXPECT_THAT(message(foreign), HasSubstr("unknown processor (90)"));
-  // No byte of the header or the parameters may lead outside the file.
+  // No corrupted byte of the header or the parameters may lead to a read outside the file.
   for (size_t at = 0; at < 640; ++at) {
     if (at == 24) at = 512;
     std::string damaged = whole;
@@ -177,7 +177,7 @@ TEST(MarkerCsv, FindsMarkersByTheirColumns) {
               HasSubstr("has no marker \"tap\"; its markers are tip, base"));
 }
 
-TEST(MarkerCsv, RefusesMissingColumnsAndTimesThatRunBack) {
+TEST(MarkerCsv, RefusesMissingColumnsAndDecreasingTimes) {
   const TestFolder folder;
   MarkerColumns columns;
   const auto half = folder.Write("half.csv", "tip_x,tip_y\n1,2\n");
@@ -211,7 +211,7 @@ TEST(Trc, ReadsMarkersTimesAndGaps) {
   EXPECT_DOUBLE_EQ(tracks.times[2], 0.02);
 }
 
-TEST(Trc, TellsOfCountsThatContradict) {
+TEST(Trc, RefusesContradictoryCounts) {
   const TestFolder folder;
   const auto message = [&](const std::string& content) {
     const auto file = folder.Write("bad.trc", content);

@@ -127,7 +127,7 @@ TEST(PointFile, WritesWhatItReads) {
   EXPECT_EQ(ReadPointFile(folder.Path() / "b.ply", {}).normals, cloud.normals);
 }
 
-TEST(PointFile, TellsOfTruncatedAndMalformedFiles) {
+TEST(PointFile, RefusesTruncatedAndMalformedFiles) {
   const TestFolder folder;
   const std::string ply = PlyHeader("binary_little_endian", "float", 4) + Binary<float>(false);
   const std::string pcd = PcdHeader("binary", 4) + Binary<float>(false);

@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// The published data sets as a user would describe them, from a folder of their own.
+// The published data sets, described as users would in a folder of their own.
 class PublishedData : public RecordingTest {
  protected:
   void SetUp() override {
@@ -37,7 +37,7 @@ TEST_F(PublishedData, RubberStripIsATrackedSheet) {
   EXPECT_EQ(LoadFrame(recording, 0).triangles.cols(), 722);
 }
 
-TEST_F(PublishedData, LiverTellsForcesNodesAndTetMesh) {
+TEST_F(PublishedData, LiverGivesForcesNodesAndTetMesh) {
   const Recording recording = Load(Yaml(
       "  {kind: points, files: sequences/linear/s1/pointclouds/*.txt, rate: 1 Hz}\n",
       Folder("liver_sequence") +
@@ -51,10 +51,10 @@ TEST_F(PublishedData, LiverTellsForcesNodesAndTetMesh) {
   EXPECT_EQ(LoadFrame(recording, 49).cloud.Size(), 500);
   const Eigen::MatrixXd forces =
       ReadNpyMatrix(SharedData() / "liver_sequence/sequences/linear/s1/true-forces.npy");
-  EXPECT_EQ(ForceAt(recording.forces[0], 30), Eigen::Vector3d(forces.row(30)));
+  EXPECT_EQ(ForceAt(recording.object.forces[0], 30), Eigen::Vector3d(forces.row(30)));
   const TetMesh mesh = ReadTetMesh(recording.reference.file).mesh;
-  EXPECT_EQ(SelectNodes(recording.fixed[0], mesh.nodes).size(), 106u);
-  EXPECT_EQ(SelectNodes(*recording.forces[0].region, mesh.nodes).size(), 18u);
+  EXPECT_EQ(SelectNodes(recording.object.fixed[0], mesh.nodes).size(), 106u);
+  EXPECT_EQ(SelectNodes(*recording.object.forces[0].region, mesh.nodes).size(), 18u);
 }
 
 TEST_F(PublishedData, LidarScanHasItsCadShapeInCentimetres) {

@@ -1,4 +1,4 @@
-// Recordings that a test writes and reads.
+// A fixture for tests that write a recording and read it.
 #ifndef LACUNA_TESTS_SCAN_RECORDING_FIXTURE_H_
 #define LACUNA_TESTS_SCAN_RECORDING_FIXTURE_H_
 
@@ -12,7 +12,8 @@
 
 namespace lacuna {
 
-// A cloud of `rows` points of a 100 × 50 × 20 (units of the file) body, one per line.
+// The lines of a table with `rows` points of a body that measures 100 × 50 × 20 in units of the
+// file.
 inline std::string Cloud(int rows, double shift = 0) {
   std::ostringstream text;
   for (int i = 0; i < rows; ++i) {
@@ -29,7 +30,7 @@ inline std::string Yaml(const std::string& frames, const std::string& rest = "",
 
 class RecordingTest : public testing::Test {
  protected:
-  // A recording of `count` clouds and whatever else the YAML tells.
+  // Writes `count` point clouds as f/p0.csv, f/p1.csv, …
   void WriteClouds(int count, int rows = 12) const {
     for (int i = 0; i < count; ++i) {
       folder_.Write("f/p" + std::to_string(i) + ".csv", "x,y,z\n" + Cloud(rows, i));

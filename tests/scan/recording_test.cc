@@ -1,14 +1,8 @@
 #include "scan/recording.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <numbers>
-
-#include "core/npy.h"
 #include "geometry/mesh_io.h"
 #include "scan/recording_fixture.h"
 #include "support/shapes.h"
@@ -20,45 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-TEST_F(RecordingTest, AGripTurnsAndShiftsSmoothlyAlongItsPath) {
-  WriteClouds(3);
-  std::string path = "t,x,y,z,rx,ry,rz\n";
-  const auto shift = [](double t) { return 3 * std::sin(20 * t); };  // mm
-  for (int k = 0; k <= 10; ++k)
-    path += fmt::format("{0},1,{1},0,10,0,{2}\n", 0.01 * k, shift(0.01 * k), 300 * 0.01 * k);
-  folder_.Write("arm.csv", path);
-  const std::string yaml = "  kind: points\n  files: f/*.csv\n  rate: 20 Hz\n";
-  const std::string grip =
-      "gripped: [{name: arm, sphere: {center: [100 mm, 0, 0], radius: 5 mm}, path: {file: arm.csv, "
-      "time: t, x: x, y: y, z: z, turn: {x: rx, y: ry, z: rz, unit: deg, about: [100 mm, 0, "
-      "0]}}}]\n";
-  const Recording recording = Load(Yaml(yaml, grip));
-  const RecordedGrip& arm = recording.grips.at(0);
-  const Eigen::Vector3d pivot(0.1, 0, 0);
-  // The undeformed place is that of the first row, whatever its numbers are.
-  EXPECT_LT((MotionAt(arm, 0).matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-15);
-  // Half way between rows: with ω h = 0.2, (ω h)⁴ (1/48 + 1/384) of 3 mm; a line would be (ω h)²/8
-  // of it away, 15 µm.
-  const Eigen::Isometry3d there = MotionAt(arm, 0.045);
-  EXPECT_NEAR((there * pivot - pivot).y(), 1e-3 * shift(0.045), 1.2e-7);
-  const double degree = std::numbers::pi / 180;
-  const Eigen::Vector3d turned(10 * degree, 0, 13.5 * degree);
-  const Eigen::Matrix3d rotation =
-      Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix() *
-      Eigen::AngleAxisd(-10 * degree, Eigen::Vector3d::UnitX());
-  EXPECT_LT((there.linear() - rotation).norm(), 1e-12);
-  // The velocity has no corner at a row.
-  const auto at = [&](double t) { return MotionAt(arm, t).translation().eval(); };
-  const double h = 1e-6;
-  EXPECT_LT((at(0.05 + h) - 2 * at(0.05) + at(0.05 - h)).norm() / h, 1e-5);
-  EXPECT_LT((MotionAt(arm, 9).matrix() - MotionAt(arm, 0.1).matrix()).norm(), 1e-15);
-  EXPECT_THAT(LoadError(Yaml(yaml,
-                             "gripped: [{nodes: [1], path: {file: arm.csv, time: t, turn: {x: "
-                             "rx, y: rz, z: r}}}]\n")),
-              HasSubstr("r"));
-}
-
-TEST_F(RecordingTest, TellsWhatIsKnownInSi) {
+TEST_F(RecordingTest, ReadsWhatIsKnownOfTheObjectInSi) {
   WriteClouds(3);
   folder_.Write("load.csv", "t_ms,fx,fy,fz\n0,0,0,-100\n100,0,0,-300\n");
   folder_.Write("grip.csv", "x,y,z\n100,0,0\n100,0,5\n100,0,10\n");
@@ -72,21 +28,22 @@ TEST_F(RecordingTest, TellsWhatIsKnownInSi) {
            "forces: [{name: pull, file: load.csv, time: t_ms, time_unit: ms, x: fx, y: fy, z: fz,\n"
            "          unit: mN, region: {nodes: [7]}}, {constant: [0, 0, -0.51 N]}]\n"
            "reference: {from: first_frame, sheet: {thickness: 2 mm, face: front}}\n"));
-  EXPECT_DOUBLE_EQ(*recording.density, 1070);
-  EXPECT_EQ(*recording.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_DOUBLE_EQ(*recording.object.density, 1070);
+  EXPECT_EQ(*recording.object.gravity, Eigen::Vector3d(0, 0, -9.81));
   EXPECT_THAT(recording.times, ElementsAre(0, 0.05, 0.1));
-  ASSERT_EQ(recording.grips.size(), 2u);
+  ASSERT_EQ(recording.object.grips.size(), 2u);
   // The path follows the frames' times; its unit is the recording's.
   EXPECT_LT(
-      (MotionAt(recording.grips[0], 0.075).translation() - Eigen::Vector3d(0, 0, 0.0075)).norm(),
+      (MotionAt(recording.object.grips[0], 0.075).translation() - Eigen::Vector3d(0, 0, 0.0075))
+          .norm(),
       1e-15);
-  EXPECT_EQ(recording.grips[1].motion, GripMotion::kFollowsScan);
-  ASSERT_EQ(recording.forces.size(), 2u);
-  EXPECT_NEAR(ForceAt(recording.forces[0], 0.025).z(), -0.15, 1e-15);
-  EXPECT_NEAR(ForceAt(recording.forces[0], 9).z(), -0.3, 1e-15);
-  EXPECT_NEAR(ForceAt(recording.forces[0], -9).z(), -0.1, 1e-15);
-  EXPECT_EQ(ForceAt(recording.forces[1], 0.1), Eigen::Vector3d(0, 0, -0.51));
-  EXPECT_FALSE(recording.forces[1].region.has_value());
+  EXPECT_EQ(recording.object.grips[1].motion, GripMotion::kFollowsScan);
+  ASSERT_EQ(recording.object.forces.size(), 2u);
+  EXPECT_NEAR(ForceAt(recording.object.forces[0], 0.025).z(), -0.15, 1e-15);
+  EXPECT_NEAR(ForceAt(recording.object.forces[0], 9).z(), -0.3, 1e-15);
+  EXPECT_NEAR(ForceAt(recording.object.forces[0], -9).z(), -0.1, 1e-15);
+  EXPECT_EQ(ForceAt(recording.object.forces[1], 0.1), Eigen::Vector3d(0, 0, -0.51));
+  EXPECT_FALSE(recording.object.forces[1].region.has_value());
   EXPECT_DOUBLE_EQ(recording.reference.sheet_thickness, 2e-3);
   EXPECT_THAT(recording.warnings, IsEmpty());
   const Frame frame = LoadFrame(recording, 2);
@@ -101,7 +58,7 @@ TEST_F(RecordingTest, TellsWhatIsKnownInSi) {
   }
 }
 
-TEST_F(RecordingTest, MayLieElsewhereThanItsData) {
+TEST_F(RecordingTest, MayLieApartFromItsData) {
   WriteClouds(2);
   setenv("LACUNA_TEST_FOLDER", folder_.Path().c_str(), 1);
   const auto yaml = folder_.Write("experiments/bar.yaml",
@@ -123,26 +80,10 @@ TEST_F(RecordingTest, ChoosesFramesByTimeAndStride) {
   EXPECT_THAT(recording.times, ElementsAre(0.2, 0.4, 0.6));
   EXPECT_DOUBLE_EQ(LoadFrame(recording, 1).cloud.points(0, 0), 0.004);
   // One row per frame of the files, not per frame chosen.
-  EXPECT_DOUBLE_EQ(ForceAt(recording.forces[0], recording.times[2]).x(), 6);
+  EXPECT_DOUBLE_EQ(ForceAt(recording.object.forces[0], recording.times[2]).x(), 6);
 }
 
-TEST_F(RecordingTest, DropsNanRowsAndTheirTrianglesAndCountsThem) {
-  folder_.Write("f/p0.csv", "x,y,z\n0,0,0\n10,0,0\n0,10,0\n0,0,10\n9,9,9\n");
-  folder_.Write("f/p1.csv", "x,y,z\n0,0,0\nnan,nan,nan\n0,10,0\n0,0,10\n9,9,9\n");
-  folder_.Write("triangles.csv", "i,j,k\n0,1,2\n0,2,3\n2,3,4\n");
-  const Recording recording =
-      Load(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, triangles: triangles.csv}\n"));
-  const Frame frame = LoadFrame(recording, 1);
-  EXPECT_EQ(frame.row_count, 5);
-  EXPECT_EQ(frame.dropped_count, 1);
-  EXPECT_EQ(frame.cloud.Size(), 4);
-  EXPECT_EQ(frame.source_row, Eigen::Vector4i(0, 2, 3, 4));
-  ASSERT_EQ(frame.triangles.cols(), 2);
-  EXPECT_EQ(frame.triangles.col(1), Eigen::Vector3i(1, 2, 3));
-  EXPECT_THAT(DescribeRecording(recording), HasSubstr("1 of 5 dropped"));
-}
-
-TEST_F(RecordingTest, TellsFileAndFrameOfUnusableFrames) {
+TEST_F(RecordingTest, NamesFileAndFrameOfAnUnusableFrame) {
   WriteClouds(3);
   const std::string yaml = Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz}\n");
   const auto message = [&](const std::string& content) {
@@ -172,13 +113,14 @@ TEST_F(RecordingTest, TellsFileAndFrameOfUnusableFrames) {
   EXPECT_THAT(LoadError(yaml), HasSubstr("frame 0 of \"bar\""));
 }
 
-TEST_F(RecordingTest, TellsOfCountsThatContradict) {
+TEST_F(RecordingTest, RefusesContradictoryCounts) {
   WriteClouds(3);
   EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s]}\n")),
               HasSubstr("frames.times: 2 times for 3 frames"));
   EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv, times: [0 s, 1 s, 1 s]}\n")),
               HasSubstr("frames.times: frame 2: the time 1 s does not follow"));
-  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv}\n")), HasSubstr("tells no times"));
+  EXPECT_THAT(LoadError(Yaml("  {kind: points, files: f/*.csv}\n")),
+              HasSubstr("no times are given"));
   EXPECT_THAT(
       LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 1 Hz, times: [0 s, 1 s, 2 s]}\n")),
       HasSubstr("given more than once"));
@@ -198,7 +140,7 @@ TEST_F(RecordingTest, TellsOfCountsThatContradict) {
               HasSubstr("triangle 0 has the corner 12; the frame has 12 rows"));
 }
 
-TEST_F(RecordingTest, TellsFileLineAndColumnOfMistakesInTheYaml) {
+TEST_F(RecordingTest, LocatesMistakesInTheYamlByLineAndColumn) {
   WriteClouds(2);
   const std::string frames = "  {kind: points, files: f/*.csv, rate: 1 Hz}\n";
   EXPECT_THAT(LoadError(Yaml(frames, "dencity: 1 kg/m^3\n")),
@@ -216,7 +158,7 @@ TEST_F(RecordingTest, TellsFileLineAndColumnOfMistakesInTheYaml) {
   EXPECT_THAT(ErrorOf([&] { LoadRecording(folder_.Path() / "absent"); }), HasSubstr("absent"));
 }
 
-TEST_F(RecordingTest, WarnsOfSizesThatSuggestAnotherUnit) {
+TEST_F(RecordingTest, WarnsOfASizeThatSuggestsAnotherUnit) {
   WriteClouds(1);  // 100 × 50 × 20 in the units of the file
   const std::string frames = "  {kind: points, files: f/*.csv}\n";
   EXPECT_THAT(Load(Yaml(frames, "", "mm")).warnings, IsEmpty());
@@ -229,74 +171,12 @@ TEST_F(RecordingTest, WarnsOfSizesThatSuggestAnotherUnit) {
       Load(Yaml(frames, "", "mm")).warnings,
       ElementsAre(HasSubstr("frame 0 is 0.000114 m across with length_unit: mm; it would be "
                             "0.114 m with length_unit: m")));
-  // Also when only the reference has the wrong unit.
+  // The reference alone may have the wrong unit, too.
   WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
   const std::string reference = "reference: {from: mesh, file: box.ply";
   EXPECT_THAT(Load(Yaml(frames, reference + "}\n", "m")).warnings, IsEmpty());
   EXPECT_THAT(Load(Yaml(frames, reference + ", length_unit: mm}\n", "m")).warnings,
               ElementsAre(HasSubstr("the reference shape is 0.000114 m across, frame 0 0.114 m")));
-}
-
-TEST_F(RecordingTest, LoadsMeshesWithTheirTrianglesAndNormals) {
-  const TriMesh box = BoxSurface({100, 50, 20}, {2, 2, 2});
-  WriteTriMesh(folder_.Path() / "s0.ply", box);
-  const Recording recording =
-      Load(Yaml("  {kind: mesh, files: [s0.ply], transform: {translation: [1 m, 0, 0]}}\n"));
-  const Frame frame = LoadFrame(recording, 0);
-  EXPECT_EQ(frame.triangles, box.triangles);
-  EXPECT_NEAR(frame.cloud.points.row(0).maxCoeff(), 1.1, 1e-12);
-  ASSERT_TRUE(frame.cloud.HasNormals());
-  const Eigen::Vector3d center(1.05, 0.025, 0.01);
-  EXPECT_GT((frame.cloud.points.colwise() - center)
-                .cwiseProduct(frame.cloud.normals)
-                .colwise()
-                .sum()
-                .minCoeff(),
-            0);
-}
-
-TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
-  folder_.Write("m.csv",
-                "t,a_x,a_y,a_z,b_x,b_y,b_z,c_x,c_y,c_z\n0.5,0,0,0,50,0,0,90,9,9\n"
-                "0.6,0,0,0,nan,nan,nan,90,9,9\n0.7,,,,,,,,,\n");
-  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
-  const std::string frames =
-      "  {kind: markers, file: m.csv, columns: {time: t}, markers: [b, a],\n"
-      "   marker_places: [{name: a, position: [0, 0, 1 mm]}]}\n";
-  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
-  const Recording recording =
-      Load(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [a]}]\n"));
-  EXPECT_THAT(recording.times, ElementsAre(0.5, 0.6, 0.7));
-  EXPECT_DOUBLE_EQ(LoadFrame(recording, 0).cloud.points(0, 0), 0.05);
-  const Frame second = LoadFrame(recording, 1);
-  EXPECT_EQ(second.source_row, Eigen::VectorXi::Constant(1, 1));
-  EXPECT_EQ(second.dropped_count, 1);
-  EXPECT_EQ(recording.marker_places.col(1), Eigen::Vector3d(0, 0, 1e-3));
-  EXPECT_TRUE(std::isnan(recording.marker_places(0, 0)));
-  EXPECT_THAT(ErrorOf([&] { LoadFrame(recording, 2); }),
-              HasSubstr("m.csv: none of its 2 points is finite"));
-  EXPECT_THAT(LoadError(Yaml(frames)), HasSubstr("markers do not tell the shape"));
-  EXPECT_THAT(
-      LoadError(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [d]}]\n")),
-      HasSubstr("has no marker \"d\""));
-  std::string twice = frames;
-  twice.insert(twice.find("{name: a,"), "{name: a, position: [0, 0, 2 mm]}, ");
-  EXPECT_THAT(LoadError(Yaml(twice, reference)),
-              HasSubstr("marker_places[1].name: is listed twice"));
-  folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z\n0.5,0,0,0,50,0,0\n0.6,0,1e300,0,0,0,0\n");
-  EXPECT_THAT(LoadError(Yaml(frames, reference)),
-              HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
-}
-
-TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
-  folder_.Write("m.trc",
-                "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n"
-                "100\t1\t1\tm\nFrame#\tTime\tA\n\t\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n");
-  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
-  const Recording recording =
-      Load(Yaml("  {kind: markers, file: m.trc}\n", "reference: {from: mesh, file: box.ply}\n"));
-  EXPECT_THAT(recording.warnings,
-              ElementsAre(HasSubstr("says that its lengths are in m; recording.yaml says mm")));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ Region Read(const std::string& yaml, const std::filesystem::path& folder = {}) {
 
 TEST(Region, SelectsTheNodesInsideEachShape) {
   const Region box = Read("box: {min: [0, -1 mm, -1 mm], max: [1 cm, 1 mm, 1 mm]}");
-  EXPECT_THAT(SelectNodes(box, kNodes), ElementsAre(0, 1));  // the border belongs to it
+  EXPECT_THAT(SelectNodes(box, kNodes), ElementsAre(0, 1));  // the border belongs to the region
   const Region sphere = Read("sphere: {center: [0.02 m, 0, 0.01 m], radius: 10 mm}");
   EXPECT_THAT(SelectNodes(sphere, kNodes), ElementsAre(2, 3));
   const Region half_space = Read("half_space: {point: [15 mm, 0, 0], normal: [2, 0, 0]}");
@@ -44,7 +44,7 @@ TEST(Region, ReadsNodeNumbersFromTextAndNumpyFiles) {
               HasSubstr("got 0.5 as a node number"));
 }
 
-TEST(Region, TellsWhatIsWrong) {
+TEST(Region, ReportsMistakes) {
   EXPECT_THAT(ErrorOf([] { Read("name: clamp"); }), HasSubstr("describes 0 shapes"));
   EXPECT_THAT(ErrorOf([] { Read("{nodes: [1], sphere: {center: [0, 0, 0], radius: 1 m}}"); }),
               HasSubstr("describes 2 shapes"));
@@ -75,11 +75,11 @@ TEST(Similarity, ScalesThenRotatesThenMoves) {
       "{scale: 2, axis: [0, 0, 3], angle: 90 deg, translation: [1 m, 0, 0]}", "recording.yaml");
   const Similarity similarity = ReadSimilarity(config, 1e-3);
   const Eigen::Matrix3Xd moved = similarity * Eigen::Matrix3Xd(Eigen::Vector3d(500, 0, 250));
-  // cos 90° is zero to rounding.
+  // cos 90° is zero only up to rounding.
   EXPECT_LT((moved.col(0) - Eigen::Vector3d(1, 1, 0.5)).norm(), 1e-15);
 }
 
-TEST(Similarity, TakesRoundingOutOfAMatrixAndRefusesWhatIsNoRotation) {
+TEST(Similarity, RemovesTheRoundingOfAMatrixAndRefusesOneThatIsNoRotation) {
   const auto read = [](const std::string& matrix) {
     return ReadSimilarity(Config::Parse("matrix: " + matrix, "recording.yaml"), 1).rotation;
   };

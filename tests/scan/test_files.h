@@ -1,4 +1,4 @@
-// Files and shapes that the scan tests make for themselves.
+// Helpers for tests that write files.
 #ifndef LACUNA_TESTS_SCAN_TEST_FILES_H_
 #define LACUNA_TESTS_SCAN_TEST_FILES_H_
 
@@ -13,7 +13,7 @@
 
 namespace lacuna {
 
-// A folder of the test's own to put files in.
+// A temporary folder in which the test writes files.
 class TestFolder : public TemporaryFolder {
  public:
   std::filesystem::path Write(const std::string& name, const std::string& content) const {
@@ -34,7 +34,7 @@ inline std::string ErrorOf(const std::function<void()>& action) {
   return "no error";
 }
 
-// The published data sets, or nothing where they are absent.
+// The folder of the published data sets; it may not exist.
 inline std::filesystem::path SharedData() {
   const char* named = std::getenv("LACUNA_DATA");
   return named != nullptr ? std::filesystem::path(named)

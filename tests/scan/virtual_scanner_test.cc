@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "geometry/nearest.h"
 #include "scan/random_bits.h"
+#include "scan/recording.h"
 #include "scan/scan_writer.h"
 #include "scan/test_files.h"
 #include "support/shapes.h"
@@ -66,11 +67,11 @@ TEST(VirtualScanner, SeesOnlyWhatNothingHides) {
   ScannerOptions options = Perfect();
   options.max_incidence = 1.57;
   const ScanResult scan = Scan(sphere, {camera}, options, 0);
-  // The visible cap ends where the view touches: n·eye = r; facets add a little.
+  // The visible cap ends where rays are tangent to the sphere, n·eye = r; facets add a little.
   const Eigen::VectorXd along = (scan.cloud.points.transpose() * eye.normalized()) / 0.1;
   EXPECT_GT(along.minCoeff(), 0.1 / eye.norm() - 0.02);
   EXPECT_LT(along.minCoeff(), 0.1 / eye.norm() + 0.05);
-  // Every pixel within the outline is covered: no gaps along shared edges.
+  // Every pixel inside the outline is covered: there are no gaps along shared edges.
   const RenderedView view = Render(sphere, camera);
   for (Eigen::Index v = 0; v < view.depth.rows(); ++v) {
     Eigen::Index first = -1, last = -1, seen = 0;
@@ -182,7 +183,8 @@ TEST(VirtualScanner, DependsOnTheSeedAndNotOnThreads) {
 TEST(VirtualScanner, ShufflesItsPoints) {
   const std::vector<VirtualCamera> cameras = PlaceCameras(RingAround(Eigen::Vector3d::Zero()));
   const ScanResult scan = Scan(Icosphere(0.1, 3), cameras, Perfect(), 0);
-  // In rendering order the camera changes three times; shuffled, at three of four points.
+  // In the order of rendering the camera changes three times; after shuffling, at three of four
+  // points.
   int changes = 0;
   for (Eigen::Index i = 1; i < scan.cloud.Size(); ++i) {
     changes += scan.sensors.seen_by[i] != scan.sensors.seen_by[i - 1];
@@ -197,15 +199,14 @@ TEST(VirtualScanner, RefusesACameraInsideTheObject) {
               HasSubstr("reaches up to camera 1 or behind it"));
 }
 
-class ScanWriter : public testing::TestWithParam<ScanOutput> {};
+class ScanWriter : public testing::TestWithParam<FrameWriter> {};
 
 TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
   const TestFolder folder;
   const TriMesh first = BoxSurface({0.1, 0.03, 0.03}, {4, 2, 2});
   TriMesh second = first;
   second.vertices.colwise() += Eigen::Vector3d(0, 0, 0.01);
-  ScannedObject object;
-  object.name = "bar";
+  RecordedObject object;
   object.density = 1070;
   object.gravity = Eigen::Vector3d(0, 0, -9.81);
   object.fixed = {{"clamp", HalfSpaceRegion{{0, 0, 0}, {-1, 0, 0}}}};
@@ -219,26 +220,28 @@ TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
   options.noise = 1e-4;
   options.flying_fraction = 0;
   const std::vector<VirtualCamera> cameras = PlaceCameras(RingAround({0.05, 0.015, 0.015}));
-  WriteScan(folder.Path(), object, {first, second}, {0, 0.25}, cameras, options, GetParam());
+  WriteScan(folder.Path(), "bar", object, {{first, second}, {0, 0.25}, cameras, options},
+            GetParam());
 
   const Recording recording = LoadRecording(folder.Path());
   EXPECT_EQ(recording.name, "bar");
-  EXPECT_EQ(recording.density, 1070);
-  EXPECT_EQ(*recording.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_EQ(recording.object.density, 1070);
+  EXPECT_EQ(*recording.object.gravity, Eigen::Vector3d(0, 0, -9.81));
   ASSERT_EQ(recording.FrameCount(), 2);
   EXPECT_EQ(recording.times[1], 0.25);
-  ASSERT_EQ(recording.fixed.size(), 1u);
-  ASSERT_EQ(recording.grips.size(), 1u);
-  EXPECT_LT((MotionAt(recording.grips[0], 0.125).translation() - Eigen::Vector3d(0, 0, 0.005))
-                .norm(),
-            1e-15);
+  ASSERT_EQ(recording.object.fixed.size(), 1u);
+  ASSERT_EQ(recording.object.grips.size(), 1u);
+  EXPECT_LT(
+      (MotionAt(recording.object.grips[0], 0.125).translation() - Eigen::Vector3d(0, 0, 0.005))
+          .norm(),
+      1e-15);
   EXPECT_TRUE(recording.warnings.empty());
   for (int i = 0; i < 2; ++i) {
     const Frame frame = LoadFrame(recording, i);
     EXPECT_GT(frame.cloud.Size(), 1000);
     EXPECT_EQ(frame.sensors.positions.cols(), 4);
     EXPECT_EQ(frame.sensors.seen_by.size(),
-              GetParam() == ScanOutput::kDepth ? frame.cloud.Size() : 0);
+              GetParam() == WriteDepthFrames ? frame.cloud.Size() : 0);
     const TriMesh truth = ReadTrueSurface(folder.Path(), i);
     EXPECT_EQ(truth.triangles, first.triangles);
     EXPECT_EQ(truth.vertices, i == 0 ? first.vertices : second.vertices);
@@ -248,8 +251,7 @@ TEST_P(ScanWriter, WritesAnOrdinaryRecording) {
     EXPECT_GT(distance.mean(), 2e-5);
   }
 }
-INSTANTIATE_TEST_SUITE_P(Outputs, ScanWriter,
-                         testing::Values(ScanOutput::kPoints, ScanOutput::kDepth));
+INSTANTIATE_TEST_SUITE_P(Outputs, ScanWriter, testing::Values(WritePointFrames, WriteDepthFrames));
 
 TEST(ScanWriter, RefusesDepthsThatDoNotFit) {
   const TestFolder folder;
@@ -257,7 +259,8 @@ TEST(ScanWriter, RefusesDepthsThatDoNotFit) {
   ScannerOptions options;
   options.quantum = 1e-6;
   const auto write = [&] {
-    WriteScan(folder.Path(), {}, {Icosphere(0.1, 2)}, {0}, cameras, options, ScanOutput::kDepth);
+    WriteScan(folder.Path(), "", {}, {{Icosphere(0.1, 2)}, {0}, cameras, options},
+              WriteDepthFrames);
   };
   EXPECT_THAT(ErrorOf(write), HasSubstr("does not fit in 16 bits"));
   EXPECT_FALSE(std::filesystem::exists(folder.Path() / "recording.yaml"));

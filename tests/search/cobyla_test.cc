@@ -34,7 +34,7 @@ SearchProblem InBox(const VectorXd& start, double lower, double upper,
 
 double Bowl(const VectorXd& x) { return (x.array() - 0.3).square().sum(); }
 
-// Runs the search and checks what must hold for each of them, whatever the objective.
+// Runs a search and checks the properties that hold for every objective.
 SearchResult Checked(const SearchProblem& problem, const CobylaOptions& options,
                      int max_evaluations = 500) {
   SearchControl control;
@@ -71,7 +71,7 @@ CobylaOptions Options(CobylaMode mode, double initial_radius = 0.25, double rati
 // Where steps of equal length tie, as they do without constraints, the count hangs on rounding: for
 // starts moved by less than 1e-6 the same program takes 46 to 69 evaluations for P01, 137 to 180
 // for P04 and 666 to 967 for P05 (1e-4). These bounds hold those spreads.
-TEST(Cobyla, PowellsRulesTakeAsManyEvaluationsAsPowellsProgram) {
+TEST(Cobyla, PowellsRulesNeedAsManyEvaluationsAsPowellsProgram) {
   struct Reference {
     int coarse, fine;
     double allowed;  // evaluations if >= 1, else a share
@@ -119,7 +119,7 @@ TEST(Cobyla, ReachesTheKnownMinimaInBothModes) {
   }
 }
 
-// The sum of 27 medians would say the same; single counts vary by half with the start.
+// Medians are compared because single counts vary by half with the start.
 TEST(Cobyla, ModernRulesNeedFewerEvaluationsThanPowells) {
   double log_ratio = 0;
   int count = 0;
@@ -197,11 +197,11 @@ TEST(Cobyla, FixedVariablesStayAndCostNothing) {
   }
 }
 
-TEST(Cobyla, NotANumberAndInfinityAreFailuresAndNeverTheResult) {
+TEST(Cobyla, NanAndInfinityAreFailuresAndNeverTheResult) {
   for (const CobylaMode mode : kBothModes) {
     for (const double bad : {kNaN, kInf, -kInf}) {
       const VectorXd start = VectorXd::Constant(4, 0.6);
-      // The minimum lies in the failing half: the best there is, is at 0.35.
+      // The minimum lies in the failing half: the best available point is at 0.35.
       const SearchResult wall = Checked(
           InBox(start, 0, 1, [=](const VectorXd& x) { return x[0] < 0.35 ? bad : Bowl(x); }),
           Options(mode));
@@ -223,7 +223,7 @@ TEST(Cobyla, NotANumberAndInfinityAreFailuresAndNeverTheResult) {
   }
 }
 
-TEST(Cobyla, PatchesOfFailuresNeitherHangNorLoseTheBest) {
+TEST(Cobyla, RegionsOfFailuresNeitherHangNorLoseTheBestPoint) {
   for (const CobylaMode mode : kBothModes) {
     for (int seed = 0; seed < 100; ++seed) {
       VectorXd start(4);
@@ -239,7 +239,7 @@ TEST(Cobyla, PatchesOfFailuresNeitherHangNorLoseTheBest) {
   }
 }
 
-TEST(Cobyla, KeepsToAnyBudget) {
+TEST(Cobyla, RespectsAnyBudget) {
   for (const CobylaMode mode : kBothModes) {
     for (int budget = 1; budget < 20; ++budget) {
       EXPECT_EQ(Checked(InBox(VectorXd::Constant(4, 0.6), 0, 1, Bowl), Options(mode), budget)
@@ -249,9 +249,9 @@ TEST(Cobyla, KeepsToAnyBudget) {
   }
 }
 
-// The start is an isolated low, around which each simplex is soon known: after the first one on the
-// upper side with the least radius, one on the lower side follows.
-TEST(Cobyla, ARestartThatFindsNothingNewTurnsTheSimplex) {
+// The start is an isolated minimum, around which each simplex is soon known: after the first
+// simplex with the least radius on the upper side, one on the lower side follows.
+TEST(Cobyla, ARestartThatFindsNothingNewReflectsTheSimplex) {
   const VectorXd start = VectorXd::Constant(2, 0.5);
   CobylaOptions options = Options(CobylaMode::kModern);
   options.restarts.max_restarts = 1000;
@@ -265,7 +265,7 @@ TEST(Cobyla, ARestartThatFindsNothingNewTurnsTheSimplex) {
   EXPECT_EQ(below, 1);
 }
 
-// A step below a tenth of the resolution is not worth going on with, but it may be the best. Only
+// A step below a tenth of the resolution is not continued, but it may be the best point. Only
 // constraints make steps that short.
 TEST(Cobyla, ModernRulesTryTheLastShortStep) {
   int tried = 0;
@@ -284,7 +284,7 @@ TEST(Cobyla, ModernRulesTryTheLastShortStep) {
 
 // The median of ten noises and two shares of failures; the box is 1 wide and the start is at 0.13.
 // Without restarts the same searches end five times as far from the minimum.
-TEST(Cobyla, RestartsLeadDownASteppedValley) {
+TEST(Cobyla, RestartsDescendASteppedValley) {
   for (const double failing : {0.0, 0.03}) {
     std::vector<double> with, without;
     for (int seed = 0; seed < 11; ++seed) {

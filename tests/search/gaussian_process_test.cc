@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Eq. 2.25 and 2.26 of Rasmussen and Williams by dense inversion.
-TEST(GaussianProcess, PredictsWhatTheFormulaSays) {
+TEST(GaussianProcess, AgreesWithTheFormulas) {
   const int count = 7;
   MatrixXd points(2, count);
   VectorXd values(count);
@@ -43,14 +43,14 @@ TEST(GaussianProcess, PredictsWhatTheFormulaSays) {
   const double variance = values.dot(inverse * values) / count;
   const GaussianProcess process(points, values, scales);
   const GaussianProcess::Prediction prediction = process.At(x);
-  // Rounding, times the condition number of about 1e4.
+  // Rounding errors times the condition number of about 1e4.
   EXPECT_NEAR(prediction.mean, across.dot(inverse * values), 1e-10);
   EXPECT_NEAR(prediction.deviation, std::sqrt(variance * (1 - across.dot(inverse * across))), 1e-9);
   EXPECT_NEAR(process.LogLikelihood(),
               -0.5 * count * std::log(variance) - 0.5 * std::log(covariance.determinant()), 1e-9);
 }
 
-TEST(GaussianProcess, FindsTheVariableThatDoesNotMatterAndTheNoise) {
+TEST(GaussianProcess, FindsTheIrrelevantVariableAndTheNoise) {
   const int count = 40;
   MatrixXd points(2, count);
   VectorXd values(count);
@@ -62,8 +62,8 @@ TEST(GaussianProcess, FindsTheVariableThatDoesNotMatterAndTheNoise) {
   first.log_lengths = VectorXd::Constant(2, std::log(0.5));
   const GaussianProcessScales scales = FitScales(points, values, first, 200);
   EXPECT_GT(scales.log_lengths[1], scales.log_lengths[0] + 1);
-  // The noise's variance is 0.0033, the signal's about 1: a factor of ten either way is what forty
-  // points tell.
+  // The noise has the variance 0.0033 and the signal about 1; forty points determine the ratio to
+  // within a factor of ten.
   EXPECT_NEAR(scales.log_noise, std::log(0.0033), std::log(10.0));
 }
 
@@ -88,7 +88,7 @@ TEST(GaussianProcessSearch, FindsANoisyValleyWithAndWithoutFailures) {
   }
 }
 
-TEST(GaussianProcessSearch, EndsWhereEverythingFailsOrIsEqual) {
+TEST(GaussianProcessSearch, EndsIfEverythingFailsOrIsEqual) {
   for (const bool fails : {false, true}) {
     SearchProblem problem = MakeSteppedProblem(0, 0, 1).problem;
     problem.evaluate = [fails](const VectorXd&) {

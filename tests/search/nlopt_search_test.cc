@@ -39,7 +39,7 @@ TEST(NloptSearch, BobyqaFindsAMinimumInABox) {
   EXPECT_LT(result.trace.size(), 200);
 }
 
-TEST(NloptSearch, ReturnsTheBestSeenAndNeverAFailure) {
+TEST(NloptSearch, ReturnsTheBestPointAndNeverAFailure) {
   for (const NloptAlgorithm algorithm : {NloptAlgorithm::kCobyla, NloptAlgorithm::kBobyqa}) {
     const SteppedProblem stepped = MakeSteppedProblem(0.02, 0.1, 5);
     SearchControl control;
@@ -55,7 +55,7 @@ TEST(NloptSearch, ReturnsTheBestSeenAndNeverAFailure) {
   }
 }
 
-TEST(NloptSearch, AnExceptionOfTheObjectiveComesThrough) {
+TEST(NloptSearch, AnExceptionOfTheObjectiveIsRethrown) {
   SearchProblem problem = MakeSteppedProblem(0, 0, 1).problem;
   problem.evaluate = [](const VectorXd&) -> Evaluation { throw std::runtime_error("interrupted"); };
   EXPECT_THROW(MinimiseByNlopt(problem, {}, {}), std::runtime_error);

@@ -17,7 +17,7 @@ TEST(OrderedAlgebra, IsCompiledWithoutContraction) {
   EXPECT_EQ(OrderedDot(Vector2d(-square, number), Vector2d(1, number)), 0);
 }
 
-TEST(OrderedAlgebra, InvertsWhatNeedsPivotsAndRefusesWhatIsFlat) {
+TEST(OrderedAlgebra, InvertsWithPivotingAndRefusesSingularMatrices) {
   MatrixXd matrix(3, 3);
   matrix << 0, 2, 1, 1, 0, 3, 4, 1, 0;
   const std::optional<MatrixXd> inverse = OrderedInverse(matrix);
@@ -27,7 +27,7 @@ TEST(OrderedAlgebra, InvertsWhatNeedsPivotsAndRefusesWhatIsFlat) {
   EXPECT_FALSE(OrderedInverse(matrix));
 }
 
-TEST(OrderedAlgebra, LengthsThatDifferByRoundingTie) {
+TEST(OrderedAlgebra, TreatsLengthsThatDifferByRoundingAsEqual) {
   EXPECT_FALSE(ClearlyGreater(2 + 1e-15, 2));
   EXPECT_TRUE(ClearlyGreater(2 + 1e-9, 2));
 }

@@ -19,7 +19,7 @@ VectorXd ToVector(const Numbers& numbers) {
   return Eigen::Map<const VectorXd>(numbers.data(), static_cast<int>(numbers.size()));
 }
 
-// `f` gives the value, and the constraints after it.
+// `f` returns the value followed by the constraints.
 template <typename F>
 KnownProblem Make(const char* name, const char* family, const Numbers& start, double radius,
                   double minimum, F f, Numbers lower = {}, Numbers upper = {}) {
@@ -109,7 +109,12 @@ void AddPowell(std::vector<KnownProblem>* all) {
   all->back().other_minima = {-0.5, -0.674981};
 }
 
-void AddHockSchittkowski(std::vector<KnownProblem>* all) {
+// The constraints that HS034 and HS066 share: x_2 >= exp(x_1) and x_3 >= exp(x_2).
+Numbers WithExponentialConstraints(X x, double value) {
+  return {value, x[1] - std::exp(x[0]), x[2] - std::exp(x[1])};
+}
+
+void AddHockSchittkowski1To37(std::vector<KnownProblem>* all) {
   const auto add = [all](const char* name, const Numbers& start, double radius, double minimum,
                          auto f, const Numbers& lower, const Numbers& upper) {
     all->push_back(Make(name, "hs", start, radius, minimum, f, lower, upper));
@@ -145,11 +150,8 @@ void AddHockSchittkowski(std::vector<KnownProblem>* all) {
         return Numbers{9 * Sq(x[0]) + Sq(x[1]) + 9 * Sq(x[2]), x[0] * x[1] - 1};
       },
       {-10, 1, -10}, {10, 10, 1});
-  const auto exponentials = [](X x, double value) {
-    return Numbers{value, x[1] - std::exp(x[0]), x[2] - std::exp(x[1])};
-  };
   add("HS034", {0, 1.05, 2.9}, 0.5, -std::log(std::log(10.0)),
-      [=](X x) { return exponentials(x, -x[0]); }, {0, 0, 0}, {100, 100, 10});
+      [](X x) { return WithExponentialConstraints(x, -x[0]); }, {0, 0, 0}, {100, 100, 10});
   add("HS035", {0.5, 0.5, 0.5}, 0.25, 1.0 / 9,
       [](X x) {
         return Numbers{9 - 8 * x[0] - 6 * x[1] - 4 * x[2] + 2 * Sq(x[0]) + 2 * Sq(x[1]) + Sq(x[2]) +
@@ -168,6 +170,13 @@ void AddHockSchittkowski(std::vector<KnownProblem>* all) {
         return Numbers{-x[0] * x[1] * x[2], 72 - box(x), box(x)};
       },
       {0, 0, 0}, {42, 42, 42});
+}
+
+void AddHockSchittkowski38To76(std::vector<KnownProblem>* all) {
+  const auto add = [all](const char* name, const Numbers& start, double radius, double minimum,
+                         auto f, const Numbers& lower, const Numbers& upper) {
+    all->push_back(Make(name, "hs", start, radius, minimum, f, lower, upper));
+  };
   add(
       "HS038_4d", {-3, -1, -3, -1}, 0.5, 0,
       [](X x) {
@@ -204,7 +213,8 @@ void AddHockSchittkowski(std::vector<KnownProblem>* all) {
       },
       {-4.5, -4.5, -5}, {4.5, 4.5, 5});
   add("HS066", {0, 1.05, 2.9}, 0.5, 0.5181632741,
-      [=](X x) { return exponentials(x, 0.2 * x[2] - 0.8 * x[0]); }, {0, 0, 0}, {100, 100, 10});
+      [](X x) { return WithExponentialConstraints(x, 0.2 * x[2] - 0.8 * x[0]); }, {0, 0, 0},
+      {100, 100, 10});
   add("HS072_4d", {1, 1, 1, 1}, 0.5, 727.679355748,
       [](X x) {
         return Numbers{1 + x[0] + x[1] + x[2] + x[3],
@@ -234,7 +244,8 @@ double Valley(const VectorXd& u) {
 std::vector<KnownProblem> SmoothProblems() {
   std::vector<KnownProblem> all;
   AddPowell(&all);
-  AddHockSchittkowski(&all);
+  AddHockSchittkowski1To37(&all);
+  AddHockSchittkowski38To76(&all);
   const auto rosenbrock = [](X x) { return Numbers{Rosenbrock(x)}; };
   all.push_back(Make("ROSB2_act", "rosen", {-1.2, 1}, 0.5, 0.04, rosenbrock, {-2, -2}, {0.8, 2}));
   all.push_back(Make("ROSB4_int", "rosen", {0, 0, 0, 0}, 0.5, 0, rosenbrock, Numbers(4, -2.0),

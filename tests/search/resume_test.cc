@@ -1,4 +1,4 @@
-// A search that was stopped, and goes on from its log.
+// A search that was stopped and resumes from its log.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -98,7 +98,7 @@ TEST_F(Resume, AfterAStopAtAnyEvaluationGivesTheIdenticalTrace) {
   EXPECT_GT(failures, 0) << "none has been resumed";
 }
 
-TEST_F(Resume, GoesOnWithALargerBudget) {
+TEST_F(Resume, ContinuesWithALargerBudget) {
   control_.max_evaluations = 60;
   const SearchResult whole = RunModern();
   control_.log = file_;
@@ -111,7 +111,7 @@ TEST_F(Resume, GoesOnWithALargerBudget) {
   EXPECT_FALSE(resumed.trace[20].from_log);
 }
 
-TEST_F(Resume, StopsWhenAskedAndWhenTimeIsUp) {
+TEST_F(Resume, StopsOnRequestAndAtTheTimeLimit) {
   control_.interrupted = [] { return true; };
   EXPECT_EQ(RunModern().status, SearchStatus::kInterrupted);
   control_.interrupted = nullptr;
@@ -121,7 +121,7 @@ TEST_F(Resume, StopsWhenAskedAndWhenTimeIsUp) {
   EXPECT_FALSE(result.IsUsable());
 }
 
-TEST_F(Resume, DropsATornLastLine) {
+TEST_F(Resume, DropsAnIncompleteLastLine) {
   control_.log = file_;
   const SearchResult whole = RunModern();
   for (const int torn : {1, 10, 60}) {

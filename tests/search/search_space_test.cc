@@ -36,7 +36,7 @@ TEST(SearchSpace, ToUnitAndBackIsTheSamePoint) {
   EXPECT_NEAR((space.FromUnit(space.ToUnit(x)) - x).norm(), 0, 1e-9);  // rounding of log and pow
 }
 
-TEST(SearchSpace, ASearchSeesTheObjectiveInItsOwnUnits) {
+TEST(SearchSpace, ASearchEvaluatesTheObjectiveInSiUnits) {
   const SearchProblem problem = MakeSpace().ProblemOf([](const VectorXd& x) {
     EXPECT_TRUE(1.1 <= x[0] && x[0] <= 2 && 1e3 <= x[1] && x[1] <= 1e5 && x[2] == 0.3);
     Evaluation outcome;

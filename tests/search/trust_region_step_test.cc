@@ -14,21 +14,21 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-LinearModel RandomModel(int n, int m, uint64_t seed) {
+LinearInterpolant RandomModel(int n, int m, uint64_t seed) {
   const auto number = [&seed] { return 2 * UniformOf(seed++) - 1; };
-  LinearModel model;
+  LinearInterpolant model;
   model.gradient = VectorXd::NullaryExpr(n, number);
   model.constraints = 0.5 * VectorXd::NullaryExpr(m, number);
   model.jacobian = MatrixXd::NullaryExpr(m, n, number);
   return model;
 }
 
-double ViolationAfter(const LinearModel& model, const VectorXd& d) {
+double ViolationAfter(const LinearInterpolant& model, const VectorXd& d) {
   return Violation(model.constraints + model.jacobian * d);
 }
 
 TEST(TrustRegionStep, WithoutConstraintsIsSteepestDescentToTheBoundary) {
-  LinearModel model;
+  LinearInterpolant model;
   model.gradient = Vector2d(3, 4);
   model.jacobian.resize(0, 2);
   const VectorXd infinite = VectorXd::Constant(2, INFINITY);
@@ -38,7 +38,7 @@ TEST(TrustRegionStep, WithoutConstraintsIsSteepestDescentToTheBoundary) {
 }
 
 TEST(TrustRegionStep, OfAConstantModelIsZero) {
-  LinearModel model;
+  LinearInterpolant model;
   model.gradient = Vector2d::Zero();
   model.jacobian = MatrixXd::Zero(1, 2);
   model.constraints = VectorXd::Constant(1, -1);
@@ -47,14 +47,14 @@ TEST(TrustRegionStep, OfAConstantModelIsZero) {
   EXPECT_EQ(trial.step.norm(), 0);
 }
 
-// No point of a dense sample of the ball and box violates the constraints less, or as little at a
-// lower objective; the margin of 1e-9 is rounding, that of the lower objective what such a small
-// excess of violation could buy.
+// No point of a dense sample of the ball and box has a smaller violation, or an equal one with a
+// lower objective. The margin of 1e-9 is for rounding; that of the objective is the change that
+// such a small excess of violation could cause.
 TEST(TrustRegionStep, NoOtherPointOfTheBallAndBoxIsBetter) {
   for (uint64_t trial = 0; trial < 300; ++trial) {
     const int n = 2 + static_cast<int>(trial % 2);
     const int m = static_cast<int>(trial % 6);
-    LinearModel model = RandomModel(n, m, 1000 * trial);
+    LinearInterpolant model = RandomModel(n, m, 1000 * trial);
     if (m > 2) model.jacobian.row(1) = model.jacobian.row(0);       // parallel
     if (m > 3) model.jacobian.row(2) = -2 * model.jacobian.row(0);  // opposed
     const VectorXd lower = VectorXd::Constant(n, trial % 3 == 0 ? -0.4 : -2);
@@ -80,9 +80,9 @@ TEST(TrustRegionStep, NoOtherPointOfTheBallAndBoxIsBetter) {
   }
 }
 
-// With an objective that is constant, the shortest of the feasible steps.
-TEST(TrustRegionStep, IsShortestWhereNothingElseDecides) {
-  LinearModel model;
+// For a constant objective the result is the shortest feasible step.
+TEST(TrustRegionStep, IsTheShortestOfEqualSteps) {
+  LinearInterpolant model;
   model.gradient = Vector2d::Zero();
   model.constraints = VectorXd::Constant(1, -0.3);
   model.jacobian = Eigen::RowVector2d(0.6, 0.8);

@@ -84,7 +84,7 @@ std::vector<TriMesh> CarriedBarSurfaces(const HeldBarTruth& truth, const Eigen::
 }
 
 void WriteBarScans(const std::filesystem::path& folder, const std::vector<TriMesh>& surfaces,
-                   const std::string& rest, ScanOutput output) {
+                   const std::string& rest, FrameWriter write_frames) {
   std::vector<double> times;
   for (int frame = 0; frame < kScans; ++frame) times.push_back(ScanTime(frame));
   CameraRing ring;
@@ -98,10 +98,9 @@ void WriteBarScans(const std::filesystem::path& folder, const std::vector<TriMes
   ScannerOptions options;
   options.noise = kScanNoise;
   options.seed = 3;
-  ScannedObject object;
-  object.name = "bar";
+  RecordedObject object;
   object.density = 1000;
-  WriteScan(folder, object, surfaces, times, PlaceCameras(ring), options, output);
+  WriteScan(folder, "bar", object, {surfaces, times, PlaceCameras(ring), options}, write_frames);
   std::ofstream(folder / "recording.yaml", std::ios::app) << rest;
   WriteBox(folder / "box.off");
 }

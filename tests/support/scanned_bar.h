@@ -30,7 +30,7 @@ Eigen::Matrix3Xd CarriedPath();
 // What four cameras see of them, as a recording: recording.yaml, to which `rest` is added as it is,
 // the frames and box.off.
 void WriteBarScans(const std::filesystem::path& folder, const std::vector<TriMesh>& surfaces,
-                   const std::string& rest, ScanOutput output = ScanOutput::kPoints);
+                   const std::string& rest, FrameWriter write_frames = WritePointFrames);
 
 }  // namespace lacuna
 

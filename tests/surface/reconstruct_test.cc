@@ -18,8 +18,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Samples of `truth`, shifted by Gaussian noise (m, in each coordinate), with normals off by some
-// 0.2 rad, as a scanner's are.
+// Samples of `truth` with Gaussian noise (m, in each coordinate) and with normals that are wrong by
+// about 0.2 rad, like those of a scanner.
 PointCloud Scan(const TriMesh& truth, int count, double noise, uint64_t seed) {
   PointCloud cloud = EvaluateSamples(truth, SampleSurface(truth, count, seed));
   std::mt19937_64 generator(seed);
@@ -94,7 +94,7 @@ TEST(ReconstructSurface, PrintsNothingOnStandardOutput) {
   EXPECT_TRUE(surface.IsUsable()) << surface.message;
 }
 
-TEST(ReconstructSurface, GivesEvenTrianglesOfTheLengthAskedFor) {
+TEST(ReconstructSurface, GivesUniformTrianglesOfTheRequestedSize) {
   const PointCloud cloud = Scan(Ellipsoid(), 6000, 1e-4, 2);
   for (const double edge : {0.004, 0.008}) {
     const Surface surface = ReconstructSurface(cloud, {.edge_length = edge});
@@ -105,7 +105,7 @@ TEST(ReconstructSurface, GivesEvenTrianglesOfTheLengthAskedFor) {
   }
 }
 
-TEST(ReconstructSurface, IsTheSameInEachRunAndForAnyNumberOfThreads) {
+TEST(ReconstructSurface, IsReproducibleForAnyNumberOfThreads) {
   const PointCloud cloud = Scan(OrganicSurface(4), 5000, 0.005, 3);
   SetThreadCount(1);
   const Surface one = ReconstructSurface(cloud, {});
@@ -116,7 +116,7 @@ TEST(ReconstructSurface, IsTheSameInEachRunAndForAnyNumberOfThreads) {
   EXPECT_EQ(one.mesh.triangles, two.mesh.triangles);
 }
 
-TEST(ReconstructSurface, ClosesTheSideThatWasNotSeen) {
+TEST(ReconstructSurface, ClosesTheUnseenSide) {
   PointCloud cloud = Scan(Icosphere(0.05, 5), 8000, 1e-4, 4);
   std::vector<int> seen;
   for (int i = 0; i < cloud.Size(); ++i) {
@@ -131,7 +131,7 @@ TEST(ReconstructSurface, ClosesTheSideThatWasNotSeen) {
               0.07 * 4.18879 * std::pow(0.05, 3));
 }
 
-TEST(ReconstructSurface, OpenEndsWhereThePointsEnd) {
+TEST(ReconstructSurface, AnOpenSurfaceEndsWhereThePointsEnd) {
   PointCloud cloud = Scan(Icosphere(0.05, 5), 12000, 1e-4, 4);
   std::vector<int> seen;
   for (int i = 0; i < cloud.Size(); ++i) {
@@ -150,7 +150,7 @@ TEST(ReconstructSurface, OpenEndsWhereThePointsEnd) {
   EXPECT_LT(surface.report.area, 1.15 * half);
 }
 
-TEST(ReconstructSurface, TurnsASurfaceWithInwardNormalsAndSaysSo) {
+TEST(ReconstructSurface, ReversesASurfaceWithInwardNormalsWithANote) {
   PointCloud cloud = Scan(Icosphere(0.05, 4), 4000, 0, 6);
   cloud.normals *= -1;
   const Surface surface = ReconstructSurface(cloud, {});
@@ -160,7 +160,7 @@ TEST(ReconstructSurface, TurnsASurfaceWithInwardNormalsAndSaysSo) {
   EXPECT_NEAR(surface.report.volume / (4.18879 * std::pow(0.05, 3)), 1, 0.01);
 }
 
-TEST(ReconstructSurface, DoesNotCallNoiseASurface) {
+TEST(ReconstructSurface, DoesNotReportNoiseAsASurface) {
   // Points and normals at random in a cube.
   std::mt19937_64 generator(7);
   PointCloud cloud{Eigen::Matrix3Xd(3, 1000), Eigen::Matrix3Xd(3, 1000)};
@@ -170,7 +170,7 @@ TEST(ReconstructSurface, DoesNotCallNoiseASurface) {
   }
   cloud.normals.colwise().normalize();
   const Surface surface = ReconstructSurface(cloud, {});
-  // Whatever comes out is either sound, or said not to be, with a place.
+  // The result is either valid or reported as faulty with a location.
   EXPECT_EQ(surface.IsUsable(), surface.report.BoundsVolume());
   EXPECT_EQ(surface.IsUsable(), surface.message.empty());
 }
@@ -184,7 +184,7 @@ std::string FailureOf(const PointCloud& cloud) {
   return "no complaint";
 }
 
-TEST(ReconstructSurface, RefusesMoreTrianglesThanMemoryHoldsBeforeMakingThem) {
+TEST(ReconstructSurface, RefusesTooManyTrianglesBeforeCreatingThem) {
   SurfaceOptions options;
   options.edge_length = 1e-4;  // 12.6 m² of a unit sphere: 3e9 triangles
   try {
@@ -195,7 +195,7 @@ TEST(ReconstructSurface, RefusesMoreTrianglesThanMemoryHoldsBeforeMakingThem) {
   }
 }
 
-TEST(ReconstructSurface, RefusesCloudsThatCannotMakeASurface) {
+TEST(ReconstructSurface, RefusesCloudsWithoutASurface) {
   EXPECT_THAT(FailureOf({}), HasSubstr("at least 10 points, got 0"));
   PointCloud cloud = Scan(Icosphere(1, 3), 500, 0, 1);
   EXPECT_THAT(FailureOf({cloud.points.leftCols(1), cloud.normals.leftCols(1)}), HasSubstr("got 1"));

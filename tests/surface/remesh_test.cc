@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-TEST(RemeshIsotropic, MakesEvenTrianglesOnTheSameSurface) {
+TEST(RemeshIsotropic, MakesUniformTrianglesOnTheSameSurface) {
   const TriMesh body = OrganicSurface(5);
   const TriMesh remeshed = RemeshIsotropic(body, {.edge_length = 0.15});
   const SurfaceReport report = CheckSurface(remeshed);
@@ -22,7 +22,7 @@ TEST(RemeshIsotropic, MakesEvenTrianglesOnTheSameSurface) {
   EXPECT_NEAR(report.volume, EnclosedVolume(body), 0.01 * EnclosedVolume(body));
 }
 
-TEST(RemeshIsotropic, KeepsSharpEdgesWhenAskedTo) {
+TEST(RemeshIsotropic, KeepsSharpEdgesOnRequest) {
   const TriMesh box = BoxSurface({0.2, 0.03, 0.04}, {4, 1, 1});
   const TriMesh sharp = RemeshIsotropic(box, {.edge_length = 0.007, .feature_angle = 1});
   const SurfaceReport report = CheckSurface(sharp);
@@ -34,7 +34,7 @@ TEST(RemeshIsotropic, KeepsSharpEdgesWhenAskedTo) {
             0.9999 * report.volume);
 }
 
-TEST(RemeshIsotropic, KeepsTheEdgeOfAnOpenSheet) {
+TEST(RemeshIsotropic, KeepsTheRimOfAnOpenSheet) {
   const TriMesh sheet = FlatSheet(0.3, 0.1, 30, 10);
   const SurfaceReport report = CheckSurface(RemeshIsotropic(sheet, {.edge_length = 0.02}));
   EXPECT_EQ(report.boundary_loops.size(), 1u);
@@ -42,7 +42,7 @@ TEST(RemeshIsotropic, KeepsTheEdgeOfAnOpenSheet) {
   EXPECT_NEAR(report.area, 0.03, 0.02 * 0.03);  // corners may be cut by half an edge
 }
 
-TEST(RemeshIsotropic, RepeatsItselfBitByBit) {
+TEST(RemeshIsotropic, IsReproducibleBitByBit) {
   const TriMesh body = OrganicSurface(4);
   const TriMesh first = RemeshIsotropic(body, {.edge_length = 0.1});
   const TriMesh second = RemeshIsotropic(body, {.edge_length = 0.1});
@@ -50,7 +50,7 @@ TEST(RemeshIsotropic, RepeatsItselfBitByBit) {
   EXPECT_EQ(first.triangles, second.triangles);
 }
 
-TEST(RemeshIsotropic, RefusesWhatIsNotManifold) {
+TEST(RemeshIsotropic, RefusesANonManifoldSurface) {
   const TriMesh book = MeshOf({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
   EXPECT_THROW(RemeshIsotropic(book, {.edge_length = 0.1}), InputError);

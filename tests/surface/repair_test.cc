@@ -30,7 +30,7 @@ void ExpectSound(const RepairedSurface& repaired) {
   EXPECT_EQ(report.components, 1);
 }
 
-TEST(RepairSurface, LeavesASoundSurfaceAlone) {
+TEST(RepairSurface, KeepsAValidSurfaceUnchanged) {
   const TriMesh sphere = Icosphere(0.1, 3);
   const RepairedSurface repaired = RepairSurface(sphere);
   EXPECT_THAT(repaired.notes, IsEmpty());
@@ -61,7 +61,7 @@ TEST(RepairSurface, KeepsTheLargestComponent) {
   const RepairedSurface repaired = RepairSurface(Together(Icosphere(0.1, 2), crumb));
   ExpectSound(repaired);
   EXPECT_NEAR(BoundingBox(repaired.mesh.vertices).max().x(), 0.1, 0.005);
-  EXPECT_THAT(repaired.notes, Contains(HasSubstr("dropped 1 small components")));
+  EXPECT_THAT(repaired.notes, Contains(HasSubstr("removed 1 small components")));
   EXPECT_EQ(
       CheckSurface(
           RepairSurface(Together(Icosphere(0.1, 2), crumb), {.keep_largest_component = false}).mesh)
@@ -92,7 +92,7 @@ TEST(RepairSurface, RemovesSlivers) {
   EXPECT_NEAR(EnclosedVolume(repaired.mesh), EnclosedVolume(sphere), 1e-3 * EnclosedVolume(sphere));
 }
 
-TEST(RepairSurface, FillsHolesUpToTheGivenSizeAndSaysWhere) {
+TEST(RepairSurface, FillsHolesUpToTheGivenSizeAndReportsWhere) {
   TriMesh sphere = Icosphere(0.1, 3);
   std::vector<int> kept;
   for (int t = 0; t < sphere.triangles.cols(); ++t) {
@@ -116,7 +116,7 @@ TEST(RepairSurface, FillsHolesUpToTheGivenSizeAndSaysWhere) {
             1u);
 }
 
-TEST(RepairSurface, TurnsABodyOutward) {
+TEST(RepairSurface, OrientsABodyOutward) {
   TriMesh sphere = Icosphere(0.1, 3);
   sphere.triangles.row(0).swap(sphere.triangles.row(1));
   const RepairedSurface repaired = RepairSurface(sphere);
@@ -138,7 +138,7 @@ TEST(RepairSurface, RemovesSelfIntersections) {
   EXPECT_FALSE(CheckSurface(left.mesh).IsFreeOfIntersections());
 }
 
-TEST(RepairSurface, PartsBodiesAtANonManifoldEdge) {
+TEST(RepairSurface, SplitsBodiesAtANonManifoldEdge) {
   // Two tetrahedra with one edge in common.
   const TriMesh mesh = MeshOf(
       {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}},
@@ -149,7 +149,7 @@ TEST(RepairSurface, PartsBodiesAtANonManifoldEdge) {
   EXPECT_EQ(repaired.mesh.triangles.cols(), 4);
 }
 
-TEST(RepairSurface, GivesNothingForNothing) {
+TEST(RepairSurface, ReturnsAnEmptyMeshForAnEmptyMesh) {
   EXPECT_EQ(RepairSurface({}).mesh.triangles.cols(), 0);
 }
 

@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-// A PATH with this sbatch alone, while it lives.
+// Sets PATH to a folder that contains only this sbatch, for the lifetime of the object.
 class OnlySbatch {
  public:
   OnlySbatch(const std::filesystem::path& folder, const std::string& script)
@@ -33,12 +33,12 @@ class OnlySbatch {
   std::string before_;
 };
 
-TEST(Slurm, ArraysNameRangesAndSingleCases) {
+TEST(Slurm, ArraysConsistOfRangesAndSingleCases) {
   EXPECT_EQ(ArrayOf({4}), "4");
   EXPECT_EQ(ArrayOf({1, 2, 3, 7, 9, 10}), "1-3,7,9-10");
 }
 
-TEST(Slurm, AJobRunsOneCaseATaskWithWhatItWasGiven) {
+TEST(Slurm, AJobRunsOneCasePerTaskWithTheGivenOptions) {
   SlurmOptions options;
   options.program = "/opt/a lacuna/bin";
   options.numbers = {1, 2, 5};
@@ -50,7 +50,7 @@ TEST(Slurm, AJobRunsOneCaseATaskWithWhatItWasGiven) {
                                 "\"$SLURM_ARRAY_TASK_ID\"\n"));
 }
 
-TEST(Slurm, SubmitsWithFurtherOptionsAndReturnsTheJob) {
+TEST(Slurm, SubmitsWithFurtherOptionsAndReturnsTheJobId) {
   const TemporaryFolder folder;
   const OnlySbatch path(folder.Path(),
                         "echo \"$@\" > given\nfor last; do :; done\n"
@@ -70,7 +70,7 @@ TEST(Slurm, SubmitsWithFurtherOptionsAndReturnsTheJob) {
   EXPECT_THAT(FileContent(folder / "seen"), HasSubstr("--array=3"));
 }
 
-TEST(Slurm, SaysWhatIsMissingOrRefused) {
+TEST(Slurm, ReportsAMissingOrRefusingSbatch) {
   const TemporaryFolder folder;
   SlurmOptions options;
   options.numbers = {1};
@@ -81,7 +81,7 @@ TEST(Slurm, SaysWhatIsMissingOrRefused) {
   }
   const OnlySbatch path(folder.Path(), "exit 1\n");
   EXPECT_THAT([&] { SubmitToSlurm(folder.Path(), options); },
-              ThrowsMessage<InputError>(HasSubstr("has not taken")));
+              ThrowsMessage<InputError>(HasSubstr("sbatch refused")));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A sweep whose cases are set up in a blink: a bar of few points in two frames.
+// A sweep whose cases run quickly: a bar with few points in two frames.
 #ifndef LACUNA_TESTS_SWEEP_SMALL_SWEEP_H_
 #define LACUNA_TESTS_SWEEP_SMALL_SWEEP_H_
 
@@ -11,7 +11,7 @@
 
 namespace lacuna {
 
-// recording/, bend.yaml and sweep.yaml with these lines behind its head.
+// Writes recording/, bend.yaml and sweep.yaml; the given lines follow the head of the latter.
 inline std::filesystem::path WriteSmallSweep(const std::filesystem::path& folder,
                                              const std::string& lines) {
   const std::filesystem::path recording = folder / "recording";

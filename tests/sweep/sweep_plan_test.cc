@@ -35,7 +35,7 @@ void ExpectRefused(const TemporaryFolder& folder, const std::string& lines,
   EXPECT_FALSE(std::filesystem::exists(folder / "cases/sweep.json")) << "something was written";
 }
 
-TEST(SweepPlan, IsTheProductOfTheGridAndCompleteExperiments) {
+TEST(SweepPlan, ContainsTheGridWithSelfContainedExperiments) {
   const TemporaryFolder folder;
   const SweepPlan plan = PlanSmallSweep(folder.Path(), kGrid);
   ASSERT_EQ(plan.cases.size(), 4u);
@@ -43,7 +43,7 @@ TEST(SweepPlan, IsTheProductOfTheGridAndCompleteExperiments) {
   EXPECT_EQ(Describe(plan.cases[1]),
             "bend.yaml with material.young_modulus = 2 kPa, mesh.max_volume = 100 mm^3");
   EXPECT_THAT(plan.cases[3].name, StartsWith("0004-"));
-  // What was planned does not need the file that it comes from, and knows where its data lie.
+  // A planned case does not need the original file, and its paths lead to the data.
   std::filesystem::remove(folder / "bend.yaml");
   const auto study =
       ReadReconstruction(Config::Load(folder / "cases" / plan.cases[1].name / "experiment.yaml"));
@@ -58,7 +58,7 @@ TEST(SweepPlan, KeepsNamesWhenTheSweepGrows) {
   const TemporaryFolder folder;
   const std::vector<std::string> before = NamesOf(PlanSmallSweep(folder.Path(), kGrid));
   EXPECT_EQ(NamesOf(PlanSmallSweep(folder.Path(), kGrid)), before);
-  // Another value in the middle, in another order, and a case of its own.
+  // A new value in the middle, another order, and an additional case.
   const SweepPlan grown = PlanSmallSweep(folder.Path(),
                                          "vary:\n"
                                          "  material.young_modulus: [1 kPa, 3 kPa, 2 kPa]\n"
@@ -76,7 +76,7 @@ TEST(SweepPlan, KeepsNamesWhenTheSweepGrows) {
   EXPECT_EQ(shrunk.absent.size(), 6u);
 }
 
-TEST(SweepPlan, ACasePlannedFromOtherContentsIsNotMixedIn) {
+TEST(SweepPlan, RefusesACasePlannedFromOtherContents) {
   const TemporaryFolder folder;
   const std::filesystem::path file = WriteSmallSweep(folder.Path(), kGrid);
   PlanSweep(Config::Load(file), folder / "cases");
@@ -85,7 +85,7 @@ TEST(SweepPlan, ACasePlannedFromOtherContentsIsNotMixedIn) {
               ThrowsMessage<InputError>(AllOf(HasSubstr("0001-"), HasSubstr("planned before"))));
 }
 
-TEST(SweepPlan, MistakesAreToldAtTheValueOfTheSweepFile) {
+TEST(SweepPlan, ReportsErrorsAtTheValueInTheSweepFile) {
   const TemporaryFolder folder;
   ExpectRefused(folder, "vary:\n  mesh.max_volume: [1 mm^3, 150]\n",
                 AllOf(HasSubstr("sweep.yaml:6:"), HasSubstr("vary.mesh.max_volume[1]: got \"150\""),
@@ -95,10 +95,11 @@ TEST(SweepPlan, MistakesAreToldAtTheValueOfTheSweepFile) {
       AllOf(HasSubstr("sweep.yaml:6:"), HasSubstr("unknown key"), HasSubstr("max_volume")));
   ExpectRefused(folder, "cases:\n  - {}\n  - {filtre.voxel: 1 mm}\n",
                 AllOf(HasSubstr("sweep.yaml:7:"), HasSubstr("cases[1].filtre.voxel")));
-  ExpectRefused(folder, "cases: [{name.x: 1}]\n", HasSubstr("cases[0].name.x: name is no mapping"));
+  ExpectRefused(folder, "cases: [{name.x: 1}]\n",
+                HasSubstr("cases[0].name.x: name is not a mapping"));
   ExpectRefused(folder, "cases: [{output: x}]\n", HasSubstr("cannot be set"));
   ExpectRefused(folder, "cases: [{mesh.order: 1}, {mesh.order: 1}]\n",
-                HasSubstr("cases[1]: is there already"));
+                HasSubstr("cases[1]: repeats another case"));
   ExpectRefused(folder, "vary: {mesh.order: []}\n", HasSubstr("has no values"));
   ExpectRefused(folder, "varry: {mesh.order: [1]}\n", HasSubstr("did you mean \"vary\"?"));
 }
@@ -118,11 +119,11 @@ TEST(SweepPlan, AListOrMappingIsWrittenInQuotes) {
   EXPECT_EQ(study.follow.forces.kind, ForceSettings::Kind::kNone);
 }
 
-TEST(SweepPlan, AFolderWithSomethingElseIsLeftAlone) {
+TEST(SweepPlan, RefusesAFolderWithOtherContents) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "cases");
   std::ofstream(folder / "cases/thesis.tex") << "mine";
-  ExpectRefused(folder, kGrid, HasSubstr("is no sweep and not empty"));
+  ExpectRefused(folder, kGrid, HasSubstr("is neither empty nor a sweep"));
 }
 
 TEST(SweepPlan, ReadsTheBundledOuterSearchesAndTable) {

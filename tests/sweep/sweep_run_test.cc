@@ -64,7 +64,7 @@ class Holder {
 
 class SweepRunTest : public ::testing::Test {
  protected:
-  // The second frame is gone: what is run fails at once, and says so.
+  // The second frame is missing, so that a run fails at once with a message.
   void PlanWithoutSecondFrame() {
     plan_ = PlanSmallSweep(folder_.Path(), kTwo);
     std::filesystem::remove(folder_ / "recording/b.xyz");
@@ -76,7 +76,7 @@ class SweepRunTest : public ::testing::Test {
   SweepPlan plan_;
 };
 
-TEST_F(SweepRunTest, AFailureKeepsItsReasonAndDoneCasesStay) {
+TEST_F(SweepRunTest, AFailureHasItsReasonAndDoneCasesAreKept) {
   PlanWithoutSecondFrame();
   SaveOutcome(MadeUp(0.25), Case(0));
   const std::string before = FileContent(Case(0) / "outcome.json");
@@ -87,7 +87,7 @@ TEST_F(SweepRunTest, AFailureKeepsItsReasonAndDoneCasesStay) {
   ASSERT_TRUE(failed.has_value());
   EXPECT_FALSE(failed->done);
   EXPECT_THAT(failed->message, HasSubstr("b.xyz"));
-  // It is not tried again unless that is asked for.
+  // It is not run again unless that is requested.
   const std::string first = FileContent(Case(1) / "outcome.json");
   EXPECT_EQ(RunSweep(sweep_, {}), 1);
   EXPECT_EQ(FileContent(Case(1) / "outcome.json"), first);
@@ -99,7 +99,7 @@ TEST_F(SweepRunTest, AFailureKeepsItsReasonAndDoneCasesStay) {
   EXPECT_THAT(LoadOutcome(Case(1))->message, HasSubstr("a.xyz"));
 }
 
-TEST_F(SweepRunTest, ACaseThatAnotherProcessHasIsLeftToIt) {
+TEST_F(SweepRunTest, SkipsACaseThatAnotherProcessHasClaimed) {
   PlanWithoutSecondFrame();
   Holder holder(Case(0) / "claimed");
   EXPECT_EQ(RunSweep(sweep_, {}), 2);
@@ -109,13 +109,13 @@ TEST_F(SweepRunTest, ACaseThatAnotherProcessHasIsLeftToIt) {
   EXPECT_EQ(table.rows[0].status, CaseStatus::kRunning);
   EXPECT_THAT(table.rows[0].note, HasSubstr("process " + std::to_string(holder.Id())));
   holder.Kill();
-  // Its claim has gone with it.
+  // Its claim was released when it ended.
   EXPECT_EQ(CollectSweep(sweep_).rows[0].status, CaseStatus::kPlanned);
   EXPECT_EQ(RunSweep(sweep_, {}), 2);
   EXPECT_TRUE(LoadOutcome(Case(0)).has_value());
 }
 
-TEST_F(SweepRunTest, RunsOnlyTheCasesThatAreAskedFor) {
+TEST_F(SweepRunTest, RunsOnlyTheRequestedCases) {
   PlanWithoutSecondFrame();
   EXPECT_EQ(RunSweep(sweep_, {.numbers = {2}}), 1);
   EXPECT_FALSE(LoadOutcome(Case(0)).has_value());
@@ -124,7 +124,7 @@ TEST_F(SweepRunTest, RunsOnlyTheCasesThatAreAskedFor) {
   EXPECT_THROW(RunSweep(folder_.Path(), {}), InputError);
 }
 
-TEST_F(SweepRunTest, CollectTellsEveryCaseAndIsTheSameAgain) {
+TEST_F(SweepRunTest, CollectListsEveryCaseReproducibly) {
   plan_ = PlanSmallSweep(folder_.Path(), std::string(kTwo) + "cases: [{forces.model: none}]\n");
   SaveOutcome(MadeUp(0.25), Case(0));
   CaseOutcome failed;
@@ -146,12 +146,12 @@ TEST_F(SweepRunTest, CollectTellsEveryCaseAndIsTheSameAgain) {
                              "seconds,best_value_m,lost,ended\n"));
   EXPECT_THAT(csv, HasSubstr(",bend.yaml,100 mm^3,,done,,1.5,0.25,nan,\"said \"\"so\"\", twice\""));
   EXPECT_THAT(FileContent(sweep_ / "table.json"), HasSubstr("\"lost\": null"));
-  // Planning again neither renames nor overwrites what there is.
+  // Planning again neither renames nor overwrites existing cases.
   PlanSmallSweep(folder_.Path(), std::string(kTwo) + "cases: [{forces.model: none}]\n");
   EXPECT_EQ(collect(), once);
 }
 
-TEST_F(SweepRunTest, ADamagedOutcomeIsNamed) {
+TEST_F(SweepRunTest, ErrorNamesADamagedOutcome) {
   plan_ = PlanSmallSweep(folder_.Path(), kTwo);
   std::ofstream(Case(1) / "outcome.json") << "{\"schema_version\": 1, \"done\"";
   EXPECT_THAT([this] { CollectSweep(sweep_); },

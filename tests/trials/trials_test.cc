@@ -12,9 +12,9 @@
 #include "prediction/prediction_study_reader.h"
 #include "scan/recording.h"
 #include "support/temporary_folder.h"
-#include "trials/trial_film.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
+#include "trials/trial_simulation.h"
 #include "trials/trial_suite.h"
 
 namespace lacuna {
@@ -38,7 +38,7 @@ pairs: 0
                                       "small.yaml"));
 }
 
-TEST(TrialSuite, HasEveryGroupAndIsTheSameAgain) {
+TEST(TrialSuite, HasEveryGroupAndIsReproducible) {
   const std::vector<TrialCase> cases = CasesOf(SmallSuite()), again = CasesOf(SmallSuite());
   ASSERT_EQ(cases.size(), 2u + 4u + 2u + 1u);
   std::vector<std::string> nuisances;
@@ -54,10 +54,10 @@ TEST(TrialSuite, HasEveryGroupAndIsTheSameAgain) {
   EXPECT_EQ(cases[8].hidden[0].factor, 4);
 }
 
-TEST(TrialFilm, DepthCamerasSeeWhatTheTruthPredicts) {
+TEST(TrialSimulation, TheTrueModelFitsTheDepthCameras) {
   const TemporaryFolder folder;
   const TrialCase trial = DrawCase("scanned", "control", 5, 1, /*is_scanned=*/true, "");
-  FilmCase(trial, folder.Path(), /*rough=*/true);
+  SimulateCase(trial, folder.Path(), /*rough=*/true);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   ASSERT_NE(study.recordings.at(0).scans, nullptr);
   const CalibrationProblem problem(study, MakeReferenceBody(study).mesh);
@@ -71,7 +71,7 @@ TEST(TrialFilm, DepthCamerasSeeWhatTheTruthPredicts) {
   EXPECT_GT(RootMeanSquare(problem.Predict(problem.Start(), false).residual), 5);
 }
 
-TEST(TrialSuite, RefusesAnEffectThatIsNone) {
+TEST(TrialSuite, RefusesAnUnknownEffect) {
   try {
     ReadTrialSuite(
         Config::Parse("schema_version: 1\nname: x\nseed: 1\neffects: [levity]\n", "x.yaml"));
@@ -81,7 +81,7 @@ TEST(TrialSuite, RefusesAnEffectThatIsNone) {
   }
 }
 
-TEST(Trials, FindAStrongDragAndKeepWhatCameOfIt) {
+TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   const TemporaryFolder folder;
   TrialSuite suite = SmallSuite();
   suite.controls = suite.hard_controls = 0;
@@ -93,23 +93,24 @@ TEST(Trials, FindAStrongDragAndKeepWhatCameOfIt) {
   const std::filesystem::path own = folder / cases[0].name;
   const TrialCase sealed = LoadCase(own / "truth.json");
   EXPECT_EQ(sealed.hidden[0].type, "drag");
-  EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³: it is felt in air
-  // What was hidden is kept of reported cases, and films them again.
-  const std::string filmed = FileContent(own / "recording_1/markers.csv");
+  EXPECT_GT(sealed.hidden[0].parameters.at("coefficient"), 1);  // kg/m³, above the drag of air
+  // The truth that is kept of a reported case reproduces its recordings.
+  const std::string recorded = FileContent(own / "recording_1/markers.csv");
   std::filesystem::remove_all(own / "recording_1");
   std::filesystem::remove(own / "experiment.yaml");
   ASSERT_TRUE(MakeCase(cases[0], folder.Path()));
-  EXPECT_EQ(FileContent(own / "recording_1/markers.csv"), filmed);
+  EXPECT_EQ(FileContent(own / "recording_1/markers.csv"), recorded);
 
   EXPECT_EQ(RunTrials(folder.Path(), 1), 0);
   const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
   ASSERT_FALSE(outcome.ranked.empty());
-  // Drag and mass damping are each other's look-alikes: the right one leads or is declared.
+  // Drag and mass damping are look-alikes: drag is first or second in the ranking.
   EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");
   EXPECT_TRUE(outcome.verdict == "missing" || outcome.verdict == "ambiguous") << outcome.verdict;
   ASSERT_TRUE(outcome.has_truth);
   EXPECT_LT(outcome.error_after, outcome.error_before);
-  // 4 × 5 standard deviations: a twentieth by the noise alone, the model's errors beside it.
+  // The size is 20 standard deviations of the noise (4 times the detectable size), so noise alone
+  // gives an error of 5 %; errors of the model add to it.
   EXPECT_LT(outcome.relative_error, 0.3);
 
   const TrialReport report = ReportTrials(folder.Path());
@@ -119,7 +120,7 @@ TEST(Trials, FindAStrongDragAndKeepWhatCameOfIt) {
   EXPECT_TRUE(report.unfinished.empty());
 }
 
-// A case with an outcome, made up.
+// Writes a case with an invented outcome.
 void Write(const std::filesystem::path& folder, const TrialCase& trial,
            const TrialOutcome& outcome) {
   MakeFolder(folder / trial.name);
@@ -127,7 +128,7 @@ void Write(const std::filesystem::path& folder, const TrialCase& trial,
   SaveOutcome(outcome, folder / trial.name / "outcome.json");
 }
 
-TEST(TrialReport, CountsRightWrongAndDeclared) {
+TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
   const TemporaryFolder folder;
   TrialSuite suite = SmallSuite();
   suite.controls = 1;
@@ -150,12 +151,12 @@ TEST(TrialReport, CountsRightWrongAndDeclared) {
   outcome.ranked = {"mass_damping", "drag"};
   outcome.error_after = 1.3;
   outcome.covered = {0};
-  Write(folder.Path(), cases[3], outcome);  // declared
+  Write(folder.Path(), cases[3], outcome);  // counted in the top 2
   outcome.verdict = "missing";
   outcome.named = {"mass_damping"};
   outcome.ranked = {"mass_damping", "gravity"};
   Write(folder.Path(), cases[4], outcome);  // wrong
-  Write(folder.Path(), cases[1], outcome);  // of the library without it: a false name
+  Write(folder.Path(), cases[1], outcome);  // removed from the library: any name is wrong
 
   const TrialReport report = ReportTrials(folder.Path());
   ASSERT_EQ(report.tallies.size(), 3u);  // control, one_effect, removed

@@ -1,9 +1,8 @@
-#include "fit/force_fit.h"
+#include "fit/step_force_fitter.h"
 
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "fit/coefficient_fit.h"
 #include "fit/force_response.h"
@@ -17,7 +16,7 @@ Eigen::VectorXd OrZero(const Eigen::VectorXd& given, Eigen::Index size) {
   return given.size() == size ? given : Eigen::VectorXd::Zero(size);
 }
 
-// More coefficients than these are cheaper to fit beside the positions.
+// With more coefficients, the formulation with the positions as unknowns is cheaper.
 constexpr Eigen::Index kMaxEliminated = 12;
 
 bool HasFreeNodes(const ForceModel& model) {
@@ -30,8 +29,8 @@ struct StepForceFitter::Implementation {
   const Model& model;
   const StepEquation& equation;
   const ForceModel& force_model;
-  PositionFitStart start;                           // of the next fit
-  std::unique_ptr<CoefficientFitter> coefficients;  // without free nodes
+  PositionFitStart start;                           // for the next fit
+  std::unique_ptr<CoefficientFitter> coefficients;  // null: positions are unknowns
 };
 
 StepForceFitter::StepForceFitter(const Model& model, const StepEquation& equation,
@@ -85,12 +84,6 @@ Eigen::MatrixXd StepForceFitter::Covariance(const ForceFit& fit, const Observati
       RespondToForces(kept.model, kept.equation, kept.force_model, fit.position);
   if (!response.IsUsable()) return {};
   return CoefficientCovariance(response, observations, fit.position, options.robust_threshold);
-}
-
-double RootMeanSquare(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 }  // namespace lacuna

@@ -1,12 +1,16 @@
-#include "trials/trial_film.h"
+#include "trials/trial_simulation.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
+#include "effects/neo_hookean.h"
+#include "effects/stiffness_damping.h"
 #include "fem/prediction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
@@ -29,8 +33,41 @@ Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double h
   return Eigen::Map<Eigen::VectorXi>(chosen.data(), static_cast<Eigen::Index>(chosen.size()));
 }
 
-FilmedMotion Film(const TrialCase& trial, int recording, bool rough) {
-  // A clamp that reaches further is a bar that begins later.
+// The true model: the material and the effects of every model, except those that are hidden by
+// their absence from it, and the hidden effects.
+std::vector<std::shared_ptr<const Effect>> TrueEffects(const TrialCase& trial) {
+  std::vector<std::shared_ptr<const Effect>> effects = {
+      MakeEffect(NeoHookeanCard().type,
+                 {{"young_modulus", trial.young_modulus}, {"poisson_ratio", trial.poisson_ratio}})};
+  if (!trial.Hides(StiffnessDampingCard().type))
+    effects.push_back(
+        MakeEffect(StiffnessDampingCard().type, {{"beta", trial.damping},
+                                                 {"young_modulus", trial.young_modulus},
+                                                 {"poisson_ratio", trial.poisson_ratio}}));
+  if (!trial.Hides(GravityCard().type)) effects.push_back(MakeGravity({0, 0, -kStandardGravity}));
+  for (const HiddenEffect& hidden : trial.hidden) {
+    if (IsLaw(hidden))
+      effects.front() = MakeHidden(hidden);
+    else
+      effects.push_back(MakeHidden(hidden));
+  }
+  return effects;
+}
+
+std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
+  const double deviation = trial.Disturbance().time_deviation;
+  std::vector<double> times;
+  for (int f = 0; f < kTrialFrames; ++f) {
+    double time = kTrialSpacing * f;
+    if (deviation > 0)
+      time += deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
+    times.push_back(time);
+  }
+  return times;
+}
+
+TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
+  // A clamp that reaches further holds more of the bar, whose free part begins later.
   Eigen::Vector3d size = trial.true_size;
   size[0] -= trial.clamp_error;
   const Eigen::Vector3d centre(trial.clamp_error + 0.5 * size[0], 0, 0);
@@ -42,21 +79,7 @@ FilmedMotion Film(const TrialCase& trial, int recording, bool rough) {
   if (!mesh.IsUsable()) throw InputError(trial.name + ": " + mesh.message);
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(mesh.mesh, kTrialDensity));
-  model.effects = {MakeEffect("neo_hookean", {{"young_modulus", trial.young_modulus},
-                                              {"poisson_ratio", trial.poisson_ratio}})};
-  if (!trial.Hides("stiffness_damping"))
-    model.effects.push_back(
-        MakeEffect("stiffness_damping", {{"beta", trial.damping},
-                                         {"young_modulus", trial.young_modulus},
-                                         {"poisson_ratio", trial.poisson_ratio}}));
-  if (!trial.Hides("gravity"))
-    model.effects.push_back(MakeEffect("gravity", {{"acceleration_z", -9.80665}}));
-  for (const HiddenEffect& hidden : trial.hidden) {
-    if (IsLaw(hidden))
-      model.effects.front() = MakeHidden(hidden);
-    else
-      model.effects.push_back(MakeHidden(hidden));
-  }
+  model.effects = TrueEffects(trial);
   const Eigen::Matrix3Xd& nodes = model.body->mesh.nodes;
   const Eigen::VectorXi clamped = NodesBetween(nodes, -1, trial.clamp_error + kTrialFace);
   const Eigen::Matrix3Xd rest = nodes(Eigen::all, clamped);
@@ -71,17 +94,9 @@ FilmedMotion Film(const TrialCase& trial, int recording, bool rough) {
   options.held_force.resize(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * trial.hold_forces[recording];
-  std::vector<double> times;
-  const double time_deviation = trial.Disturbance().time_deviation;
-  for (int f = 0; f < kTrialFrames; ++f) {
-    double time = kTrialSpacing * f;
-    if (time_deviation > 0)
-      time += time_deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
-    times.push_back(time);
-  }
-  FilmedMotion motion{model.body, {}};
-  const PredictionSummary summary =
-      Predict(model, options, times, {}, [&](int, const PredictedState& state) {
+  TrueMotion motion{model.body, {}};
+  const PredictionSummary summary = Predict(
+      model, options, FrameTimes(trial, recording), {}, [&](int, const PredictedState& state) {
         motion.positions.emplace_back(state.position.reshaped(3, nodes.cols()));
       });
   if (!summary.IsUsable())
@@ -92,30 +107,33 @@ FilmedMotion Film(const TrialCase& trial, int recording, bool rough) {
 
 }  // namespace
 
-void FilmCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough) {
+void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough) {
   MakeFolder(folder);
   std::string known, fitted = "{name: young_modulus}, {name: poisson_ratio}";
-  if (!trial.Hides("stiffness_damping")) {
-    known += "  - {type: stiffness_damping, beta: 0.5 ms}\n";
-    fitted += ", {name: stiffness_damping.beta}";
+  const std::string& damping = StiffnessDampingCard().type;
+  if (!trial.Hides(damping)) {
+    known += fmt::format("  - {{type: {}, beta: 0.5 ms}}\n", damping);
+    fitted += fmt::format(", {{name: {}.beta}}", damping);
   }
-  if (!trial.Hides("gravity"))
-    known += "  - {type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}\n";
-  const double coarse_volume = trial.Disturbance().element_volume;
+  const std::string& gravity = GravityCard().type;
+  if (!trial.Hides(gravity))
+    known += fmt::format("  - {{type: {}, acceleration: [0, 0, {} m/s^2]}}\n", gravity,
+                         -kStandardGravity);
+  const double wrong_volume = trial.Disturbance().element_volume;
   std::string yaml = fmt::format(
       "schema_version: 1\nname: {}\nmesh: {{max_volume: {} m^3, order: 2, preserve_surface: "
       "false}}\n"
-      "material: {{law: neo_hookean, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
+      "material: {{law: {}, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
       "effects:{}\nfit: {{parameters: [{}]}}\n"
       "{}{}recordings:\n",
-      trial.name, coarse_volume > 0 ? coarse_volume : kModelVolume,
+      trial.name, wrong_volume > 0 ? wrong_volume : kModelVolume, NeoHookeanCard().type,
       known.empty() ? " []" : "\n" + known, fitted,
       rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "",
       trial.is_scanned ? fmt::format("scan: {{shape_deviation: {} m}}\n", kTrialShapeError)
                        : fmt::format("place_deviation: {} m\n", 2 * kTrialPlaceError));
   for (int r = 0; r < trial.recordings; ++r) {
     const std::string name = fmt::format("recording_{}", r + 1);
-    WriteRecording(trial, r, Film(trial, r, rough), folder / name);
+    WriteRecording(trial, r, Simulate(trial, r, rough), folder / name);
     yaml += fmt::format(
         "  - recording: {}\n    fit_until: {} s\n    hold:\n      release: {} s\n      region: "
         "{{half_space: {{point: [{} m, 0 m, 0 m], normal: [1, 0, 0]}}}}\n",

@@ -1,0 +1,56 @@
+#include "core/config_node.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <utility>
+
+#include "core/error.h"
+#include "core/suggestion.h"
+
+namespace lacuna {
+
+std::string ConfigNode::Field(const std::string& key) const {
+  if (key.empty()) return path;
+  return path.empty() ? key : path + "." + key;
+}
+
+YAML::Node ConfigNode::Find(const std::string& key) const {
+  const YAML::Node entry = std::as_const(*yaml)[key];
+  return entry && !entry.IsNull() ? entry : YAML::Node(YAML::NodeType::Undefined);
+}
+
+YAML::Node ConfigNode::Required(const std::string& key, const std::string& expected) const {
+  const YAML::Node entry = Find(key);
+  if (!entry) {
+    std::vector<std::string> given;
+    for (const auto& pair : *yaml) given.push_back(pair.first.Scalar());
+    const std::string misspelled = Nearest(key, given, 2);
+    const std::string hint = misspelled.empty() || misspelled == key || Asked(misspelled)
+                                 ? ""
+                                 : fmt::format(" (\"{}\" is not a known key)", misspelled);
+    Fail(yaml->Mark(), Field(key), "is missing" + hint + "; expected " + expected);
+  }
+  return entry;
+}
+
+std::string ConfigNode::Scalar(const YAML::Node& entry, const std::string& field,
+                               const std::string& expected) const {
+  if (!entry.IsScalar()) {
+    Fail(entry.Mark(), field,
+         fmt::format("got a {}; expected {}", entry.IsMap() ? "mapping" : "list", expected));
+  }
+  return entry.Scalar();
+}
+
+void ConfigNode::Fail(const YAML::Mark& mark, const std::string& field,
+                      const std::string& message) const {
+  SourcePosition position{document->FileOf(field).string()};
+  if (!mark.is_null()) {
+    position.line = mark.line + 1;
+    position.column = mark.column + 1;
+  }
+  throw InputError(position, field.empty() ? message : field + ": " + message);
+}
+
+}  // namespace lacuna

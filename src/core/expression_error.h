@@ -1,0 +1,26 @@
+// The exception for a formula that cannot be parsed.
+#ifndef LACUNA_CORE_EXPRESSION_ERROR_H_
+#define LACUNA_CORE_EXPRESSION_ERROR_H_
+
+#include <stdexcept>
+#include <string>
+
+namespace lacuna {
+
+// Thrown for a formula that is not well formed. what() reads "column 9: unknown name …". The caller
+// adds the file and the field, which the parser does not know. Columns count UTF-8 characters from
+// 1.
+class ExpressionError : public std::invalid_argument {
+ public:
+  ExpressionError(int column, const std::string& message)
+      : std::invalid_argument("column " + std::to_string(column) + ": " + message),
+        column_(column) {}
+  int column() const { return column_; }
+
+ private:
+  int column_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_CORE_EXPRESSION_ERROR_H_

@@ -1,0 +1,33 @@
+// Gravity as code outside this module needs it: the acceleration of free fall of a model.
+//
+//   f_i = m_i g   (I. Newton, Philosophiæ Naturalis Principia Mathematica, 1687),
+// with the lumped mass m_i of node i. Other accelerations of the laboratory are described alike.
+#ifndef LACUNA_EFFECTS_GRAVITY_H_
+#define LACUNA_EFFECTS_GRAVITY_H_
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fem/effect.h"
+
+namespace lacuna {
+
+inline constexpr double kStandardGravity = 9.80665;  // m/s², 3rd CGPM, 1901
+
+// The setting of other effects that must agree with the gravity of the model: `gravity`, m/s².
+inline constexpr char kGravitySetting[] = "gravity";
+
+const EffectCard& GravityCard();
+
+// `acceleration`: g, m/s².
+std::shared_ptr<const Effect> MakeGravity(const Eigen::Vector3d& acceleration);
+
+// The acceleration of free fall g, m/s², of a model with these effects; nothing for a model without
+// gravity. A model contains gravity once at most: it is not repeatable.
+std::optional<Eigen::Vector3d> GravityOf(const std::vector<std::shared_ptr<const Effect>>& effects);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EFFECTS_GRAVITY_H_

@@ -1,0 +1,48 @@
+// One unknown of a calibration: its start, bounds, scale and prior.
+//
+// The fit works with φ, which is ln θ for a parameter θ on a logarithmic scale and θ itself
+// otherwise. Prior deviations and typical changes are therefore in units of φ (dimensionless on a
+// logarithmic scale), while the start, the bounds and the prior mean are values of θ in SI.
+#ifndef LACUNA_FIT_CALIBRATED_PARAMETER_H_
+#define LACUNA_FIT_CALIBRATED_PARAMETER_H_
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace lacuna {
+
+struct CalibratedParameter {
+  std::string name;  // for messages and records, e.g. "material.young_modulus"
+  double start = 0;  // SI
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool log_scale = false;  // φ = ln θ; `min` must be ≥ 0
+  // The prior is Gaussian in φ. A NaN mean stands for `start`; an infinite deviation stands for no
+  // prior.
+  double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
+  double prior_deviation = std::numeric_limits<double>::infinity();
+  // A change of φ that would matter to the user, > 0. The fit scales the parameter by it, and the
+  // verdict kFlat compares the uncertainty with it.
+  double typical = 1;
+  bool is_linear = false;  // ∂r/∂θ is the same for all values, so it is evaluated only once
+};
+
+// φ of a value θ. On a logarithmic scale the value must be positive.
+inline double ToFree(const CalibratedParameter& parameter, double value) {
+  return parameter.log_scale ? std::log(value) : value;
+}
+
+// The value θ that belongs to φ; the inverse of ToFree.
+inline double FromFree(const CalibratedParameter& parameter, double free) {
+  return parameter.log_scale ? std::exp(free) : free;
+}
+
+// The mean of the prior as a value θ, SI; the start where no mean was given.
+inline double PriorMeanOf(const CalibratedParameter& parameter) {
+  return std::isnan(parameter.prior_mean) ? parameter.start : parameter.prior_mean;
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FIT_CALIBRATED_PARAMETER_H_

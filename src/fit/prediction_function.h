@@ -1,0 +1,33 @@
+// The model as a calibration sees it: a function from parameters to whitened residuals.
+//
+// The residual r holds predicted minus measured values, divided by the standard deviation of their
+// noise and decorrelated where the noise is correlated, so that each entry has unit variance if the
+// model is right.
+#ifndef LACUNA_FIT_PREDICTION_FUNCTION_H_
+#define LACUNA_FIT_PREDICTION_FUNCTION_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+struct Prediction {
+  bool usable = false;
+  std::string message;       // why the prediction is not usable
+  Eigen::VectorXd residual;  // n, whitened, dimensionless
+  Eigen::MatrixXd jacobian;  // n × parameters, ∂r/∂θ; 0 × 0 if it was not requested
+  // For each row, the row of the same quantity one frame earlier, or −1 in its first frame. Empty
+  // if the rows are not ordered in time.
+  std::vector<Eigen::Index> before = {};
+};
+
+// Must be a function of the parameters θ (SI) alone, and must return the same number of rows for
+// all of them. The Jacobian may be omitted when `with_jacobian` is false.
+using PredictionFunction =
+    std::function<Prediction(const Eigen::VectorXd& parameters, bool with_jacobian)>;
+
+}  // namespace lacuna
+
+#endif  // LACUNA_FIT_PREDICTION_FUNCTION_H_

@@ -1,0 +1,20 @@
+// Where the data files of a recording lie and in which unit of length their numbers are.
+//
+// This is the part of a recording that the readers of its frames, grips and forces need. They get
+// it in place of the whole Recording, which is made of what they return.
+#ifndef LACUNA_SCAN_DATA_LOCATION_H_
+#define LACUNA_SCAN_DATA_LOCATION_H_
+
+#include <filesystem>
+#include <string>
+
+namespace lacuna {
+
+struct DataLocation {
+  std::filesystem::path folder;  // file names in recording.yaml are relative to it
+  std::string length_unit;       // of the numbers in the files, e.g. "mm"; see LengthOf()
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_DATA_LOCATION_H_

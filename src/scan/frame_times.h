@@ -1,0 +1,31 @@
+// When the frames of a recording were taken, and which of them are used.
+#ifndef LACUNA_SCAN_FRAME_TIMES_H_
+#define LACUNA_SCAN_FRAME_TIMES_H_
+
+#include <filesystem>
+#include <vector>
+
+#include "core/config.h"
+#include "scan/data_location.h"
+
+namespace lacuna {
+
+struct FrameTimes {
+  std::vector<double> in_files;          // s, ascending, one for each frame of the files
+  std::vector<int> chosen;               // the frames that are used, numbered from 0, ascending
+  std::filesystem::path file;            // of the times; empty when they came from elsewhere
+  std::vector<double> OfChosen() const;  // s, ascending
+};
+
+// Reads the times of `count` frames from one of `rate`, `times` and `times_file` of the mapping
+// `frames`, else takes `told_by_files` (s; empty where the frame files do not tell their times),
+// and chooses frames with `from` ≤ time ≤ `to`, of these each `every`-th. A single frame needs no
+// time. Throws InputError (file, line, column and field) when there are no times or more than one
+// source of them, when their number is not `count`, when they do not ascend, and when no frame is
+// chosen.
+FrameTimes ReadFrameTimes(const Config& frames, size_t count,
+                          const std::vector<double>& told_by_files, const DataLocation& data);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_FRAME_TIMES_H_

@@ -1,0 +1,132 @@
+#include "scan/marker_frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "scan/frame_points.h"
+
+namespace lacuna {
+namespace {
+
+MarkerColumns ReadMarkerColumns(const Config& frames) {
+  MarkerColumns columns;
+  const std::optional<Config> map = frames.OptionalChild("columns");
+  if (!map) return columns;
+  columns.time = map->Text("time", "");
+  columns.x = map->Text("x", columns.x);
+  columns.y = map->Text("y", columns.y);
+  columns.z = map->Text("z", columns.z);
+  for (const std::string key : {"x", "y", "z"}) {
+    const std::string pattern = map->Text(key, "*");
+    if (std::count(pattern.begin(), pattern.end(), '*') != 1) {
+      map->Fail(key, "expected one star in the place of the marker's name, e.g. \"*_x\"");
+    }
+  }
+  return columns;
+}
+
+Eigen::Matrix3Xd ReadPlaces(const Config& frames, const std::vector<std::string>& names) {
+  Eigen::Matrix3Xd places =
+      Eigen::Matrix3Xd::Constant(3, names.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const Config& item : frames.Items("marker_places")) {
+    const std::string name = item.Text("name");
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) item.Fail("name", fmt::format("there is no marker {}", name));
+    auto place = places.col(found - names.begin());
+    if (place.allFinite()) item.Fail("name", "is listed twice");
+    place = item.Vector("position", kLength);
+  }
+  return places;
+}
+
+void CheckDistances(const MarkerFrames& source, int frame, const Eigen::Matrix3Xd& positions) {
+  constexpr double kFarthest = 1e4;  // m, from the origin: no measurement is beyond
+  for (Eigen::Index m = 0; m < positions.cols(); ++m) {
+    const double distance = positions.col(m).cwiseAbs().maxCoeff();
+    if (!(distance > kFarthest)) continue;  // NaN: not seen
+    throw InputError({source.file.string()},
+                     fmt::format("frame {}: marker {} is {:.3g} m away", frame,
+                                 source.tracks.names[static_cast<size_t>(m)], distance));
+  }
+}
+
+}  // namespace
+
+void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* source,
+                std::vector<std::string>* warnings) {
+  source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
+  source->file = data.folder / frames.Text("file");
+  source->tracks = ReadMarkerTracks(source->file, ReadMarkerColumns(frames));
+  const std::vector<std::string> names = frames.Texts("markers");
+  if (!names.empty()) source->tracks = SelectMarkers(source->tracks, names, source->file);
+  source->places = ReadPlaces(frames, source->tracks.names);
+  const std::string& unit = source->tracks.length_unit;
+  if (!unit.empty() && unit != data.length_unit) {
+    warnings->push_back(fmt::format("{} says that its lengths are in {}; recording.yaml says {}",
+                                    source->file.string(), unit, data.length_unit));
+  }
+}
+
+std::vector<double> TimesInFiles(const MarkerFrames& source) {
+  return {source.tracks.times.begin(), source.tracks.times.end()};
+}
+
+void KeepFrames(const std::vector<int>& chosen, MarkerFrames* source) {
+  MarkerTracks& tracks = source->tracks;
+  std::vector<Eigen::Matrix3Xd> positions;
+  for (const int i : chosen) {
+    positions.push_back(source->world_from_file * tracks.positions[i]);
+    CheckDistances(*source, i, positions.back());
+  }
+  tracks.positions = std::move(positions);
+  if (tracks.times.size() > 0) tracks.times = Eigen::VectorXd(tracks.times(chosen));
+  tracks.length_unit = "m";
+}
+
+void LoadPoints(const MarkerFrames& source, Frame* frame) {
+  KeepUsablePoints({source.tracks.positions[frame->index], Eigen::Matrix3Xd(3, 0)},
+                   Eigen::Matrix3Xi(3, 0), frame);
+  RequirePoints(*frame, 1, "is finite");
+}
+
+Markers NamedMarkers(const MarkerFrames& source) {
+  return {source.tracks.names, source.places, source.tracks.positions};
+}
+
+std::string ExplainSize(const MarkerFrames&, double size, const std::string& length_unit) {
+  return ExplainSize(FileFrames(), size, length_unit);
+}
+
+std::vector<InfoLine> DescribeSource(const MarkerFrames& source) {
+  return {{"markers", fmt::format("{}", fmt::join(source.tracks.names, ", "))}};
+}
+
+std::string WriteMarkerFrames(const std::filesystem::path& folder, const std::vector<double>& times,
+                              const Markers& markers) {
+  CHECK_EQ(times.size(), markers.positions.size());
+  std::string csv = "t";
+  for (const std::string& name : markers.names) csv += fmt::format(",{0}_x,{0}_y,{0}_z", name);
+  for (size_t i = 0; i < times.size(); ++i) {
+    csv += fmt::format("\n{}", times[i]);
+    for (const double coordinate : markers.positions[i].reshaped())
+      csv += fmt::format(",{:.9f}", coordinate);
+  }
+  WriteFileAtomically(folder / "markers.csv", csv + "\n");
+  std::string yaml =
+      "  kind: markers\n  file: markers.csv\n  columns: {time: t}\n  marker_places:\n";
+  for (size_t m = 0; m < markers.names.size(); ++m) {
+    const Eigen::Vector3d place = markers.places.col(static_cast<Eigen::Index>(m));
+    yaml += fmt::format("    - {{name: {}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
+                        markers.names[m], place.x(), place.y(), place.z());
+  }
+  return yaml;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,54 @@
+#include "scan/measured_force.h"
+
+#include <fmt/format.h>
+
+#include "scan/time_series.h"
+
+namespace lacuna {
+
+Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
+  return InterpolateLinearly(force.times, force.forces, time);
+}
+
+std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& data,
+                                      const std::vector<double>& frame_times, double first_time) {
+  std::vector<MeasuredForce> forces;
+  for (const Config& item : config.Items("forces")) {
+    MeasuredForce force;
+    force.name = item.Text("name", fmt::format("force {}", forces.size() + 1));
+    if (const auto region = item.OptionalChild("region")) {
+      force.region = ReadRegion(*region, data.folder, force.name);
+    }
+    if (item.Has("constant")) {
+      if (item.Has("file")) item.Fail("file", "the force is already given as a constant");
+      force.forces = item.Vector("constant", kForce);
+      force.times = Eigen::VectorXd::Constant(1, first_time);
+    } else {
+      const double unit = ReadUnit(item, "unit", kForce, "N");
+      const TimeSeries series = ReadTimeSeries(item, data, frame_times, unit);
+      force.file = series.table.file;
+      force.times = series.times;
+      force.forces = series.values;
+    }
+    forces.push_back(std::move(force));
+  }
+  return forces;
+}
+
+std::string DescribeForce(const MeasuredForce& force) {
+  return fmt::format("{}: {} values, at most {:.4g} N{}", force.name, force.times.size(),
+                     force.forces.colwise().norm().maxCoeff(),
+                     force.region ? ", on " + DescribeRegion(*force.region) : "");
+}
+
+std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce& force,
+                       size_t number) {
+  const std::string name = fmt::format("force{}.csv", number);
+  WriteTimeSeries(folder / name, force.times, force.forces);
+  const std::string region =
+      force.region ? fmt::format(", region: {}", FormatRegion(*force.region)) : "";
+  return fmt::format("{{name: \"{}\", file: {}, time: time, x: x, y: y, z: z, unit: N{}}}",
+                     force.name, name, region);
+}
+
+}  // namespace lacuna

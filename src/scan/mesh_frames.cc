@@ -1,0 +1,32 @@
+#include "scan/mesh_frames.h"
+
+#include <glog/logging.h>
+
+#include "geometry/mesh_io.h"
+#include "geometry/tri_mesh.h"
+#include "scan/frame_list.h"
+#include "scan/frame_points.h"
+
+namespace lacuna {
+
+void ReadSource(const Config& frames, const DataLocation& data, MeshFrames* source,
+                std::vector<std::string>*) {
+  source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
+  source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
+  source->tracked = frames.Flag("tracked", false);
+}
+
+void LoadPoints(const MeshFrames& source, Frame* frame) {
+  const std::filesystem::path& path = source.files[frame->index][0];
+  const TriMeshFile file = ReadTriMesh(path);
+  for (const std::string& note : file.notes) LOG(INFO) << path.string() << ": " << note;
+  KeepUsablePoints({source.world_from_file * file.mesh.vertices, Eigen::Matrix3Xd(3, 0)},
+                   file.mesh.triangles, frame);
+  if (frame->triangles.cols() > 0) {
+    frame->cloud.normals = UnitNormals(VertexNormals({frame->cloud.points, frame->triangles}),
+                                       Eigen::Matrix3d::Identity());
+  }
+  RequirePoints(*frame, kFewestScannedPoints, "is finite");
+}
+
+}  // namespace lacuna

@@ -1,0 +1,47 @@
+// Frames of kind `points`: a point cloud per frame, from PLY, PCD or text tables.
+//
+// Everything that depends on this kind is here: its data, its reader, what it writes and what
+// `lacuna info` says about it. frame_source.h lists what each function has to do.
+#ifndef LACUNA_SCAN_POINT_FRAMES_H_
+#define LACUNA_SCAN_POINT_FRAMES_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "scan/data_location.h"
+#include "scan/file_frames.h"
+#include "scan/point_file.h"
+#include "scan/similarity.h"
+#include "scan/virtual_scanner.h"
+
+namespace lacuna {
+
+struct PointFrames : FileFrames {
+  static constexpr const char* kKind = "points";
+  static constexpr const char* kTitle = "point clouds";
+
+  Similarity world_from_file;               // its length unit included
+  PointColumns columns;                     // of text tables
+  bool tracked = false;                     // row i is the same material point in every frame
+  Eigen::Matrix3Xi connectivity;            // 3 × m, rows of each frame, from 0; 3 × 0 without
+  std::filesystem::path connectivity_file;  // empty without
+  Eigen::Matrix3Xd sensors;  // 3 × c, m, where the points were seen from; 3 × 0: unknown
+};
+
+void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
+                std::vector<std::string>* warnings);
+void LoadPoints(const PointFrames& source, Frame* frame);
+std::vector<std::filesystem::path> AllFiles(const PointFrames& source);
+inline bool IsTracked(const PointFrames& source) { return source.tracked; }
+
+// What the cameras see of each surface, as unordered points: writes frames/points_NNN.ply in
+// `folder`. Returns the entries of `frames:` in recording.yaml. Throws InputError when no camera
+// sees the object.
+std::string WritePointFrames(const std::filesystem::path& folder, const VirtualScan& scan);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_POINT_FRAMES_H_

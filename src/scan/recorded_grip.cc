@@ -1,0 +1,106 @@
+#include "scan/recorded_grip.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+
+#include "geometry/rotation.h"
+#include "scan/time_series.h"
+
+namespace lacuna {
+namespace {
+
+void CheckMarkers(const Config& item, const std::vector<std::string>& chosen,
+                  const std::vector<std::string>& names) {
+  if (names.empty()) {
+    item.Fail("follows_markers", "the frames of this recording are not of kind markers");
+  }
+  for (const std::string& name : chosen) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    item.Fail("follows_markers",
+              fmt::format("the recording has no marker \"{}\"; its markers are {}", name,
+                          fmt::join(names, ", ")));
+  }
+}
+
+void ReadPath(const Config& path, const DataLocation& data, const std::vector<double>& frame_times,
+              RecordedGrip* grip) {
+  const double unit = ReadUnit(path, "length_unit", kLength, data.length_unit);
+  const TimeSeries series = ReadTimeSeries(path, data, frame_times, unit);
+  grip->motion = GripMotion::kGiven;
+  grip->file = series.table.file;
+  grip->times = series.times;
+  grip->displacements = series.values.colwise() - Eigen::Vector3d(series.values.col(0));
+  const std::optional<Config> turn = path.OptionalChild("turn");
+  if (!turn) return;
+  const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
+  grip->rotations =
+      VectorColumns(series.table, {turn->Text("x"), turn->Text("y"), turn->Text("z")}, radian);
+  if (!grip->rotations.allFinite()) {
+    turn->Fail("x", grip->file.string() + ": a row of the turn is not finite");
+  }
+  grip->pivot = turn->Vector("about", kLength);
+}
+
+}  // namespace
+
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.translate(InterpolateSmoothly(grip.times, grip.displacements, time));
+  if (grip.rotations.cols() == 0) return motion;
+  motion.translate(grip.pivot);
+  motion.rotate(RotationBy(InterpolateSmoothly(grip.times, grip.rotations, time)) *
+                RotationBy(grip.rotations.col(0)).transpose());
+  motion.translate(-grip.pivot);
+  return motion;
+}
+
+std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,
+                                    const std::vector<double>& frame_times,
+                                    const std::vector<std::string>& marker_names) {
+  std::vector<RecordedGrip> grips;
+  for (const Config& item : config.Items("gripped")) {
+    RecordedGrip grip;
+    grip.region = ReadRegion(item, data.folder, fmt::format("grip {}", grips.size() + 1));
+    grip.markers = item.Texts("follows_markers");
+    const std::optional<Config> path = item.OptionalChild("path");
+    if (!grip.markers.empty()) {
+      if (path) item.Fail("path", "the grip already follows markers");
+      CheckMarkers(item, grip.markers, marker_names);
+      grip.motion = GripMotion::kFollowsMarkers;
+    } else if (path) {
+      ReadPath(*path, data, frame_times, &grip);
+    } else {
+      item.Choice<int>("follows", {{"scan", 0}}, "scan");
+    }
+    grip.deforms = item.Flag("deforms", false);
+    if (grip.deforms && path) item.Fail("deforms", "a grip that moves along a path is rigid");
+    grips.push_back(std::move(grip));
+  }
+  return grips;
+}
+
+std::string DescribeGrip(const RecordedGrip& grip) {
+  std::string text = fmt::format("{}: {}", grip.region.name, DescribeRegion(grip.region));
+  if (grip.motion == GripMotion::kGiven) return text + ", moves along a given path";
+  text += grip.motion == GripMotion::kFollowsScan
+              ? ", follows the scan"
+              : fmt::format(", follows the markers {}", fmt::join(grip.markers, ", "));
+  return text + (grip.deforms ? ", which may deform" : "");
+}
+
+std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
+                      size_t number) {
+  CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
+  std::string item = FormatRegion(grip.region);
+  if (grip.motion == GripMotion::kFollowsScan) return item;
+  CHECK_EQ(grip.rotations.cols(), 0) << "rotations of a grip are not written";
+  const std::string name = fmt::format("grip{}.csv", number);
+  WriteTimeSeries(folder / name, grip.times, grip.displacements);
+  item.pop_back();
+  return item + fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z}}}}", name);
+}
+
+}  // namespace lacuna

@@ -1,0 +1,64 @@
+// Parts of the object that are moved from outside while it is scanned.
+#ifndef LACUNA_SCAN_RECORDED_GRIP_H_
+#define LACUNA_SCAN_RECORDED_GRIP_H_
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "scan/data_location.h"
+#include "scan/region.h"
+
+namespace lacuna {
+
+enum class GripMotion {
+  kFollowsScan,     // as the scanned surface moves in its region
+  kFollowsMarkers,  // with the named markers
+  kGiven            // along a given path
+};
+
+struct RecordedGrip {
+  Region region;
+  GripMotion motion = GripMotion::kFollowsScan;
+  bool deforms = false;  // whether it may deform instead of moving as a rigid body; not kGiven
+  std::vector<std::string> markers;  // kFollowsMarkers
+
+  // kGiven: k poses relative to the undeformed place. The grip is rotated about `pivot` and then
+  // displaced.
+  Eigen::VectorXd times;           // k, s, ascending
+  Eigen::Matrix3Xd displacements;  // 3 × k, m
+  Eigen::Matrix3Xd rotations;      // 3 × k, rad, rotation vectors; 3 × 0: it does not rotate
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  // m
+  std::filesystem::path file;                       // with the path
+};
+
+// The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it
+// is interpolated smoothly (time_series.h), because a path with corners would excite vibrations.
+Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
+
+// Reads the items of `gripped`: each a region (region.h) and one of
+//   follows: scan                     the default
+//   follows_markers: [a, b]           names among `marker_names`
+//   path: {file, time, x, y, z, time_unit, length_unit, turn: {x, y, z, unit, about}}
+// A path has one row per time, the first of which belongs to the undeformed place; `turn` names
+// three more columns of the same file with a rotation vector about the point `about`. `deforms:
+// true` lets a grip that follows something deform with it. `frame_times` (s) are those of all
+// frames in the files, `marker_names` is empty when the frames have no markers. Throws InputError
+// (file, line, column and field).
+std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,
+                                    const std::vector<double>& frame_times,
+                                    const std::vector<std::string>& marker_names);
+
+// What `lacuna info` says about a grip.
+std::string DescribeGrip(const RecordedGrip& grip);
+
+// The grip as an item of `gripped` in recording.yaml. A given path goes into the file
+// grip`number`.csv of `folder`. The grip may not follow markers, nor rotate.
+std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip, size_t number);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_RECORDED_GRIP_H_

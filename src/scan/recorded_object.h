@@ -1,0 +1,29 @@
+// What a recording says about the object besides its frames.
+#ifndef LACUNA_SCAN_RECORDED_OBJECT_H_
+#define LACUNA_SCAN_RECORDED_OBJECT_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "scan/measured_force.h"
+#include "scan/recorded_grip.h"
+#include "scan/region.h"
+
+namespace lacuna {
+
+struct RecordedObject {
+  std::optional<double> density;           // kg/m³
+  std::optional<Eigen::Vector3d> gravity;  // m/s², world frame
+  std::vector<Region> fixed;               // parts that do not move
+  std::vector<RecordedGrip> grips;         // parts that are moved from outside
+  std::vector<MeasuredForce> forces;
+};
+
+// The files that the object's regions, paths and forces were read from.
+std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_RECORDED_OBJECT_H_

@@ -1,0 +1,119 @@
+#include "scan/time_series.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/npy.h"
+#include "geometry/hermite.h"
+
+namespace lacuna {
+namespace {
+
+DelimitedTable ReadTableOrArray(const std::filesystem::path& file) {
+  if (file.extension() != ".npy") return ReadDelimitedTable(file);
+  DelimitedTable table;
+  table.file = file;
+  table.values = ReadNpyMatrix(file);
+  return table;
+}
+
+// A time lies at the fraction t of the interval between two neighbouring times of a series. Both
+// are the same before the first time and after the last.
+struct Interval {
+  Eigen::Index left, right;
+  double t;
+};
+
+Interval FindInterval(const Eigen::VectorXd& times, double time) {
+  const Eigen::Index last = times.size() - 1;
+  const double* after = std::upper_bound(times.data(), times.data() + times.size(), time);
+  const Eigen::Index right = after - times.data();
+  if (right == 0) return {0, 0, 0};
+  if (right > last) return {last, last, 0};
+  return {right - 1, right, (time - times[right - 1]) / (times[right] - times[right - 1])};
+}
+
+}  // namespace
+
+double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
+                const std::string& default_unit) {
+  const std::string unit = config.Text(key, default_unit);
+  try {
+    return ParseQuantity("1 " + unit, dimension);
+  } catch (const std::invalid_argument& problem) {
+    config.Fail(key, problem.what());
+  }
+}
+
+Eigen::Matrix3Xd VectorColumns(const DelimitedTable& table, const std::array<std::string, 3>& names,
+                               double unit) {
+  Eigen::Matrix3Xd vectors(3, table.values.rows());
+  for (int axis = 0; axis < 3; ++axis)
+    vectors.row(axis) = unit * table.values.col(RequireColumn(table, names[axis])).transpose();
+  return vectors;
+}
+
+TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
+                          const std::vector<double>& frame_times, double unit) {
+  const std::filesystem::path file = data.folder / config.Text("file");
+  TimeSeries series;
+  series.table = ReadTableOrArray(file);
+  const DelimitedTable& table = series.table;
+  const std::string time = config.Text("time", "");
+  series.values = VectorColumns(
+      table, {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
+  if (!time.empty()) {
+    series.times =
+        ReadUnit(config, "time_unit", kTime, "s") * table.values.col(RequireColumn(table, time));
+  } else if (table.values.rows() == static_cast<Eigen::Index>(frame_times.size())) {
+    series.times = Eigen::Map<const Eigen::VectorXd>(frame_times.data(), frame_times.size());
+  } else {
+    config.Fail("file", fmt::format("{} has {} rows for {} frames; name its column `time`",
+                                    file.string(), table.values.rows(), frame_times.size()));
+  }
+  for (Eigen::Index i = 0; i < series.times.size(); ++i) {
+    const bool ascends = i == 0 || series.times[i] > series.times[i - 1];
+    if (!std::isfinite(series.times[i]) || !ascends || !series.values.col(i).allFinite()) {
+      config.Fail("file", fmt::format("{}: row {} is not finite or does not follow the one before "
+                                      "in time",
+                                      file.string(), i + 1));
+    }
+  }
+  return series;
+}
+
+Eigen::Vector3d InterpolateLinearly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
+                                    double time) {
+  const auto [left, right, t] = FindInterval(times, time);
+  return (1 - t) * values.col(left) + t * values.col(right);
+}
+
+Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
+                                    double time) {
+  const auto [left, right, t] = FindInterval(times, time);
+  if (left == right) return values.col(left);
+  const Eigen::Index last = times.size() - 1;
+  const auto slope = [&](Eigen::Index k) -> Eigen::Vector3d {  // between k and k + 1
+    return (values.col(k + 1) - values.col(k)) / (times[k + 1] - times[k]);
+  };
+  const auto knot = [&](Eigen::Index k) -> Knot<Eigen::Vector3d> {
+    if (k == 0) return {values.col(0), slope(0)};
+    if (k == last) return {values.col(last), slope(last - 1)};
+    const double before = times[k] - times[k - 1], behind = times[k + 1] - times[k];
+    return {values.col(k), (behind * slope(k - 1) + before * slope(k)) / (before + behind)};
+  };
+  return Interpolate(knot(left), knot(right), times[right] - times[left], t).position;
+}
+
+void WriteTimeSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,
+                     const Eigen::Matrix3Xd& values) {
+  std::string csv = "time,x,y,z\n";
+  for (Eigen::Index k = 0; k < times.size(); ++k)
+    csv += fmt::format("{},{},{},{}\n", times[k], values(0, k), values(1, k), values(2, k));
+  WriteFileAtomically(file, csv);
+}
+
+}  // namespace lacuna

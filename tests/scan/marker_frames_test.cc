@@ -1,0 +1,83 @@
+#include "scan/marker_frames.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geometry/mesh_io.h"
+#include "scan/recording_fixture.h"
+#include "support/shapes.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
+  folder_.Write("m.csv",
+                "t,a_x,a_y,a_z,b_x,b_y,b_z,c_x,c_y,c_z\n0.5,0,0,0,50,0,0,90,9,9\n"
+                "0.6,0,0,0,nan,nan,nan,90,9,9\n0.7,,,,,,,,,\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const std::string frames =
+      "  {kind: markers, file: m.csv, columns: {time: t}, markers: [b, a],\n"
+      "   marker_places: [{name: a, position: [0, 0, 1 mm]}]}\n";
+  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
+  const Recording recording =
+      Load(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [a]}]\n"));
+  EXPECT_THAT(recording.times, ElementsAre(0.5, 0.6, 0.7));
+  EXPECT_DOUBLE_EQ(LoadFrame(recording, 0).cloud.points(0, 0), 0.05);
+  const Frame second = LoadFrame(recording, 1);
+  EXPECT_EQ(second.source_row, Eigen::VectorXi::Constant(1, 1));
+  EXPECT_EQ(second.dropped_count, 1);
+  EXPECT_EQ(recording.markers.places.col(1), Eigen::Vector3d(0, 0, 1e-3));
+  EXPECT_TRUE(std::isnan(recording.markers.places(0, 0)));
+  EXPECT_THAT(ErrorOf([&] { LoadFrame(recording, 2); }),
+              HasSubstr("m.csv: none of its 2 points is finite"));
+  EXPECT_THAT(LoadError(Yaml(frames)), HasSubstr("the frames do not show the surface"));
+  EXPECT_THAT(
+      LoadError(Yaml(frames, reference + "gripped: [{nodes: [1], follows_markers: [d]}]\n")),
+      HasSubstr(
+          "gripped[0].follows_markers: the recording has no marker \"d\"; its markers are b, a"));
+  std::string twice = frames;
+  twice.insert(twice.find("{name: a,"), "{name: a, position: [0, 0, 2 mm]}, ");
+  EXPECT_THAT(LoadError(Yaml(twice, reference)),
+              HasSubstr("marker_places[1].name: is listed twice"));
+  folder_.Write("m.csv", "t,a_x,a_y,a_z,b_x,b_y,b_z\n0.5,0,0,0,50,0,0\n0.6,0,1e300,0,0,0,0\n");
+  EXPECT_THAT(LoadError(Yaml(frames, reference)),
+              HasSubstr("m.csv: frame 1: marker a is 1e+297 m away"));
+}
+
+TEST_F(RecordingTest, WarnsWhenAMarkerFileContradictsTheUnit) {
+  folder_.Write("m.trc",
+                "PathFileType\t4\t(X/Y/Z)\tm.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n"
+                "100\t1\t1\tm\nFrame#\tTime\tA\n\t\tX1\tY1\tZ1\n1\t0\t1\t2\t3\n");
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const Recording recording =
+      Load(Yaml("  {kind: markers, file: m.trc}\n", "reference: {from: mesh, file: box.ply}\n"));
+  EXPECT_THAT(recording.warnings,
+              ElementsAre(HasSubstr("says that its lengths are in m; recording.yaml says mm")));
+}
+
+TEST_F(RecordingTest, WrittenMarkerFramesAreReadBack) {
+  Markers markers;
+  markers.names = {"a", "b"};
+  markers.places = (Eigen::Matrix3Xd(3, 2) << 0, 0.1, 0, 0, 0, 0.02).finished();
+  for (const double shift : {0.0, 0.001}) {
+    markers.positions.emplace_back(markers.places.array() + shift);
+  }
+  const std::string frames = WriteMarkerFrames(folder_.Path(), {0.25, 0.5}, markers);
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  const Recording recording = Load(Yaml(frames, "reference: {from: mesh, file: box.ply}\n", "m"));
+  EXPECT_THAT(recording.times, ElementsAre(0.25, 0.5));
+  EXPECT_EQ(recording.markers.names, markers.names);
+  // The files have nine and six decimals.
+  EXPECT_LT((recording.markers.positions[1] - markers.positions[1]).norm(), 1e-9);
+  EXPECT_LT((recording.markers.places - markers.places).norm(), 1e-6);
+  EXPECT_FALSE(IsScan(recording));
+  EXPECT_THAT(DescribeRecording(recording), HasSubstr("markers      a, b"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,57 @@
+#include "scan/recorded_grip.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "scan/recording_fixture.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST_F(RecordingTest, AGripRotatesAndShiftsSmoothlyAlongItsPath) {
+  WriteClouds(3);
+  std::string path = "t,x,y,z,rx,ry,rz\n";
+  const auto shift = [](double t) { return 3 * std::sin(20 * t); };  // mm
+  for (int k = 0; k <= 10; ++k)
+    path += fmt::format("{0},1,{1},0,10,0,{2}\n", 0.01 * k, shift(0.01 * k), 300 * 0.01 * k);
+  folder_.Write("arm.csv", path);
+  const std::string yaml = "  kind: points\n  files: f/*.csv\n  rate: 20 Hz\n";
+  const std::string grip =
+      "gripped: [{name: arm, sphere: {center: [100 mm, 0, 0], radius: 5 mm}, path: {file: arm.csv, "
+      "time: t, x: x, y: y, z: z, turn: {x: rx, y: ry, z: rz, unit: deg, about: [100 mm, 0, "
+      "0]}}}]\n";
+  const Recording recording = Load(Yaml(yaml, grip));
+  const RecordedGrip& arm = recording.object.grips.at(0);
+  const Eigen::Vector3d pivot(0.1, 0, 0);
+  // The first row belongs to the undeformed place, whatever its numbers are.
+  EXPECT_LT((MotionAt(arm, 0).matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-15);
+  // Half way between two rows, with ω h = 0.2, the cubic is off by (ω h)⁴ (1/48 + 1/384) of 3 mm.
+  // Linear interpolation would be off by (ω h)²/8 of it, which is 15 µm.
+  const Eigen::Isometry3d there = MotionAt(arm, 0.045);
+  EXPECT_NEAR((there * pivot - pivot).y(), 1e-3 * shift(0.045), 1.2e-7);
+  const double degree = std::numbers::pi / 180;
+  const Eigen::Vector3d turned(10 * degree, 0, 13.5 * degree);
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix() *
+      Eigen::AngleAxisd(-10 * degree, Eigen::Vector3d::UnitX());
+  EXPECT_LT((there.linear() - rotation).norm(), 1e-12);
+  // The velocity is continuous at a row.
+  const auto at = [&](double t) { return MotionAt(arm, t).translation().eval(); };
+  const double h = 1e-6;
+  EXPECT_LT((at(0.05 + h) - 2 * at(0.05) + at(0.05 - h)).norm() / h, 1e-5);
+  EXPECT_LT((MotionAt(arm, 9).matrix() - MotionAt(arm, 0.1).matrix()).norm(), 1e-15);
+  EXPECT_THAT(LoadError(Yaml(yaml,
+                             "gripped: [{nodes: [1], path: {file: arm.csv, time: t, turn: {x: "
+                             "rx, y: rz, z: r}}}]\n")),
+              HasSubstr("r"));
+}
+
+}  // namespace
+}  // namespace lacuna
