@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "app/commands.h"
-#include "app/fit_report.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/suggestion.h"
@@ -15,6 +14,7 @@
 #include "diagnosis/extended_experiment.h"
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"
+#include "report/calibration_report.h"
 
 namespace lacuna {
 namespace {
@@ -75,10 +75,8 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const std::filesystem::path file = WriteExtendedExperiment(fitted, run, effect);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
   const CalibrationRecord record = RunCalibration(study, &progress);
-  fmt::print("\nbefore\n");
-  PrintCalibration(fitted.record);
-  fmt::print("\nwith {}\n", type);
-  PrintCalibration(record);
+  fmt::print("\nbefore\n{}", CalibrationReport(fitted.record));
+  fmt::print("\nwith {}\n{}", type, CalibrationReport(record));
   if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
   fmt::print("\nThe experiment is {}\nThe run lies in {}\n", file.string(), study.output.string());
   return record.usable ? 0 : 1;

@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "app/diagnosis_report.h"
 #include "diagnosis/diagnosis_run.h"
 #include "diagnosis/extension_rounds.h"
 #include "prediction/recorded_motion.h"
+#include "report/diagnosis_report.h"
+#include "report/ledger_report.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
@@ -20,14 +22,14 @@ struct DiagnoseArguments {
   int most_effects = ExtensionOptions{}.most_effects;
 };
 
-// One line for what has just come to be.
+// One line about the model that was just fitted or diagnosed.
 void PrintStep(const Ledger& ledger) {
   const LedgerModel& model = ledger.models.back();
   if (model.diagnosis) {
     fmt::print("{}: {}\n", model.name, VerdictWithNames(*model.diagnosis));
   } else if (model.record.usable) {
     fmt::print("{}: {:.3f} mm, {:.1f} σ\n", model.name, 1e3 * model.errors.held_out_rms,
-               model.errors.in_noise);
+               model.errors.rms_over_sigma);
   }
   (void)fflush(stdout);
 }
@@ -39,9 +41,9 @@ int RunUntilDone(const DiagnoseArguments& arguments) {
   options.most_effects = arguments.most_effects;
   Progress progress;
   const Ledger ledger = ExtendUntilDone(arguments.run, options, &progress, PrintStep);
-  fmt::print("\n{}\n{} holds it, with all numbers in ledger.json\n", LedgerInWords(ledger),
+  fmt::print("\n{}\n{} holds it, with all numbers in ledger.json\n", LedgerReport(ledger),
              (std::filesystem::path(arguments.run) / "ledger.txt").string());
-  return ledger.usable ? 0 : 1;
+  return ledger.IsUsable() ? 0 : 1;
 }
 
 int RunDiagnose(const DiagnoseArguments& arguments) {
@@ -52,7 +54,8 @@ int RunDiagnose(const DiagnoseArguments& arguments) {
   DiagnosisOptions options;
   options.refits = arguments.refits;
   Progress progress;
-  PrintDiagnosis(RunDiagnosis(fitted, arguments.run, options, &progress), arguments.run);
+  const DiagnosisRecord diagnosis = RunDiagnosis(fitted, arguments.run, options, &progress);
+  fmt::print("{}", DiagnosisReport(diagnosis, arguments.run));
   return 0;
 }
 

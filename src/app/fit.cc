@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "app/fit_report.h"
 #include "calibration/calibration_run.h"
 #include "prediction/prediction_study_reader.h"
 #include "prediction/recorded_motion.h"
+#include "report/calibration_report.h"
 
 namespace lacuna {
 namespace {
@@ -20,7 +20,7 @@ int Fit(const std::string& file) {
     fmt::print(stderr, "warning: {}\n", warning);
   Progress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
-  PrintCalibration(record);
+  fmt::print("{}", CalibrationReport(record));
   if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
   fmt::print(
       "\nThe run lies in {}\n"

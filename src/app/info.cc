@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "app/commands.h"
-#include "app/fit_report.h"
 #include "calibration/calibration_run.h"
 #include "core/error.h"
 #include "geometry/mesh_io.h"
@@ -16,6 +15,8 @@
 #include "record/manifest.h"
 #include "record/run_directory.h"
 #include "record/run_record.h"
+#include "report/calibration_report.h"
+#include "report/diagnosis_report.h"
 #include "scan/recording.h"
 
 namespace lacuna {
@@ -61,7 +62,10 @@ void DescribeRun(const std::filesystem::path& folder) {
   if (!manifest.finished) return;
   for (const auto& [stage, result] : manifest.stages) FinishedStage(folder, stage);  // whole?
   if (manifest.stages.count("calibration") > 0) {
-    PrintCalibration(LoadCalibration(folder));
+    fmt::print("{}", CalibrationReport(LoadCalibration(folder)));
+    const std::filesystem::path diagnosis = folder / "diagnosis" / "diagnosis.json";
+    if (std::filesystem::exists(diagnosis))
+      fmt::print("{}", DiagnosisReport(ReadDiagnosisFile(diagnosis), folder));
     return;
   }
   const RunRecord record = LoadRunRecord(folder / "results");

@@ -6,6 +6,7 @@
 
 #include "calibration/mesh_limit.h"
 #include "calibration/misfit_report.h"
+#include "calibration/prior_conflicts.h"
 #include "calibration/stepped_fit.h"
 #include "core/error.h"
 #include "core/hash.h"
@@ -20,7 +21,7 @@ namespace {
 
 // Raised when the stage's code changes so that its result does.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 13;
+constexpr int kCalibrationVersion = 14;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -69,7 +70,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       record.recordings.back().scan =
           DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
   }
-  record.strains = Strains(problem, misfits);
+  record.prior_conflicts = FindPriorConflicts(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);
   progress->End();
   if (calibration.rms <= kFarOff) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "calibration/calibration_record.h"
 #include "core/progress.h"
+#include "record/calibration_record.h"
 
 namespace lacuna {
 

@@ -1,28 +1,26 @@
-// What a fit keeps of its misfits: a table of all points, and the conflicts with priors.
+// The details of a fit's residuals that a run keeps.
 #ifndef LACUNA_CALIBRATION_MISFIT_REPORT_H_
 #define LACUNA_CALIBRATION_MISFIT_REPORT_H_
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
-#include "calibration/calibration_record.h"
+#include "calibration/calibration_problem.h"
+#include "calibration/recording_misfit.h"
+#include "record/calibration_record.h"
 #include "record/csv_table.h"
 
 namespace lacuna {
 
-// misfit.csv: for every point in every frame, the measured place and predicted − measured, m. The
-// place of a patch is the mean of its scanned points, and its difference is along the surface
-// normal.
+// The table misfit.csv: for each point of each frame of each recording, the measured place and the
+// difference predicted − measured, m. For a patch of a surface the measured place is the mean of
+// its scanned points, and the difference is the residual times the surface normal. The difference
+// is NaN where the point was not observed.
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits);
 
-// Conflicts of the fit with its priors, as sentences: points far from their given places, a clock
-// or a holding force far outside its prior, scans that lose the model.
-std::vector<std::string> Strains(const CalibrationProblem& problem,
-                                 const std::vector<RecordingMisfit>& misfits);
-
-// A summary of how a recording of scans was used. `noise`: σ of one scanned point, m.
+// What the record keeps of a recording of scans. `places`: of the patches on the undeformed object,
+// m. `noise`: σ of one scanned point, m.
 FittedScan DescribeScan(const RecordingMisfit& misfit, const Eigen::Matrix3Xd& places,
                         double noise);
 

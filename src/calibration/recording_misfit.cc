@@ -31,7 +31,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   }
   if (measure.points == 0) return measure;
   measure.rms = std::sqrt(squares / measure.points);
-  measure.in_noise =
+  measure.rms_over_sigma =
       std::sqrt(weighted / measure.points) / (std::sqrt(static_cast<double>(components)) * noise);
   return measure;
 }

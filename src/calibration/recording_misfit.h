@@ -8,19 +8,9 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
-
-// The distance between predictions and measurements in a set of frames. It is measured at markers,
-// or at patches of the surface along its normal, after the constant part of a point's error, which
-// is that of its place on the object or of the object's shape, has been subtracted.
-struct MisfitMeasure {
-  int frames = 0;
-  int points = 0;       // markers or patches seen, summed over the frames
-  double rms = 0;       // m, rms distance
-  double largest = 0;   // m
-  double in_noise = 0;  // rms of the components, each divided by the σ of its noise
-};
 
 // The misfit of one recording over all of its frames.
 struct RecordingMisfit {

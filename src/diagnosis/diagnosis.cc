@@ -38,7 +38,8 @@ PredictionStudy EarlyPart(const CalibrationProblem& problem) {
 
 // The effects ranked along a fit of the early part; none if that cannot be fitted.
 std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
-                                    const Eigen::VectorXd& values, const DiagnosisSetting& setting) {
+                                    const Eigen::VectorXd& values,
+                                    const DiagnosisSetting& setting) {
   const PredictionStudy early = EarlyPart(problem);
   const CalibrationProblem of_early(early, problem.body()->mesh);
   const Calibration first = FitFromStart(of_early, setting.progress);
@@ -55,8 +56,10 @@ bool IsStepTooLong(const EffectRanking& ranking) {
                                  [](const ScoredNuisance& nuisance) {
                                    return nuisance.candidate.card.shrinks_with_time_step;
                                  });
-  return step != ranking.nuisances.end() && MayLend(step->doubt) > kNamed &&
-         !ranking.effects.empty() && ranking.effects.front().score.evidence > kNamed;
+  return step != ranking.nuisances.end() &&
+         DiscretisationUncertainty(step->doubt) > kThresholds.naming.least_evidence &&
+         !ranking.effects.empty() &&
+         ranking.effects.front().score.evidence > kThresholds.naming.least_evidence;
 }
 
 Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
@@ -75,9 +78,9 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   const RefitContext context{model, ranking};
   RefittedRanking ranked = StartRefits(context, ranking.effects, options.refits);
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
-  diagnosis.present_in_noise = RmsOverSigma(ranked.baseline.hypothesis);
+  diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
-  if (diagnosis.present_in_noise > kFarOff)
+  if (diagnosis.baseline_rms_over_sigma > kFarOff)
     RefitAsRankedEarly(context, RankEarly(problem, fitted, setting), options.refits, &ranked);
   WeighRefits(context, &ranked);
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
@@ -86,12 +89,12 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   RankBesideBest(context, options.without, &ranked);
 
   diagnosis.noise_level = noise.level;
-  diagnosis.left_in_noise = noise.least_rms_over_sigma;
+  diagnosis.best_rms_over_sigma = noise.least_rms_over_sigma;
   diagnosis.ranking = ranked.effects;
   diagnosis.nuisances = ranking.nuisances;
   Decide(&diagnosis);
-  if (diagnosis.verdict == Diagnosis::Verdict::kNuisance) {
-    diagnosis.instead = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
+  if (diagnosis.verdict == Verdict::kNuisance) {
+    diagnosis.alternatives = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
     DecideAgainstNuisances(&diagnosis);
   }
   return diagnosis;

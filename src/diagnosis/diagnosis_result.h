@@ -1,4 +1,6 @@
-// What a diagnosis has found: the verdict, and everything that it rests on.
+// The result of a diagnosis: the conclusion, and everything that it rests on.
+//
+// RecordOf (diagnosis/recorded_diagnosis.h) turns it into plain data.
 #ifndef LACUNA_DIAGNOSIS_DIAGNOSIS_RESULT_H_
 #define LACUNA_DIAGNOSIS_DIAGNOSIS_RESULT_H_
 
@@ -8,54 +10,51 @@
 
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
+#include "record/verdict.h"
 
 namespace lacuna {
 
-// A scored effect, and what came of fitting it.
+// A scored effect, and the result of fitting the model with it.
 struct RankedEffect {
   ScoredEffect scored;
-  // After the refit, where there was one.
-  bool refitted = false;
-  std::string refit_message;  // why it is not usable; empty: it is
+  bool refitted = false;      // the fields below are those of the refit
+  std::string refit_message;  // why it is not usable; empty: it is usable
   ModelErrors errors;
-  double evidence = 0;           // ln of the odds against the model as it is
-  double held_out_evidence = 0;  // the part of it that held-out frames alone give
-  double explained = 0;          // share of the squared misfit that went
-  double left_in_noise = 0;      // over all frames, adopted nuisances at their best, in σ
-  FurtherEvidence further;       // for another effect beside it
-  Eigen::VectorXd values;        // the effect's parameters there; empty: there is no usable refit
-  std::vector<ParameterEstimate> sizes;  // of those that make its size (scored.score.size)
+  double evidence = 0;                   // ln of the odds against the model as it is
+  double held_out_evidence = 0;          // the part of it that the held-out frames contribute
+  double explained = 0;                  // share of the squared misfit
+  double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best
+  FurtherEvidence further;               // for another effect beside this one
+  Eigen::VectorXd values;                // the effect's parameters; empty: there is no usable refit
+  std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
   std::vector<NamedEstimate> others;     // as in EffectRefit
+
+  bool HasUsableRefit() const { return refitted && refit_message.empty(); }
 };
 
-struct Diagnosis {
-  enum class Verdict { kAdequate, kMissing, kAmbiguous, kNuisance, kNotInLibrary, kNoPower };
-  Verdict verdict = Verdict::kNoPower;
-  std::vector<std::string> effects;  // named by the verdict, nuisances too
-  std::string explanation;           // in words
-  std::string experiment;            // that would settle it; empty: none is needed
-  double noise = 0, scan_noise = 0;  // m: of a marker's coordinate, of a scanned point
-  double time_step = 0;              // s, that it was made with
+// Effects fitted in place of the nuisances that were adopted beyond those that every model has.
+// Computed for a verdict "nuisance" only.
+struct NuisanceAlternatives {
+  std::vector<RankedEffect> effects;  // evidence against the bare model
+  double nuisances_evidence = 0;      // of the nuisances against the bare model
+  ModelErrors bare;                   // of the model without both
+};
+
+struct Diagnosis : Conclusion {
+  double noise = 0, scan_noise = 0;  // m, σ of a marker's coordinate and of a scanned point
+  double time_step = 0;              // s, of the simulations
   NoiseLevel noise_level;
-  ModelErrors errors;                     // of the present model
-  std::vector<RankedEffect> ranking;      // by first order's evidence
+  ModelErrors errors;                     // of the baseline model
+  std::vector<RankedEffect> ranking;      // by first-order evidence
   std::vector<UntriedEffect> untried;     // as in EffectRanking
   std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
-  // What effects would do in place of the nuisances that were adopted beyond those that every model
-  // has; where no effect has evidence beside them.
-  struct Instead {
-    std::vector<RankedEffect> effects;  // refitted without those nuisances; evidence: against bare
-    double nuisances_evidence = 0;      // evidence of the nuisances against bare
-    ModelErrors bare;                   // of the model with neither
-  } instead;
-  int scored = 0;      // effects and variants
-  double control = 0;  // the evidence that one in twenty controls finds without an effect
-  // Over all frames, adopted nuisances at their best, in σ: of the present model, and of the best
-  // hypothesis.
-  double present_in_noise = 0, left_in_noise = 0;
+  NuisanceAlternatives alternatives;
+  int scored = 0;      // number of effects and variants
+  double control = 0;  // evidence found in 1 of 20 residuals that contain no effect
+  // Over all frames, with the adopted nuisances at their best: of the baseline model, and of the
+  // best hypothesis.
+  double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
 };
-
-std::string VerdictName(Diagnosis::Verdict verdict);
 
 }  // namespace lacuna
 

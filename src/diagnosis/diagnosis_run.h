@@ -10,7 +10,7 @@
 #include "calibration/calibration_run.h"
 #include "core/progress.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/diagnosis_record.h"
+#include "record/diagnosis_record.h"
 
 namespace lacuna {
 

@@ -36,27 +36,28 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
   for (size_t r = 0; r < misfits.size(); ++r) {
     const MisfitMeasure &in_fit = misfits[r].in_fit, &out = misfits[r].held_out;
     if (!problem.models()[r].item().fitted) {
-      unfitted_noise += out.in_noise * out.in_noise * out.points;
+      unfitted_noise += out.rms_over_sigma * out.rms_over_sigma * out.points;
       unfitted_points += out.points;
     }
     fitted += in_fit.rms * in_fit.rms * in_fit.points;
-    fitted_noise += in_fit.in_noise * in_fit.in_noise * in_fit.points;
+    fitted_noise += in_fit.rms_over_sigma * in_fit.rms_over_sigma * in_fit.points;
     fitted_points += in_fit.points;
     held_out += out.rms * out.rms * out.points;
-    held_out_noise += out.in_noise * out.in_noise * out.points;
+    held_out_noise += out.rms_over_sigma * out.rms_over_sigma * out.points;
     held_out_points += out.points;
   }
   ModelErrors errors;
-  if (unfitted_points > 0) errors.unfitted_in_noise = std::sqrt(unfitted_noise / unfitted_points);
+  if (unfitted_points > 0)
+    errors.unfitted_rms_over_sigma = std::sqrt(unfitted_noise / unfitted_points);
   errors.has_held_out = held_out_points > 0;
   if (fitted_points > 0) {
     errors.in_fit_rms = std::sqrt(fitted / fitted_points);
-    errors.in_noise = std::sqrt(fitted_noise / fitted_points);
+    errors.rms_over_sigma = std::sqrt(fitted_noise / fitted_points);
   }
   errors.held_out_rms = errors.in_fit_rms;
   if (errors.has_held_out) {
     errors.held_out_rms = std::sqrt(held_out / held_out_points);
-    errors.in_noise = std::sqrt(held_out_noise / held_out_points);
+    errors.rms_over_sigma = std::sqrt(held_out_noise / held_out_points);
   }
   return errors;
 }

@@ -13,18 +13,11 @@
 #include "calibration/calibration_problem.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/extended_problem.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
 
-// How far a model is from the measurements, over all recordings.
-struct ModelErrors {
-  double in_fit_rms = 0, held_out_rms = 0;  // m, of marker distances
-  double in_noise = 0;                      // held out, in σ
-  // Of the fitted recordings, with what was adopted taken away; held out, in σ.
-  double without_nuisances = 0;
-  double unfitted_in_noise = 0;  // of recordings that were not fitted, in σ; 0: there are none
-  bool has_held_out = false;     // false: the fitted frames stand for them
-};
+// The errors of a model with these parameter values, over all recordings.
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
 
 // A fitted model, linearised about its parameters.

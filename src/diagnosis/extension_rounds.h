@@ -1,4 +1,5 @@
-// Diagnose, add what is missing, fit, and diagnose again, until no effect can be named any more.
+// Diagnoses a fitted model, adds the missing effect, fits again and diagnoses the new model, until
+// no effect can be named any more.
 #ifndef LACUNA_DIAGNOSIS_EXTENSION_ROUNDS_H_
 #define LACUNA_DIAGNOSIS_EXTENSION_ROUNDS_H_
 
@@ -7,25 +8,24 @@
 
 #include "core/progress.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/ledger.h"
+#include "record/ledger.h"
 
 namespace lacuna {
 
 struct ExtensionOptions {
   DiagnosisOptions diagnosis;
-  int most_effects = 8;      // added one after another; more: longer
-  bool follow_best = false;  // of an ambiguous verdict, add the best; false: stop there
-  // Share of the held-out error that an added effect must take away for the search to go on; more:
-  // it ends earlier.
+  int most_effects = 8;      // the largest number of effects that are added; more: slower
+  bool follow_best = false;  // true: after an ambiguous verdict, add the best; false: stop there
+  // The search ends when an added effect reduces the held-out error by less than this share.
+  // Higher: it ends earlier.
   double least_gain = 0.02;
 };
 
-// From the finished fit in `run`. Keeps the ledger in that folder (SaveLedger), written anew after
-// every diagnosis and every fit, which on_change then sees; further runs lie beside that folder
-// (WriteExtendedExperiment). What of all this is there already is read back. It ends when a verdict
-// is not "missing" (or "ambiguous", with follow_best), when an added effect cannot be fitted or
-// gains too little, and after most_effects. Throws InputError and Interrupted; the ledger then
-// tells what was done.
+// Starts from the finished fit in `run`. ledger.json and ledger.txt in that folder are written anew
+// after each diagnosis and each fit, and on_change sees the ledger then. Further runs lie beside
+// that folder (WriteExtendedExperiment); fits and diagnoses that exist already are read back. The
+// search ends for one of the reasons in LedgerEnding. Throws InputError and Interrupted; the ledger
+// on disk then shows what was done.
 Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions& options,
                        Progress* progress, const std::function<void(const Ledger&)>& on_change);
 

@@ -14,18 +14,13 @@
 
 #include "calibration/calibration_problem.h"
 #include "diagnosis/candidates.h"
+#include "record/model_errors.h"
 
 namespace lacuna {
 
 struct PilotHypothesis {
   CandidateEffect candidate;
   Eigen::VectorXd change;  // of the rows of the LinearisedMisfit, m
-};
-
-// A hypothesis that these recordings give no way to try.
-struct UntriedEffect {
-  std::string type;
-  std::string why;
 };
 
 struct PilotHypotheses {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/calibration_record.h"
 #include "core/atomic_file.h"
+#include "record/calibration_record.h"
 
 namespace lacuna {
 namespace {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "diagnosis/thresholds.h"
-#include "diagnosis/verdict.h"
 
 namespace lacuna {
 namespace {
@@ -86,7 +85,7 @@ void SetEvidence(const RefitContext& context, const EffectRefit& with, const Ref
     return;
   }
   effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
-  effect->left_in_noise = RmsOverSigma(with.hypothesis);
+  effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
   effect->further = FurtherEvidenceOf(with.hypothesis, context.ranking.tried,
                                       effect->scored.candidate.type, noise);
 }
@@ -226,37 +225,38 @@ void RankBesideBest(const RefitContext& context, const std::vector<std::string>&
   for (size_t k = 0; k < ranked->refits.size() && done < thresholds.most_second_rankings; ++k) {
     RankedEffect& effect = ranked->effects[k];
     if (!ranked->IsUsable(k) || effect.evidence < least ||
-        effect.further.evidence <
-            std::max(thresholds.least_evidence, kLeavesMore * effect.evidence))
+        effect.further.evidence < std::max(thresholds.least_evidence,
+                                           kThresholds.naming.remainder_share * effect.evidence))
       continue;
     ++done;
     effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without);
   }
 }
 
-Diagnosis::Instead RefitInPlaceOfNuisances(const RefitContext& context,
-                                           const RefittedRanking& ranked, const RefitNoise& noise,
-                                           int wanted) {
-  Diagnosis::Instead instead;
+NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
+                                             const RefittedRanking& ranked, const RefitNoise& noise,
+                                             int wanted) {
+  NuisanceAlternatives alternatives;
   const EffectRanking& ranking = context.ranking;
-  if (!ranking.adopted.HasMore()) return instead;
+  if (!ranking.adopted.HasMore()) return alternatives;
   const AdoptedNuisances always = ranking.adopted.Always();
   const EffectRefit bare = Refit(context.model, nullptr, always, false);
-  if (!bare.message.empty()) return instead;
-  instead.bare = bare.errors;
+  if (!bare.message.empty()) return alternatives;
+  alternatives.bare = bare.errors;
   const RefitEvidence before = EvidenceOf(bare, noise.level);
-  instead.nuisances_evidence =
+  alternatives.nuisances_evidence =
       EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence - before.all;
-  const double least = kThresholds.refit.alternative_share * instead.nuisances_evidence;
+  const double least = kThresholds.refit.alternative_share * alternatives.nuisances_evidence;
   for (const ScoredEffect& scored : ranking.without_adopted) {
-    if (static_cast<int>(instead.effects.size()) == wanted || scored.score.evidence < least) break;
-    RankedEffect& effect = instead.effects.emplace_back();
+    if (static_cast<int>(alternatives.effects.size()) == wanted || scored.score.evidence < least)
+      break;
+    RankedEffect& effect = alternatives.effects.emplace_back();
     effect.scored = scored;
     const EffectRefit with = RefitEffect(context, always, bare, &effect);
     if (with.message.empty())
       SetEvidence(context, with, before, noise.level, ranked.effects.size(), &effect);
   }
-  return instead;
+  return alternatives;
 }
 
 }  // namespace lacuna

@@ -80,9 +80,9 @@ void RankBesideBest(const RefitContext& context, const std::vector<std::string>&
                     RefittedRanking* ranked);
 
 // Refits `wanted` effects, at most, in place of the adopted nuisances.
-Diagnosis::Instead RefitInPlaceOfNuisances(const RefitContext& context,
-                                           const RefittedRanking& ranked, const RefitNoise& noise,
-                                           int wanted);
+NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
+                                             const RefittedRanking& ranked, const RefitNoise& noise,
+                                             int wanted);
 
 }  // namespace lacuna
 

@@ -1,4 +1,7 @@
-// What a diagnosis allows to say.
+// The verdict of a diagnosis: what its evidence and errors allow to conclude.
+//
+// Only decisions are made here; report/verdict_text.h puts them into words. All thresholds are in
+// diagnosis/thresholds.h, and docs/diagnosis.md explains them.
 #ifndef LACUNA_DIAGNOSIS_VERDICT_H_
 #define LACUNA_DIAGNOSIS_VERDICT_H_
 
@@ -6,22 +9,16 @@
 
 namespace lacuna {
 
-// What is missing, once added, leaves nothing for another effect: the right one of eight bars left
-// evidence of 0.2 at most, and in one that was off by 6 σ 0.6 % of its own. One that leaves more
-// than this part of its own, and than chance, does another's work or only a part of it.
-inline constexpr double kLeavesMore = 0.05;
+// The evidence for an effect that an uncertain discretisation could account for, where `doubt` is
+// what lies along the uncertain direction (ScoredNuisance::doubt).
+double DiscretisationUncertainty(double doubt);
 
-// Logarithm of the odds to be named at all.
-inline constexpr double kNamed = 5;
-// The evidence that the unknown part of what mesh and step change may lend an effect: more than
-// twice what lies along it, as it may tilt two rivals.
-double MayLend(double doubt);
-
-// Fills verdict, effects, explanation and experiment from everything else.
+// Sets the conclusion (verdict, effects, reasons, next steps) from everything else.
 void Decide(Diagnosis* diagnosis);
 
-// Of a verdict nuisance, with Diagnosis::instead: effects that do nearly as well in place of the
-// nuisances, and predict better than the model with neither, make it ambiguous.
+// Revises a verdict "nuisance" with Diagnosis::alternatives. Effects that explain the recordings
+// nearly as well as the adopted nuisances, and predict better than the model without both, make it
+// ambiguous.
 void DecideAgainstNuisances(Diagnosis* diagnosis);
 
 }  // namespace lacuna

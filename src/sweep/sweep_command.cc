@@ -55,7 +55,7 @@ CaseOutcome Fit(const Config& experiment, Progress* progress) {
       if (measure.frames == 0) return;
       numbers.emplace_back(fmt::format("{}.{}_rms_m", recording.name, kind), measure.rms);
       numbers.emplace_back(fmt::format("{}.{}_rms_over_sigma", recording.name, kind),
-                           measure.in_noise);
+                           measure.rms_over_sigma);
     };
     add("fitted", recording.in_fit);
     add("held_out", recording.held_out);

@@ -41,17 +41,18 @@ bool IsHidden(const TrialCase& trial, const std::string& type) {
 
 void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tally) {
   ++tally->cases;
-  ++tally->verdicts[outcome.verdict];
-  const bool named = outcome.verdict == "missing";
+  ++tally->verdicts[VerdictName(outcome.verdict)];
+  const bool named = outcome.verdict == Verdict::kMissing;
   const bool right = named && IsHidden(trial, outcome.named[0]);
   tally->top1 += right;
   tally->wrong += named && !right;
   if (trial.hidden.empty() || trial.group == "removed") return;
   const std::string& truth = trial.hidden[0].type;
-  const bool second = outcome.ranked.size() > 1 && (named || outcome.verdict == "ambiguous") &&
+  const bool second = outcome.ranked.size() > 1 &&
+                      (named || outcome.verdict == Verdict::kAmbiguous) &&
                       (outcome.ranked[0] == truth || outcome.ranked[1] == truth);
   tally->top2 +=
-      right || second || (outcome.verdict == "ambiguous" && Contains(outcome.named, truth));
+      right || second || (outcome.verdict == Verdict::kAmbiguous && Contains(outcome.named, truth));
   tally->ranked_first += !outcome.ranked.empty() && outcome.ranked[0] == truth;
   if (!outcome.has_truth) return;
   ++tally->fitted;
@@ -88,7 +89,8 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
     const std::string truth = trial.hidden.empty()       ? "nothing"
                               : trial.group == "removed" ? trial.hidden[0].type + " (removed)"
                                                          : trial.hidden[0].type;
-    const std::string said = outcome.verdict == "missing" ? outcome.named[0] : outcome.verdict;
+    const std::string said =
+        outcome.verdict == Verdict::kMissing ? outcome.named[0] : VerdictName(outcome.verdict);
     ++report.confusion[truth][said];
   }
   for (auto& [group, tally] : tallies) {

@@ -14,7 +14,8 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
-#include "diagnosis/diagnosis_record.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
@@ -52,7 +53,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
     Progress progress(Silent());
     const LinearisedMisfit misfit = problem.Linearise(values, false);
     const EffectRefit refit = Refit({problem, values, misfit, &progress}, &effect->scored, {},
-                                    diagnosis.present_in_noise > kFarOff);
+                                    diagnosis.baseline_rms_over_sigma > kFarOff);
     if (!refit.message.empty()) return;
     sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;
@@ -91,13 +92,13 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
     for (std::string type; std::getline(stream, type);) options.without.push_back(type);
   }
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
-  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
+  WriteDiagnosisFile(RecordOf(diagnosis), folder / "diagnosis.json");
 
   TrialOutcome outcome;
-  outcome.verdict = VerdictName(diagnosis.verdict);
+  outcome.verdict = diagnosis.verdict;
   outcome.named = diagnosis.effects;
   outcome.control = diagnosis.control;
-  outcome.left = diagnosis.left_in_noise;
+  outcome.left = diagnosis.best_rms_over_sigma;
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
     // Effects that were refitted rank before those that have a first-order score only.
@@ -125,7 +126,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
 
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
   const nlohmann::json all = {{"schema_version", 1},
-                              {"verdict", outcome.verdict},
+                              {"verdict", VerdictName(outcome.verdict)},
                               {"named", outcome.named},
                               {"ranked", outcome.ranked},
                               {"error_before", outcome.error_before},
@@ -148,7 +149,7 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
   try {
     const auto json = nlohmann::json::parse(stream);
     TrialOutcome outcome;
-    outcome.verdict = json.at("verdict");
+    outcome.verdict = VerdictFromName(json.at("verdict"));
     outcome.named = json.at("named");
     outcome.ranked = json.at("ranked");
     outcome.error_before = json.at("error_before");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "record/verdict.h"
 #include "trials/trial_case.h"
 
 namespace lacuna {
@@ -13,7 +14,7 @@ namespace lacuna {
 // The diagnosis of a case, and the fit of its hidden effect compared with the truth. Held-out
 // errors are root mean squares in multiples of the noise of the case.
 struct TrialOutcome {
-  std::string verdict;
+  Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> named;   // effects and nuisances of the verdict, the best one first
   std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
   double error_before = 0;          // held-out, of the model without any of them

@@ -159,9 +159,9 @@ TEST(CalibrationProblem, RecoversWhatWasFilmed) {
   EXPECT_EQ(misfits[0].in_fit.frames, 16);  // 0 to 0.15 s
   EXPECT_EQ(misfits[0].held_out.frames, kFrames - 16);
   EXPECT_EQ(misfits[0].held_out.points, (kFrames - 16) * kMarkers);
-  EXPECT_LT(misfits[0].in_fit.in_noise, 1.3);
+  EXPECT_LT(misfits[0].in_fit.rms_over_sigma, 1.3);
   // The discretisation shows in the frames that were not fitted: 0.14 mm after 20 mm of motion.
-  EXPECT_LT(misfits[0].held_out.in_noise, 2.5);
+  EXPECT_LT(misfits[0].held_out.rms_over_sigma, 2.5);
   EXPECT_GE(misfits[0].held_out.largest, misfits[0].held_out.rms);
 }
 

@@ -29,7 +29,8 @@ constexpr int kMarkers = 4, kFrames = 120, kFitted = 80;
 using Planted = std::function<Eigen::Vector3d(int frame, int marker)>;
 
 json Measure() {
-  return {{"frames", 1}, {"points", 1}, {"rms_m", 0.0}, {"largest_m", 0.0}, {"in_noise", 0.0}};
+  return {
+      {"frames", 1}, {"points", 1}, {"rms_m", 0.0}, {"largest_m", 0.0}, {"rms_over_sigma", 0.0}};
 }
 
 // A run of `lacuna fit` as it lies on the disk. The object rests for 30 frames, then swings; the
@@ -47,19 +48,19 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                           {"held_out", Measure()}});
   }
   directory.Begin({{"recordings", entries}}, {}, 0);
-  const json calibration = {{"schema_version", 1},
+  const json calibration = {{"schema_version", 2},
                             {"experiment", "../experiment.yaml"},
                             {"usable", true},
                             {"message", ""},
                             {"noise_m", kNoise},
                             {"time_step_s", 0.005},
-                            {"step_error_in_noise", 0},
+                            {"step_error_over_sigma", 0},
                             {"rms_before", 2.0},
                             {"rms_after", 1.0},
                             {"predictions", 3},
                             {"parameters", json::array()},
                             {"recordings", recordings},
-                            {"strains", json::array()}};
+                            {"prior_conflicts", json::array()}};
   std::mt19937 random(7);
   std::normal_distribution<double> normal(0, kNoise);
   std::vector<std::vector<double>> columns(11);

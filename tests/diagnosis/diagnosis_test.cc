@@ -9,15 +9,17 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnosis/diagnosed_bar.h"
-#include "diagnosis/diagnosis_record.h"
+#include "diagnosis/recorded_diagnosis.h"
+#include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"
+#include "effects/catalogue.h"
+#include "report/verdict_text.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
 
 using ::testing::Contains;
-using Verdict = Diagnosis::Verdict;
 
 // The truth has a finer mesh and shorter steps; the error of the model is about 1.5 to 2 σ.
 constexpr double kModelError = 2;  // σ
@@ -29,14 +31,14 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
   HeldBarTruth truth;
   truth.alpha = 12;
   const Diagnosis diagnosis = DiagnoseBar(truth, kWithoutDamping);
-  EXPECT_GT(diagnosis.errors.in_noise, 3 * kModelError);
+  EXPECT_GT(diagnosis.errors.rms_over_sigma, 3 * kModelError);
   ASSERT_TRUE(diagnosis.verdict == Verdict::kMissing || diagnosis.verdict == Verdict::kAmbiguous)
-      << diagnosis.explanation;
+      << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, Contains("mass_damping"));
   for (const RankedEffect& effect : diagnosis.ranking) {
     if (effect.scored.candidate.type != "mass_damping") continue;
     EXPECT_TRUE(effect.refitted);
-    EXPECT_LT(effect.errors.in_noise, kModelError);
+    EXPECT_LT(effect.errors.rms_over_sigma, kModelError);
     // 1/s; the width of the interval is a tenth of the value.
     ASSERT_EQ(effect.sizes.size(), 1u);
     EXPECT_NEAR(effect.sizes[0].value, truth.alpha, 0.15 * truth.alpha);
@@ -48,8 +50,8 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
 
 TEST(Diagnosis, NamesNoEffectIfNothingIsMissing) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
-  EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
-  EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << diagnosis.explanation;
+  EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
+  EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << ExplainVerdict(RecordOf(diagnosis));
 }
 
 // Without a time step in the experiment, the first fit starts with half of the frame spacing.
@@ -69,7 +71,7 @@ TEST(Diagnosis, ShortensATimeStepWhoseErrorCouldLookLikeAnEffect) {
       if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.doubt;
     return std::nan("");
   };
-  EXPECT_GT(MayLend(doubt(as_given)), kNamed);
+  EXPECT_GT(DiscretisationUncertainty(doubt(as_given)), kThresholds.naming.least_evidence);
   EXPECT_LT(doubt(shortened), 0.5 * doubt(as_given));
 }
 
@@ -77,19 +79,19 @@ TEST(Diagnosis, NamesTheTimeErrorsOfSingleFrames) {
   HeldBarTruth truth;
   truth.jitter = 1e-3;
   const Diagnosis diagnosis = DiagnoseBar(truth, {});
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, Contains("time_jitter"));
-  EXPECT_GT(diagnosis.instead.nuisances_evidence, 50);
-  EXPECT_GT(diagnosis.instead.bare.without_nuisances, diagnosis.errors.without_nuisances);
+  EXPECT_GT(diagnosis.alternatives.nuisances_evidence, 50);
+  EXPECT_GT(diagnosis.alternatives.bare.without_nuisances, diagnosis.errors.without_nuisances);
 }
 
 TEST(Diagnosis, HasNoPowerIfNoEffectIsDetectable) {
   // 100 m of noise on a bar of 0.08 m.
   const Diagnosis diagnosis = DiagnoseBar({}, {{"noise: 0.05 mm", "noise: 100 m"}});
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << ExplainVerdict(RecordOf(diagnosis));
 }
 
-TEST(Diagnosis, IsSavedWithTheVerdictAndEveryEffect) {
+TEST(Diagnosis, IsRecordedWithTheVerdictAndEveryEffect) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::kNotInLibrary;
   diagnosis.ranking.emplace_back();
@@ -110,26 +112,30 @@ TEST(Diagnosis, IsSavedWithTheVerdictAndEveryEffect) {
   place.high = 0.07;
   refitted.others = {{"drag.centre_x", "m", place}};
   const TemporaryFolder folder;
-  SaveDiagnosis(diagnosis, folder / "diagnosis.json");
+  WriteDiagnosisFile(RecordOf(diagnosis), folder / "diagnosis.json");
   std::ifstream stream(folder / "diagnosis.json");
   const auto written = nlohmann::json::parse(stream);
   EXPECT_EQ(written["verdict"], "not in library");
   EXPECT_EQ(written["ranking"][0]["effect"], "drag");
   EXPECT_TRUE(written["ranking"][0]["sizes"][0]["detectable"].is_null());
   const DiagnosisRecord read = ReadDiagnosisFile(folder / "diagnosis.json");
+  EXPECT_EQ(read.verdict, Verdict::kNotInLibrary);
+  EXPECT_EQ(read.ranking[0].title, FindEntry("drag")->card->title);
   EXPECT_EQ(read.ranking[0].sizes[0].expected, 1);
   EXPECT_FALSE(read.ranking[0].sizes[0].refitted.has_value());
   ASSERT_TRUE(read.ranking[1].sizes[0].refitted.has_value());
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->value, 2);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->low, 1);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
-  EXPECT_TRUE(read.ranking[0].others.empty());
-  ASSERT_EQ(read.ranking[1].others.size(), 1u);
-  EXPECT_EQ(read.ranking[1].others[0].parameter, "drag.centre_x");
-  EXPECT_EQ(read.ranking[1].others[0].unit, "m");
-  EXPECT_EQ(read.ranking[1].others[0].found.value, 0.05);
-  EXPECT_EQ(read.ranking[1].others[0].found.low, -INFINITY);
-  EXPECT_EQ(read.ranking[1].others[0].found.high, 0.07);
+  EXPECT_FALSE(read.ranking[0].refit.has_value());
+  ASSERT_TRUE(read.ranking[1].refit.has_value());
+  const std::vector<RecordedValue>& others = read.ranking[1].refit->others;
+  ASSERT_EQ(others.size(), 1u);
+  EXPECT_EQ(others[0].parameter, "drag.centre_x");
+  EXPECT_EQ(others[0].unit, "m");
+  EXPECT_EQ(others[0].found.value, 0.05);
+  EXPECT_EQ(others[0].found.low, -INFINITY);
+  EXPECT_EQ(others[0].found.high, 0.07);
 }
 
 }  // namespace

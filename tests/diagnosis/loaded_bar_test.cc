@@ -14,11 +14,13 @@
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
 #include "fem/simulate.h"
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
+#include "report/verdict_text.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -186,7 +188,7 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
   options.refits = 2;
   const Diagnosis diagnosis =
       Diagnose(problem, fit.calibration.parameters, options, progress_.get());
-  EXPECT_EQ(diagnosis.verdict, Diagnosis::Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, testing::ElementsAre("viscoelastic_branch"));
   for (const RankedEffect& effect : diagnosis.ranking) {
     if (effect.scored.candidate.type != "viscoelastic_branch") continue;

@@ -6,7 +6,9 @@
 #include "diagnosis/diagnosed_bar.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
+#include "report/verdict_text.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -14,7 +16,6 @@ namespace {
 
 using ::testing::AnyOf;
 using ::testing::Contains;
-using Verdict = Diagnosis::Verdict;
 
 // The truth has a finer mesh and shorter steps; the error of the model is about 1.5 to 2 σ.
 constexpr double kModelError = 2;  // σ
@@ -115,18 +116,18 @@ TEST(PilotHypotheses, AnElasticityLawTakesOverTheFittedModuli) {
 
 TEST(Diagnosis, PrefersAPlaneThatTheBarMeets) {
   const Diagnosis diagnosis = DiagnoseBar(BesideAPlane(), {});
-  EXPECT_GT(diagnosis.errors.in_noise, kModelError);
+  EXPECT_GT(diagnosis.errors.rms_over_sigma, kModelError);
   const RankedEffect* contact = Find(diagnosis, "plane_contact");
   ASSERT_NE(contact, nullptr);
   ASSERT_TRUE(contact->refitted);
-  EXPECT_LT(contact->errors.in_noise, 0.55 * diagnosis.errors.in_noise);
+  EXPECT_LT(contact->errors.rms_over_sigma, 0.55 * diagnosis.errors.rms_over_sigma);
   for (const RankedEffect& other : diagnosis.ranking) {
     if (other.refitted && &other != contact) {
       EXPECT_LT(other.evidence, contact->evidence);
     }
   }
   for (const std::string& named : diagnosis.effects)
-    EXPECT_EQ(named, "plane_contact") << diagnosis.explanation;
+    EXPECT_EQ(named, "plane_contact") << ExplainVerdict(RecordOf(diagnosis));
 }
 
 TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
@@ -154,7 +155,8 @@ TEST(Diagnosis, NamesNoWrongEffectWhereAnotherLawIsMissing) {
               AnyOf("st_venant_kirchhoff", "strain_stiffening"));
   // The error of the coarse mesh is so large that the verdict may name nothing.
   if (diagnosis.verdict == Verdict::kMissing) {
-    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff") << diagnosis.explanation;
+    EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff")
+        << ExplainVerdict(RecordOf(diagnosis));
   }
   if (diagnosis.verdict == Verdict::kAmbiguous) {
     EXPECT_THAT(diagnosis.effects, Contains("st_venant_kirchhoff"));

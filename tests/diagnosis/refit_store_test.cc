@@ -7,7 +7,8 @@
 #include <limits>
 
 #include "calibration/calibration_fits.h"
-#include "diagnosis/diagnosis_record.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/recorded_diagnosis.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -82,8 +83,9 @@ TEST(RefitStore, AStoppedDiagnosisContinuesToTheSameResult) {
   const auto diagnose = [&](const std::string& name) {
     const CalibrationProblem problem(study, mesh);
     RefitStore kept(file, {{"of", "bar"}});
-    SaveDiagnosis(Diagnose(problem, fit.parameters, {.refits = 1, .without = {}}, &progress, &kept),
-                  folder / name);
+    const Diagnosis diagnosis =
+        Diagnose(problem, fit.parameters, {.refits = 1, .without = {}}, &progress, &kept);
+    WriteDiagnosisFile(RecordOf(diagnosis), folder / name);
     return FileContent(folder / name);
   };
   const std::string whole = diagnose("whole.json");

@@ -97,9 +97,9 @@ TEST(ScanPrediction, RecoversWhatWasScanned) {
   EXPECT_EQ(misfit.held_out.frames, kScans - 11);
   // All patches but some at the clamped end's edges are seen by the four cameras.
   EXPECT_GT(misfit.held_out.points, 0.95 * 150 * (kScans - 11));
-  EXPECT_LT(misfit.in_fit.in_noise, 1.1);
+  EXPECT_LT(misfit.in_fit.rms_over_sigma, 1.1);
   // The discretisation shows later on, by half as much as the noise of a patch.
-  EXPECT_LT(misfit.held_out.in_noise, 1.5);
+  EXPECT_LT(misfit.held_out.rms_over_sigma, 1.5);
   EXPECT_TRUE(problem.models()[0].LostFrames(misfit.misfit, 0.95).empty());
 }
 
@@ -184,7 +184,7 @@ TEST(ScanPrediction, GoesTogetherWithMarkers) {
   EXPECT_EQ(misfits[0].misfit.Components(), 1);
   EXPECT_EQ(misfits[1].misfit.Components(), 3);
   // Each in its own noise: nothing is missing in the model but the fineness of its mesh.
-  for (const RecordingMisfit& misfit : misfits) EXPECT_LT(misfit.in_fit.in_noise, 1.5);
+  for (const RecordingMisfit& misfit : misfits) EXPECT_LT(misfit.in_fit.rms_over_sigma, 1.5);
 }
 
 constexpr char kCarriedEnd[] =

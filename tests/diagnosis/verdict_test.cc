@@ -5,7 +5,9 @@
 
 #include <optional>
 
+#include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
@@ -13,12 +15,20 @@ namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
-using Verdict = Diagnosis::Verdict;
+
+std::string Explanation(const Diagnosis& diagnosis) { return ExplainVerdict(RecordOf(diagnosis)); }
+
+// The first reason of this kind, or null.
+template <typename Reason>
+const Reason* FindReason(const Diagnosis& diagnosis) {
+  for (const VerdictReason& reason : diagnosis.reasons)
+    if (const auto* found = std::get_if<Reason>(&reason)) return found;
+  return nullptr;
+}
 
 constexpr double kEvidence = 1000;  // of the nuisance
 
-// A time error of every frame explains it all; mass damping, without that, has `evidence` and
+// A time error of each frame explains everything. Mass damping in its place has `evidence`, and
 // changes the held-out error from 10 σ to `error`.
 Diagnosis DelayedFrames(double evidence, double error) {
   Diagnosis diagnosis;
@@ -30,9 +40,9 @@ Diagnosis DelayedFrames(double evidence, double error) {
   jitter.candidate.card.advice = "check the camera's clock";
   jitter.evidence = kEvidence;
   jitter.adopted = true;
-  diagnosis.instead.nuisances_evidence = kEvidence;
-  diagnosis.instead.bare.without_nuisances = 10;
-  RankedEffect& damping = diagnosis.instead.effects.emplace_back();
+  diagnosis.alternatives.nuisances_evidence = kEvidence;
+  diagnosis.alternatives.bare.without_nuisances = 10;
+  RankedEffect& damping = diagnosis.alternatives.effects.emplace_back();
   damping.scored.candidate.type = "mass_damping";
   damping.scored.candidate.effect = MakeEffect("mass_damping", {{"alpha", 10}});
   damping.refitted = true;
@@ -41,13 +51,13 @@ Diagnosis DelayedFrames(double evidence, double error) {
   return diagnosis;
 }
 
-// A point force has twice the evidence of gravity; on a recording that was not fitted they leave
-// these errors, σ.
+// A point force has twice the evidence of gravity. The arguments are their errors on a recording
+// that was not fitted, σ.
 Diagnosis SaggingBeam(double with_point_force, double with_gravity) {
   Diagnosis diagnosis;
   diagnosis.errors.has_held_out = true;
-  diagnosis.errors.without_nuisances = diagnosis.present_in_noise = 5;
-  diagnosis.left_in_noise = 1;
+  diagnosis.errors.without_nuisances = diagnosis.baseline_rms_over_sigma = 5;
+  diagnosis.best_rms_over_sigma = 1;
   const auto add = [&](const std::string& type, double evidence, double error) {
     RankedEffect& effect = diagnosis.ranking.emplace_back();
     CandidateEffect& candidate = effect.scored.candidate;
@@ -58,8 +68,8 @@ Diagnosis SaggingBeam(double with_point_force, double with_gravity) {
     effect.scored.score.detectable = Eigen::Vector3d::Constant(1e-3);
     effect.refitted = true;
     effect.evidence = evidence;
-    effect.left_in_noise = effect.errors.without_nuisances = 1;
-    effect.errors.unfitted_in_noise = error;
+    effect.rms_over_sigma = effect.errors.without_nuisances = 1;
+    effect.errors.unfitted_rms_over_sigma = error;
   };
   add("point_force", 300, with_point_force);
   add("gravity", 150, with_gravity);
@@ -69,11 +79,11 @@ Diagnosis SaggingBeam(double with_point_force, double with_gravity) {
 TEST(Verdict, NamesTheEffectWithFarMoreEvidence) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force"));
 }
 
-// Where the model is at the noise as it is, an effect of no size is none.
+// Where the model is at the noise already, an effect whose size may be 0 is not named.
 TEST(Verdict, NamesNoEffectWhoseSizeMayBeNone) {
   Diagnosis diagnosis = SaggingBeam(1, 1);
   ParameterEstimate size;
@@ -82,41 +92,42 @@ TEST(Verdict, NamesNoEffectWhoseSizeMayBeNone) {
   size.high = 7;
   for (RankedEffect& effect : diagnosis.ranking) effect.sizes.assign(3, size);
   Diagnosis at_noise = diagnosis;
-  at_noise.errors.in_noise = at_noise.errors.without_nuisances = at_noise.present_in_noise = 1.1;
+  at_noise.errors.rms_over_sigma = at_noise.errors.without_nuisances =
+      at_noise.baseline_rms_over_sigma = 1.1;
   Diagnosis certain = at_noise;
   at_noise.ranking[0].evidence = 9;
   at_noise.ranking[1].evidence = 2;
   Diagnosis sure = at_noise;
   Decide(&at_noise);
-  EXPECT_EQ(at_noise.verdict, Verdict::kAdequate) << at_noise.explanation;
+  EXPECT_EQ(at_noise.verdict, Verdict::kAdequate) << Explanation(at_noise);
   sure.ranking[0].sizes[1].low = 1;
   Decide(&sure);
-  EXPECT_EQ(sure.verdict, Verdict::kMissing) << sure.explanation;
+  EXPECT_EQ(sure.verdict, Verdict::kMissing) << Explanation(sure);
   EXPECT_THAT(sure.effects, ElementsAre("point_force"));
-  // The interval of what has such evidence means little.
+  // With so much evidence, the interval means little.
   Decide(&certain);
-  EXPECT_EQ(certain.verdict, Verdict::kMissing) << certain.explanation;
-  // Far from the noise, evidence counts.
+  EXPECT_EQ(certain.verdict, Verdict::kMissing) << Explanation(certain);
+  // Far from the noise, the evidence decides.
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
 }
 
-// Held-out frames that it leaves far from the noise are not predicted.
+// An effect whose held-out error stays far above the noise does not predict.
 TEST(Verdict, DoesNotNameAnEffectThatPredictsPoorly) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   diagnosis.errors.without_nuisances = 2;
   diagnosis.ranking[0].errors.without_nuisances = 1.25;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
   diagnosis.ranking[0].errors.without_nuisances = 1.6;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
-  // It took away nearly all of a much larger error.
+  // It removes nearly all of a much larger error.
   diagnosis.errors.without_nuisances = 6;
   diagnosis.effects.clear();
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
-  // A rival that explains as much predicts.
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
+  // A rival that explains as much does predict.
   diagnosis.errors.without_nuisances = 2;
   diagnosis.ranking[1].evidence = 295;
   diagnosis.effects.clear();
@@ -124,7 +135,7 @@ TEST(Verdict, DoesNotNameAnEffectThatPredictsPoorly) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
 }
 
-// Another effect beside it has much of its evidence.
+// Beside the best effect, another one has much evidence.
 TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   diagnosis.ranking[0].further = {"drag", 14};
@@ -133,8 +144,11 @@ TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   diagnosis.ranking[0].further.evidence = 16;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
-  EXPECT_THAT(diagnosis.explanation, testing::HasSubstr("beside it those for drag are e^16"));
-  // A rival that explains as much leaves nothing.
+  const auto* another = FindReason<EvidenceForAnother>(diagnosis);
+  ASSERT_NE(another, nullptr);
+  EXPECT_EQ(another->other, "drag");
+  EXPECT_EQ(another->other_evidence, 16);
+  // A rival that explains as much leaves no evidence.
   diagnosis.effects.clear();
   diagnosis.ranking[1].evidence = 295;
   Decide(&diagnosis);
@@ -144,22 +158,22 @@ TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   diagnosis.ranking[1].further = {"drag", 40};
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary);
-  // Nor is it another effect where a nuisance explains as much.
+  // Where a nuisance explains the remainder as well, it is no other effect.
   diagnosis.effects.clear();
   diagnosis.ranking[1].evidence = 150;
   diagnosis.ranking[0].further.of_nuisance = 15;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
   diagnosis.ranking[0].further.of_nuisance = 0;
-  // What the mesh may lend is no evidence.
+  // What the uncertainty of the mesh could account for is no evidence.
   diagnosis.nuisances.emplace_back().doubt = 20;
   diagnosis.ranking[1].evidence = 150;
   diagnosis.effects.clear();
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
 }
 
-// What the held-out frames speak against is not named first, and may still be a rival.
+// An effect with held-out evidence against it is not named first, and may still be a rival.
 TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutFramesAlone) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   diagnosis.ranking[1].evidence = 295;
@@ -173,7 +187,7 @@ TEST(Verdict, DoesNotRuleOutARivalByTheHeldOutFramesAlone) {
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
 }
 
-// An effect that is not there would do no harm: a refit that says it does has gone astray.
+// An absent effect has size 0 and evidence 0: a refit with negative evidence has failed.
 TEST(Verdict, DoesNotRuleOutWhatCouldNotBeFitted) {
   Diagnosis diagnosis = SaggingBeam(12, 12);
   diagnosis.ranking[0].scored.score.evidence = 310;
@@ -185,7 +199,7 @@ TEST(Verdict, DoesNotRuleOutWhatCouldNotBeFitted) {
   diagnosis.ranking[1].scored.score.evidence = 200;
   diagnosis.effects.clear();
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
 }
 
 TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
@@ -196,29 +210,34 @@ TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
   EXPECT_THAT(diagnosis.effects, ElementsAre("point_force", "gravity"));
-  EXPECT_NE(diagnosis.explanation.find("11.0 σ against 12.0 σ"), std::string::npos)
-      << diagnosis.explanation;
+  const auto* better = FindReason<RivalPredictsBetter>(diagnosis);
+  ASSERT_NE(better, nullptr);
+  EXPECT_EQ(better->effect, "gravity");
+  EXPECT_EQ(better->over_sigma, 11);
+  EXPECT_EQ(better->over_sigma_of_best, 12);
 }
 
-// What a finer mesh might change could be what the effect explains.
-TEST(Verdict, TakesWhatTheMeshMayLendForNoEvidenceAtTheNoise) {
+// The uncertain change by a finer mesh could be what the effect explains.
+TEST(Verdict, IgnoresEvidenceWithinTheMeshUncertaintyAtTheNoise) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
   diagnosis.nuisances.emplace_back().candidate.card.name = "mesh";
   diagnosis.nuisances.back().candidate.card.is_always_in_model = true;
   diagnosis.nuisances.back().candidate.card.advice = "choose a smaller mesh.max_volume";
   diagnosis.nuisances.back().doubt = 200;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ are no noise";
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ is not noise";
   EXPECT_THAT(diagnosis.effects, Contains("mesh"));
-  diagnosis.present_in_noise = diagnosis.errors.without_nuisances = 1;
+  diagnosis.baseline_rms_over_sigma = diagnosis.errors.without_nuisances = 1;
   diagnosis.effects.clear();
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
-  EXPECT_EQ(diagnosis.experiment, "choose a smaller mesh.max_volume, and diagnose again");
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << Explanation(diagnosis);
+  EXPECT_NE(FindReason<UncertainDiscretisation>(diagnosis), nullptr);
+  EXPECT_EQ(DescribeNextSteps(RecordOf(diagnosis)),
+            "choose a smaller mesh.max_volume, and diagnose again");
 }
 
-// With mesh, dimensions and drift at their best for all frames a magnet left 1.2 σ; from the fitted
-// frames, 2.4 σ of the others.
+// With mesh, dimensions and drift at their best for all frames, the residual may be near the noise
+// although the fitted frames do not predict the others.
 TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
   for (RankedEffect& effect : diagnosis.ranking) effect.evidence = 1;
@@ -226,30 +245,30 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   drift.candidate.card.name = "registration_drift";
   drift.evidence = 20;
   drift.explained = 0.1;
-  diagnosis.errors.in_noise = 2.4;
-  diagnosis.present_in_noise = 1.18;
-  diagnosis.left_in_noise = 1.15;
+  diagnosis.errors.rms_over_sigma = 2.4;
+  diagnosis.baseline_rms_over_sigma = 1.18;
+  diagnosis.best_rms_over_sigma = 1.15;
   diagnosis.errors.without_nuisances = 1.2;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << Explanation(diagnosis);
   diagnosis.effects.clear();
   diagnosis.errors.without_nuisances = 2.4;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << Explanation(diagnosis);
   EXPECT_TRUE(diagnosis.effects.empty());
   diagnosis.nuisances.back().explained = 0.7;  // the most of what is left over all frames
-  diagnosis.left_in_noise = 1.3;
+  diagnosis.best_rms_over_sigma = 1.3;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNotInLibrary) << Explanation(diagnosis);
   EXPECT_TRUE(diagnosis.effects.empty());
-  // What is wrong with single frames cannot be predicted.
+  // Errors of single frames cannot be predicted from others.
   diagnosis.effects.clear();
   diagnosis.nuisances.back().candidate.card.acts_on_single_frames = true;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << Explanation(diagnosis);
 }
 
-// Both are judged after a refit where there was one: first order promised both too much.
+// Both are judged by their refits where there are any: first order overrates both.
 TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
   const auto with = [](std::optional<double> refitted) {
     Diagnosis diagnosis = SaggingBeam(1, 1);
@@ -266,59 +285,60 @@ TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
   EXPECT_THAT(with(1850).effects, ElementsAre("point_force"));
   EXPECT_THAT(with(1899).effects, ElementsAre("point_force", "registration_drift"));
   EXPECT_THAT(with(std::nullopt).effects, ElementsAre("point_force", "registration_drift"));
-  // An effect comes first, as it can be added; that another does more is said.
+  // The effect comes first, since it can be added; that the nuisance explains more is a reason.
   EXPECT_THAT(with(1950).effects, ElementsAre("point_force", "registration_drift"));
-  EXPECT_THAT(with(1950).explanation, HasSubstr("registration_drift has more evidence, e^1950"));
-  EXPECT_THAT(with(1899).explanation, Not(HasSubstr("more evidence")));
+  EXPECT_THAT(Explanation(with(1950)), HasSubstr("registration_drift has more evidence, e^1950"));
+  EXPECT_EQ(FindReason<NuisanceHasMoreEvidence>(with(1899)), nullptr);
 }
 
-// A grip that is certainly misplaced, by a twentieth of a millimetre.
-TEST(Verdict, TellsASmallNuisanceAtTheNoiseWithoutNamingIt) {
+// A grip that is certainly misplaced, by very little.
+TEST(Verdict, MentionsASmallNuisanceAtTheNoiseWithoutNamingIt) {
   Diagnosis diagnosis = SaggingBeam(1, 1);
   for (RankedEffect& effect : diagnosis.ranking) effect.refitted = false;
-  diagnosis.present_in_noise = 0.9;
-  diagnosis.errors.in_noise = diagnosis.errors.without_nuisances = 1.1;
+  diagnosis.baseline_rms_over_sigma = 0.9;
+  diagnosis.errors.rms_over_sigma = diagnosis.errors.without_nuisances = 1.1;
   ScoredNuisance& placement = diagnosis.nuisances.emplace_back();
   placement.candidate.card.name = "grip_placement";
   placement.candidate.what = "the placement";
   placement.evidence = 40;
   placement.explained = 0.03;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << diagnosis.explanation;
-  EXPECT_NE(diagnosis.explanation.find("the placement"), std::string::npos);
+  EXPECT_EQ(diagnosis.verdict, Verdict::kAdequate) << Explanation(diagnosis);
+  EXPECT_NE(FindReason<NuisanceIsNegligible>(diagnosis), nullptr);
+  EXPECT_THAT(Explanation(diagnosis), HasSubstr("the placement"));
 
   diagnosis.effects.clear();
   diagnosis.nuisances.front().explained = 0.3;
   Decide(&diagnosis);
-  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << diagnosis.explanation;
+  EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << Explanation(diagnosis);
   EXPECT_THAT(diagnosis.effects, ElementsAre("grip_placement"));
 }
 
-TEST(Verdict, SetsAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
+TEST(Verdict, NamesAnEffectThatPredictsBesideTheNuisanceThatExplainsAsMuch) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
-  diagnosis.instead.effects.front().scored.look_alikes = {"drag"};  // which was not tried
+  diagnosis.alternatives.effects.front().scored.look_alikes = {"drag"};  // which was not tried
   DecideAgainstNuisances(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous);
   EXPECT_THAT(diagnosis.effects, ElementsAre("mass_damping", "drag", "time_jitter"));
-  EXPECT_NE(diagnosis.experiment.find("check the camera's clock"), std::string::npos);
+  EXPECT_THAT(DescribeNextSteps(RecordOf(diagnosis)), HasSubstr("check the camera's clock"));
 }
 
-TEST(Verdict, LeavesTheNuisanceWhereTheEffectExplainsMuchLess) {
+TEST(Verdict, KeepsTheNuisanceWhereTheEffectExplainsMuchLess) {
   Diagnosis diagnosis = DelayedFrames(0.5 * kEvidence, 3);
   DecideAgainstNuisances(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
   EXPECT_THAT(diagnosis.effects, ElementsAre("time_jitter"));
 }
 
-TEST(Verdict, LeavesTheNuisanceWhereTheEffectPredictsNothing) {
+TEST(Verdict, KeepsTheNuisanceWhereTheEffectPredictsNothing) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 9.8);
   DecideAgainstNuisances(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
 }
 
-TEST(Verdict, LeavesTheNuisanceWhereTheEffectCannotBeFitted) {
+TEST(Verdict, KeepsTheNuisanceWhereTheEffectCannotBeFitted) {
   Diagnosis diagnosis = DelayedFrames(0.9 * kEvidence, 3);
-  diagnosis.instead.effects.front().refit_message = "no step could be taken";
+  diagnosis.alternatives.effects.front().refit_message = "no step could be taken";
   DecideAgainstNuisances(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance);
 }

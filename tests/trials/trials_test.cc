@@ -106,7 +106,8 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   ASSERT_FALSE(outcome.ranked.empty());
   // Drag and mass damping are look-alikes: drag is first or second in the ranking.
   EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");
-  EXPECT_TRUE(outcome.verdict == "missing" || outcome.verdict == "ambiguous") << outcome.verdict;
+  EXPECT_TRUE(outcome.verdict == Verdict::kMissing || outcome.verdict == Verdict::kAmbiguous)
+      << VerdictName(outcome.verdict);
   ASSERT_TRUE(outcome.has_truth);
   EXPECT_LT(outcome.error_after, outcome.error_before);
   // The size is 20 standard deviations of the noise (4 times the detectable size), so noise alone
@@ -136,7 +137,7 @@ TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
   suite.factors = {2, 2, 2};
   std::vector<TrialCase> cases = CasesOf(suite);
   TrialOutcome outcome;
-  outcome.verdict = "missing";
+  outcome.verdict = Verdict::kMissing;
   outcome.named = {"gravity"};
   Write(folder.Path(), cases[0], outcome);  // a false alarm
   outcome.named = {"drag"};
@@ -146,13 +147,13 @@ TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
   outcome.relative_error = 0.1;
   outcome.covered = {1};
   Write(folder.Path(), cases[2], outcome);  // right
-  outcome.verdict = "ambiguous";
+  outcome.verdict = Verdict::kAmbiguous;
   outcome.named = {"mass_damping", "drag"};
   outcome.ranked = {"mass_damping", "drag"};
   outcome.error_after = 1.3;
   outcome.covered = {0};
   Write(folder.Path(), cases[3], outcome);  // counted in the top 2
-  outcome.verdict = "missing";
+  outcome.verdict = Verdict::kMissing;
   outcome.named = {"mass_damping"};
   outcome.ranked = {"mass_damping", "gravity"};
   Write(folder.Path(), cases[4], outcome);  // wrong

@@ -1,23 +1,29 @@
+#include "report/ledger_report.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/text_layout.h"
-#include "diagnosis/ledger.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kMoved = 1;            // deviations: less is not told of the model's parameters
-constexpr const char* kTrunk = "│   ";  // beside what belongs to a model with more below it
+// Parameters that moved by fewer standard deviations are only counted.
+constexpr double kMoved = 1;
+// The margin of a model's lines where further models hang below it.
+constexpr const char* kTrunk = "│   ";
 
-std::string Error(double rms, double in_noise) {
-  return fmt::format("{:7.3f} mm {:5.1f} σ", 1e3 * rms, in_noise);
+std::string Error(double rms, double over_sigma) {
+  return fmt::format("{:7.3f} mm {:5.1f} σ", 1e3 * rms, over_sigma);
 }
 
-std::string Of(const MisfitMeasure& measure) {
-  return measure.points == 0 ? PaddedRight("      –", 18) : Error(measure.rms, measure.in_noise);
+std::string ErrorCell(const MisfitMeasure& measure) {
+  return measure.points == 0 ? PaddedRight("      –", 18)
+                             : Error(measure.rms, measure.rms_over_sigma);
 }
 
 std::string ErrorTable(const LedgerModel& model, const std::string& margin) {
@@ -26,7 +32,7 @@ std::string ErrorTable(const LedgerModel& model, const std::string& margin) {
   for (const FittedRecording& recording : model.record.recordings)
     table += margin + "  " +
              PaddedRight(recording.name + (recording.fitted ? "" : " (not fitted)"), 24) +
-             PaddedRight(Of(recording.in_fit), 22) + Of(recording.held_out) + "\n";
+             PaddedRight(ErrorCell(recording.in_fit), 22) + ErrorCell(recording.held_out) + "\n";
   return table;
 }
 
@@ -36,7 +42,7 @@ std::string Move(const ParameterMove& move) {
     return fmt::format("{} {:.4g}{} ({:.4g} … {:.4g}), new", move.name, move.after, unit, move.low,
                        move.high);
   const double relative = move.before != 0 ? move.after / move.before - 1 : 0;
-  return fmt::format("{} {:.4g} → {:.4g}{} ({:+.1f} %, {:+.1f} of its deviations)", move.name,
+  return fmt::format("{} {:.4g} → {:.4g}{} ({:+.1f} %, {:+.1f} standard deviations)", move.name,
                      move.before, move.after, unit, 100 * relative, move.in_deviations);
 }
 
@@ -50,19 +56,21 @@ std::string Moves(const LedgerModel& model, const std::string& margin) {
       ++quiet;
   }
   if (quiet > 0)
-    lines += fmt::format("{}  {} further parameter{} moved by less than {:g} deviation\n", margin,
-                         quiet, quiet == 1 ? "" : "s", kMoved);
+    lines += fmt::format("{}  {} further parameter{} moved by less than {:g} standard deviation\n",
+                         margin, quiet, quiet == 1 ? "" : "s", kMoved);
   return lines;
 }
 
 std::string Leaf(const RecordedEffect& effect) {
-  if (!effect.refit_message.empty())
-    return PaddedRight(effect.type, 24) + "not usable: " + effect.refit_message;
-  return PaddedRight(effect.type, 24) + Error(effect.errors.held_out_rms, effect.errors.in_noise) +
-         fmt::format("   evidence {:.1f}", effect.refit_evidence);
+  if (!effect.HasUsableRefit())
+    return PaddedRight(effect.type, 24) + "not usable: " + effect.refit->message;
+  const ModelErrors& errors = effect.refit->errors;
+  return PaddedRight(effect.type, 24) + Error(errors.held_out_rms, errors.rms_over_sigma) +
+         fmt::format("   evidence {:.1f}", effect.refit->evidence);
 }
 
-// What hangs below model `index`; the lines' margin is what connects it with its forebears.
+// The models and leaves below model `index`. The margin holds the lines that connect it to its
+// ancestors.
 std::string Branch(const Ledger& ledger, size_t index, const std::string& margin) {
   const LedgerModel& model = ledger.models[index];
   std::vector<size_t> children;
@@ -75,7 +83,7 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
   std::vector<const RecordedEffect*> leaves;
   if (model.diagnosis)
     for (const RecordedEffect& effect : model.diagnosis->ranking)
-      if (effect.refitted && !is_child(effect)) leaves.push_back(&effect);
+      if (effect.refit && !is_child(effect)) leaves.push_back(&effect);
 
   const bool has_more = !children.empty() || !leaves.empty();
   const std::string own = margin + (has_more ? kTrunk : "    ");
@@ -90,9 +98,10 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
     const DiagnosisRecord& diagnosis = *model.diagnosis;
     const std::string blank = has_more ? margin + "│" : margin;
     text += blank.substr(0, blank.find_last_not_of(' ') + 1) + "\n";
-    text += Wrapped(VerdictWithNames(diagnosis) + ": " + diagnosis.explanation, own, own + "  ");
-    if (!diagnosis.experiment.empty())
-      text += Wrapped("what would tell: " + diagnosis.experiment, own, own + "  ");
+    text +=
+        Wrapped(VerdictWithNames(diagnosis) + ": " + ExplainVerdict(diagnosis), own, own + "  ");
+    if (!diagnosis.next_steps.empty())
+      text += Wrapped("next: " + DescribeNextSteps(diagnosis), own, own + "  ");
   }
   for (size_t k = 0; k < leaves.size(); ++k) {
     const bool is_last = children.empty() && k + 1 == leaves.size();
@@ -103,7 +112,7 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
     const bool is_last = k + 1 == children.size();
     text += margin + (is_last ? "└── " : "├── ") + "added  " + PaddedRight(child.added, 24);
     if (child.record.usable)
-      text += Error(child.errors.held_out_rms, child.errors.in_noise) +
+      text += Error(child.errors.held_out_rms, child.errors.rms_over_sigma) +
               fmt::format("   {:.0f} % {} than before", std::abs(100 * child.gain),
                           child.gain >= 0 ? "less" : "more");
     text += "\n" + Branch(ledger, children[k], margin + (is_last ? "    " : kTrunk));
@@ -112,7 +121,8 @@ std::string Branch(const Ledger& ledger, size_t index, const std::string& margin
 }
 
 std::string Total(const LedgerModel& model) {
-  return fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * model.errors.held_out_rms, model.errors.in_noise);
+  return fmt::format("{:.3f} mm, {:.1f} σ", 1e3 * model.errors.held_out_rms,
+                     model.errors.rms_over_sigma);
 }
 
 // The effects that lead from the first model to this one.
@@ -124,15 +134,47 @@ std::string AddedUpTo(const Ledger& ledger, const LedgerModel& model) {
 
 }  // namespace
 
-std::string LedgerInWords(const Ledger& ledger) {
+std::string DescribeEnding(const Ledger& ledger) {
+  using Reason = LedgerEnding::Reason;
+  const LedgerModel& last = ledger.models.back();
+  switch (ledger.ending.reason) {
+    case Reason::kNone:
+      return "";
+    case Reason::kVerdict:
+      return fmt::format("The search ended with the verdict \"{}\".",
+                         VerdictWithNames(last.diagnosis.value()));
+    case Reason::kUndecided:
+      return fmt::format(
+          "The search ended undecided between {{{}}}, and none of them is added by guess{}. With "
+          "--follow-best it goes on with the first.",
+          fmt::join(last.diagnosis->effects, ", "),
+          last.diagnosis->next_steps.empty()
+              ? ""
+              : "; what would decide: " + DescribeNextSteps(*last.diagnosis));
+    case Reason::kMostEffects:
+      return fmt::format("The search ended after {} added effects, although {} is still named.",
+                         ledger.models.size() - 1, last.diagnosis->effects.front());
+    case Reason::kNotFitted:
+      return fmt::format("The search ended because {} cannot be fitted: {}.", last.added,
+                         last.record.message);
+    case Reason::kLittleGain:
+      return fmt::format(
+          "The search ended because {} reduces the {} error by {:.1f} %, less than {:g} %.",
+          last.added, last.errors.has_held_out ? "held-out" : "fitted", 100 * last.gain,
+          100 * ledger.ending.least_gain);
+  }
+  return "";
+}
+
+std::string LedgerReport(const Ledger& ledger) {
   const LedgerModel& first = ledger.models.front();
   const LedgerModel& best = ledger.Best();
   const char* which = first.errors.has_held_out ? "held out" : "fitted";
   std::string text = PaddedRight(first.name, 35) +
-                     Error(first.errors.held_out_rms, first.errors.in_noise) + "   " + which +
+                     Error(first.errors.held_out_rms, first.errors.rms_over_sigma) + "   " + which +
                      "\n" + Branch(ledger, 0, "");
   text += "\n";
-  if (!ledger.ending.empty()) text += Wrapped(ledger.ending, "", "") + "\n";
+  if (ledger.HasEnded()) text += Wrapped(DescribeEnding(ledger), "", "") + "\n";
   const auto row = [&](const char* name, const std::string& value) {
     text += PaddedRight(name, 24) + value + "\n";
   };

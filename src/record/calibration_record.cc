@@ -1,12 +1,13 @@
-#include "calibration/calibration_record.h"
+#include "record/calibration_record.h"
 
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/json_number.h"
+#include "record/schema_version.h"
 
 namespace lacuna {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 using nlohmann::json;
 using Verdict = ParameterEstimate::Verdict;
 
+constexpr int kSchemaVersion = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
@@ -26,23 +28,17 @@ const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
   return names;
 }
 
-// JSON has neither infinity nor NaN: null.
-json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-double FromNumber(const json& value, double otherwise) {
-  return value.is_null() ? otherwise : value.get<double>();
-}
-
 json MeasureToJson(const MisfitMeasure& measure) {
   return {{"frames", measure.frames},
           {"points", measure.points},
           {"rms_m", measure.rms},
           {"largest_m", measure.largest},
-          {"in_noise", measure.in_noise}};
+          {"rms_over_sigma", measure.rms_over_sigma}};
 }
 
 MisfitMeasure MeasureFromJson(const json& value) {
   return {value.at("frames"), value.at("points"), value.at("rms_m"), value.at("largest_m"),
-          value.at("in_noise")};
+          value.at("rms_over_sigma")};
 }
 
 json ScanToJson(const FittedScan& scan) {
@@ -84,33 +80,37 @@ json ToJson(const CalibrationRecord& record) {
       entry["own"].push_back({{"name", own.name}, {"unit", own.unit}, {"value", own.value}});
     recordings.push_back(entry);
   }
-  json all = {{"schema_version", 1},
+  json conflicts = json::array();
+  for (const PriorConflict& conflict : record.prior_conflicts)
+    conflicts.push_back(PriorConflictToJson(conflict));
+  json all = {{"schema_version", kSchemaVersion},
               {"experiment", record.experiment.generic_string()},
               {"usable", record.usable},
               {"message", record.message},
               {"noise_m", record.noise},
               {"time_step_s", record.time_step},
-              {"step_error_in_noise", Number(record.step_error)},
-              {"rms_before", Number(record.start_rms)},
-              {"rms_after", Number(record.rms)},
+              {"step_error_over_sigma", NumberOrNull(record.step_error)},
+              {"rms_before", NumberOrNull(record.start_rms)},
+              {"rms_after", NumberOrNull(record.rms)},
               {"predictions", record.predictions},
               {"parameters", parameters},
               {"recordings", recordings},
-              {"strains", record.strains}};
+              {"prior_conflicts", conflicts}};
   if (record.scan_noise > 0) all["scan_noise_m"] = record.scan_noise;
   return all;
 }
 
 CalibrationRecord FromJson(const json& value) {
+  RequireSchemaVersion(value, kSchemaVersion, "lacuna fit");
   CalibrationRecord record;
   record.experiment = value.at("experiment").get<std::string>();
   record.usable = value.at("usable");
   record.message = value.at("message");
   record.noise = value.at("noise_m");
   record.time_step = value.at("time_step_s");
-  record.step_error = FromNumber(value.at("step_error_in_noise"), kInfinity);
-  record.start_rms = FromNumber(value.at("rms_before"), kInfinity);
-  record.rms = FromNumber(value.at("rms_after"), kInfinity);
+  record.step_error = NumberOr(value.at("step_error_over_sigma"), kInfinity);
+  record.start_rms = NumberOr(value.at("rms_before"), kInfinity);
+  record.rms = NumberOr(value.at("rms_after"), kInfinity);
   record.predictions = value.at("predictions");
   for (const json& entry : value.at("parameters")) {
     FittedParameter parameter;
@@ -130,7 +130,8 @@ CalibrationRecord FromJson(const json& value) {
     for (const json& own : entry.value("own", json::array()))
       record.recordings.back().own.push_back({own.at("name"), own.at("unit"), own.at("value")});
   }
-  record.strains = value.at("strains").get<std::vector<std::string>>();
+  for (const json& conflict : value.at("prior_conflicts"))
+    record.prior_conflicts.push_back(PriorConflictFromJson(conflict));
   return record;
 }
 
@@ -138,10 +139,10 @@ CalibrationRecord FromJson(const json& value) {
 
 json EstimateToJson(const ParameterEstimate& estimate) {
   return {{"value", estimate.value},
-          {"low_95", Number(estimate.low)},
-          {"high_95", Number(estimate.high)},
-          {"deviation_from_data", Number(estimate.deviation)},
-          {"deviation", Number(estimate.posterior_deviation)},
+          {"low_95", NumberOrNull(estimate.low)},
+          {"high_95", NumberOrNull(estimate.high)},
+          {"deviation_from_data", NumberOrNull(estimate.deviation)},
+          {"deviation", NumberOrNull(estimate.posterior_deviation)},
           {"verdict", VerdictName(estimate.verdict)},
           {"most_correlated_with", estimate.traded_with},
           {"correlation", estimate.correlation}};
@@ -150,10 +151,10 @@ json EstimateToJson(const ParameterEstimate& estimate) {
 ParameterEstimate EstimateFromJson(const json& value) {
   ParameterEstimate estimate;
   estimate.value = value.at("value");
-  estimate.low = FromNumber(value.at("low_95"), -kInfinity);
-  estimate.high = FromNumber(value.at("high_95"), kInfinity);
-  estimate.deviation = FromNumber(value.at("deviation_from_data"), kInfinity);
-  estimate.posterior_deviation = FromNumber(value.at("deviation"), kInfinity);
+  estimate.low = NumberOr(value.at("low_95"), -kInfinity);
+  estimate.high = NumberOr(value.at("high_95"), kInfinity);
+  estimate.deviation = NumberOr(value.at("deviation_from_data"), kInfinity);
+  estimate.posterior_deviation = NumberOr(value.at("deviation"), kInfinity);
   for (const auto& [verdict, name] : VerdictNames())
     if (name == value.at("verdict")) estimate.verdict = verdict;
   estimate.traded_with = value.at("most_correlated_with");
@@ -174,9 +175,10 @@ void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem
 CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file) {
   std::ifstream stream(file);
   try {
-    return FromJson(json::parse(stream));
+    const json value = json::parse(stream);
+    return NamingWhere(file.string(), [&] { return FromJson(value); });
   } catch (const json::exception& problem) {
-    throw InputError(file.string() + ": is no record of a calibration: " + problem.what());
+    throw InputError(file.string() + ": is not a record of a calibration: " + problem.what());
   }
 }
 

@@ -1,4 +1,4 @@
-#include "diagnosis/ledger.h"
+#include "record/ledger.h"
 
 #include <glog/logging.h>
 
@@ -7,41 +7,63 @@
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
+#include "core/json_number.h"
 
 namespace lacuna {
 namespace {
 
 using nlohmann::json;
 
-json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+constexpr int kSchemaVersion = 2;
+
+const char* ReasonName(LedgerEnding::Reason reason) {
+  switch (reason) {
+    case LedgerEnding::Reason::kVerdict:
+      return "verdict";
+    case LedgerEnding::Reason::kUndecided:
+      return "undecided";
+    case LedgerEnding::Reason::kMostEffects:
+      return "most_effects";
+    case LedgerEnding::Reason::kNotFitted:
+      return "not_fitted";
+    case LedgerEnding::Reason::kLittleGain:
+      return "little_gain";
+    case LedgerEnding::Reason::kNone:
+      break;
+  }
+  return "";
+}
 
 json MeasureToJson(const MisfitMeasure& measure) {
-  return {{"frames", measure.frames}, {"rms_m", measure.rms}, {"in_noise", measure.in_noise}};
+  return {{"frames", measure.frames},
+          {"rms_m", measure.rms},
+          {"rms_over_sigma", measure.rms_over_sigma}};
 }
 
 json ErrorsToJson(const ModelErrors& errors) {
   return {{"in_fit_rms_m", errors.in_fit_rms},
           {"held_out_rms_m", errors.held_out_rms},
-          {"held_out_in_noise", errors.in_noise},
+          {"held_out_rms_over_sigma", errors.rms_over_sigma},
           {"has_held_out", errors.has_held_out}};
 }
 
 json DiagnosisToJson(const DiagnosisRecord& diagnosis, const std::vector<std::string>& added) {
   json tried = json::array();
   for (const RecordedEffect& effect : diagnosis.ranking) {
-    if (!effect.refitted) continue;
-    tried.push_back({{"effect", effect.type},
-                     {"variant", effect.variant},
-                     {"first_order_evidence", effect.evidence},
-                     {"expected_held_out_in_noise", effect.expected_in_noise},
-                     {"message", effect.refit_message},
-                     {"evidence", effect.refit_evidence},
-                     {"errors", ErrorsToJson(effect.errors)},
-                     {"added", std::count(added.begin(), added.end(), effect.type) > 0}});
+    if (!effect.refit) continue;
+    tried.push_back(
+        {{"effect", effect.type},
+         {"variant", effect.variant},
+         {"first_order_evidence", effect.first_order.evidence},
+         {"expected_held_out_rms_over_sigma", effect.first_order.held_out_rms_over_sigma},
+         {"message", effect.refit->message},
+         {"evidence", effect.refit->evidence},
+         {"errors", ErrorsToJson(effect.refit->errors)},
+         {"added", std::count(added.begin(), added.end(), effect.type) > 0}});
   }
-  return {{"verdict", diagnosis.verdict},          {"effects", diagnosis.effects},
-          {"explanation", diagnosis.explanation},  {"experiment", diagnosis.experiment},
-          {"control_evidence", diagnosis.control}, {"tried", tried}};
+  json value = {{"control_evidence", diagnosis.control_evidence}, {"tried", tried}};
+  value.update(ConclusionToJson(diagnosis));
+  return value;
 }
 
 json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path& folder) {
@@ -57,11 +79,11 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
     json entry = {{"name", move.name},
                   {"unit", move.unit},
                   {"value", move.after},
-                  {"low_95", Number(move.low)},
-                  {"high_95", Number(move.high)}};
+                  {"low_95", NumberOrNull(move.low)},
+                  {"high_95", NumberOrNull(move.high)}};
     if (!move.added && model.parent >= 0) {
       entry["before"] = move.before;
-      entry["moved_by_deviations"] = Number(move.in_deviations);
+      entry["moved_by_deviations"] = NumberOrNull(move.in_deviations);
     }
     parameters.push_back(entry);
   }
@@ -94,17 +116,18 @@ const LedgerModel& Ledger::Best() const {
   CHECK(!models.empty());
   const LedgerModel* best = &models.front();
   for (const LedgerModel& model : models)
-    if (model.record.usable && model.errors.in_noise < best->errors.in_noise) best = &model;
+    if (model.record.usable && model.errors.rms_over_sigma < best->errors.rms_over_sigma)
+      best = &model;
   return *best;
 }
 
 ModelErrors ErrorsOf(const CalibrationRecord& record) {
   struct Sum {
-    double square = 0, in_noise = 0;
+    double square = 0, over_sigma = 0;
     int points = 0;
     void Add(const MisfitMeasure& measure) {
       square += measure.rms * measure.rms * measure.points;
-      in_noise += measure.in_noise * measure.in_noise * measure.points;
+      over_sigma += measure.rms_over_sigma * measure.rms_over_sigma * measure.points;
       points += measure.points;
     }
     double Mean(double sum) const { return points > 0 ? std::sqrt(sum / points) : 0; }
@@ -118,7 +141,7 @@ ModelErrors ErrorsOf(const CalibrationRecord& record) {
   ModelErrors errors;
   errors.in_fit_rms = in_fit.Mean(in_fit.square);
   errors.held_out_rms = judged.Mean(judged.square);
-  errors.in_noise = errors.without_nuisances = judged.Mean(judged.in_noise);
+  errors.rms_over_sigma = errors.without_nuisances = judged.Mean(judged.over_sigma);
   errors.has_held_out = held_out.points > 0;
   return errors;
 }
@@ -159,22 +182,24 @@ LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& r
   if (record.usable) model.errors = ErrorsOf(record);
   const LedgerModel* before = parent < 0 ? nullptr : &ledger.models[static_cast<size_t>(parent)];
   model.moves = MovesBetween(before != nullptr ? before->record : CalibrationRecord{}, record);
-  if (before != nullptr && record.usable && before->errors.in_noise > 0)
-    model.gain = 1 - model.errors.in_noise / before->errors.in_noise;
+  if (before != nullptr && record.usable && before->errors.rms_over_sigma > 0)
+    model.gain = 1 - model.errors.rms_over_sigma / before->errors.rms_over_sigma;
   return model;
 }
 
-void SaveLedger(const Ledger& ledger, const std::filesystem::path& folder) {
+void WriteLedgerFile(const Ledger& ledger, const std::filesystem::path& folder) {
   const std::filesystem::path from = std::filesystem::absolute(folder).lexically_normal();
   json models = json::array();
   for (size_t k = 0; k < ledger.models.size(); ++k) models.push_back(ModelToJson(ledger, k, from));
-  const json all = {{"schema_version", 1},
-                    {"finished", !ledger.ending.empty()},
-                    {"ending", ledger.ending},
+  json ending = {{"reason", ReasonName(ledger.ending.reason)}};
+  if (ledger.ending.reason == LedgerEnding::Reason::kLittleGain)
+    ending["least_gain"] = ledger.ending.least_gain;
+  const json all = {{"schema_version", kSchemaVersion},
+                    {"finished", ledger.HasEnded()},
+                    {"ending", ending},
                     {"best", ledger.Best().name},
                     {"models", models}};
   WriteFileAtomically(folder / "ledger.json", all.dump(2) + "\n");
-  WriteFileAtomically(folder / "ledger.txt", LedgerInWords(ledger));
 }
 
 }  // namespace lacuna

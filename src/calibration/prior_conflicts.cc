@@ -1,0 +1,102 @@
+#include "calibration/prior_conflicts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/nearest.h"
+
+namespace lacuna {
+namespace {
+
+// The largest number of markers of a recording that are listed one by one.
+constexpr size_t kMostListed = 6;
+// An estimate that is more standard deviations of its prior away from the prior's mean is a
+// conflict.
+constexpr double kConflict = 3;
+// Of a frame, fewer points than this share of the best frame's were compared: too few.
+constexpr double kFewestCompared = 0.85;
+
+void AddNuisanceConflicts(const RecordingModel& model, const RecordingMisfit& misfit,
+                          std::vector<PriorConflict>* conflicts) {
+  const auto& own = model.nuisances();
+  for (size_t k = 0; k < own.size() && misfit.nuisance.size() > 0; ++k) {
+    const CalibratedParameter& prior = own[k].prior;
+    const double deviations =
+        std::abs(misfit.nuisance[static_cast<Eigen::Index>(k)]) / prior.prior_deviation;
+    if (deviations > kConflict)
+      conflicts->emplace_back(NuisanceParameterConflict{prior.name, deviations});
+  }
+}
+
+void AddMarkerConflicts(const PredictionStudy& study, const RecordingMisfit& misfit,
+                        const Recording& recording, std::vector<PriorConflict>* conflicts) {
+  if (!misfit.has_own_places) return;
+  const Eigen::RowVectorXd distance = misfit.place_offset.colwise().norm();
+  std::vector<int> conflicting;
+  for (int m = 0; m < distance.size(); ++m)
+    if (distance[m] > kConflict * study.place_deviation) conflicting.push_back(m);
+  std::stable_sort(conflicting.begin(), conflicting.end(),
+                   [&](int a, int b) { return distance[a] > distance[b]; });
+  for (size_t k = 0; k < conflicting.size() && k < kMostListed; ++k) {
+    const int m = conflicting[k];
+    conflicts->emplace_back(MarkerConflict{misfit.name,
+                                           recording.markers.names[static_cast<size_t>(m)],
+                                           misfit.place_offset.col(m), study.place_deviation});
+  }
+  if (conflicting.size() > kMostListed)
+    conflicts->emplace_back(MarkerConflictCount{misfit.name, static_cast<int>(conflicting.size()),
+                                                static_cast<int>(distance.size())});
+}
+
+// The places of tracked points are read off the first frame, in which the object must be
+// undeformed. Points off a given reference shape show that it is not, or that shape and points do
+// not belong together.
+void AddReferenceShapeConflict(const PredictionStudy& study, const PredictedRecording& item,
+                               const Body& body, std::vector<PriorConflict>* conflicts) {
+  const Recording& recording = item.recording;
+  if (!HasTrackedPoints(recording) || recording.reference.source == ReferenceSource::kFirstFrame)
+    return;
+  const Eigen::VectorXd distance =
+      SurfaceSearch(body.boundary.surface).Nearest(recording.markers.places).distance;
+  const double rms = std::sqrt(distance.squaredNorm() / static_cast<double>(distance.size()));
+  if (rms > kConflict * study.place_deviation)
+    conflicts->emplace_back(
+        ReferenceShapeConflict{item.name, item.frames.front(), rms, study.place_deviation});
+}
+
+void AddScanConflicts(const ScanSettings& scan, const RecordingMisfit& misfit,
+                      const RecordingModel& model, std::vector<PriorConflict>* conflicts) {
+  const auto conflicting =
+      (misfit.place_offset.array().abs() > kConflict * scan.shape_deviation).count();
+  if (conflicting > 0)
+    conflicts->emplace_back(PatchConflict{
+        misfit.name, static_cast<int>(conflicting), static_cast<int>(misfit.place_offset.cols()),
+        misfit.place_offset.cwiseAbs().maxCoeff(), scan.shape_deviation});
+  const std::vector<int> lost = model.LostFrames(misfit.misfit, kFewestCompared);
+  if (!lost.empty())
+    conflicts->emplace_back(UnmatchedScans{
+        misfit.name, static_cast<int>(lost.size()), static_cast<int>(misfit.misfit.frames.size()),
+        model.item().recording.times[lost.front()], kFewestCompared});
+}
+
+}  // namespace
+
+std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,
+                                              const std::vector<RecordingMisfit>& misfits) {
+  std::vector<PriorConflict> conflicts;
+  const PredictionStudy& study = problem.study();
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const RecordingModel& model = problem.models()[r];
+    const PredictedRecording& item = study.recordings[r];
+    AddNuisanceConflicts(model, misfits[r], &conflicts);
+    if (item.scans != nullptr) {
+      AddScanConflicts(study.scan, misfits[r], model, &conflicts);
+    } else {
+      AddMarkerConflicts(study, misfits[r], item.recording, &conflicts);
+      AddReferenceShapeConflict(study, item, *problem.body(), &conflicts);
+    }
+  }
+  return conflicts;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,87 @@
+// The result of a fit as plain data: calibration/calibration.json in the run's folder.
+//
+// Lengths and values are in SI units. σ is the standard deviation of the measurement noise.
+#ifndef LACUNA_RECORD_CALIBRATION_RECORD_H_
+#define LACUNA_RECORD_CALIBRATION_RECORD_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "record/model_errors.h"
+#include "record/parameter_estimate.h"
+#include "record/prior_conflict.h"
+#include "record/run_record.h"
+
+namespace lacuna {
+
+struct FittedParameter {
+  std::string name, unit;
+  bool log_scale = false;  // estimated on a logarithmic scale
+  ParameterEstimate estimate;
+  // The value extrapolated to infinitely fine elements, which the interval includes as a model
+  // error. Absent where the extrapolation was not possible.
+  std::optional<double> with_finest_mesh;
+};
+
+// What is particular to a recording of surface scans.
+struct FittedScan {
+  Eigen::Matrix3Xd places;  // m, of the patches on the undeformed object
+  double patch_noise = 0;   // m, rms over all patches of the noise of a patch's mean in one frame
+  double used = 0;          // share of the scanned points that were compared
+};
+
+// A nuisance parameter of a recording that is not fitted: its clock, its grips, its registration.
+struct OwnValue {
+  std::string name, unit;
+  double value = 0;
+};
+
+struct FittedRecording {
+  std::string name;
+  bool fitted = true;
+  double noise = 0;  // m, the white part of the noise, estimated from this recording
+  MisfitMeasure in_fit, held_out;
+  std::optional<FittedScan> scan;  // absent for markers
+  // Estimated from the first tenth of the recording. Empty for a fitted recording, whose nuisance
+  // parameters are among CalibrationRecord::parameters.
+  std::vector<OwnValue> own = {};
+};
+
+struct CalibrationRecord {
+  std::filesystem::path experiment;  // relative to the run's folder
+  bool usable = false;
+  std::string message;  // why it is not usable
+  // m, the σ that residuals were weighted with: of one coordinate of a marker, and of a scanned
+  // point along the surface normal. 0 where there are no markers or no scans.
+  double noise = 0, scan_noise = 0;
+  double time_step = 0;   // s, of the simulation
+  double step_error = 0;  // change of the prediction with half the step, in σ; 0: step given
+  double start_rms = 0, rms = 0;            // of the whitened residuals, before and after the fit
+  int predictions = 0;                      // number of simulations of all recordings
+  std::vector<FittedParameter> parameters;  // the model's, then the recordings'
+  std::vector<FittedRecording> recordings;
+  std::vector<PriorConflict> prior_conflicts;
+  // Known only after RunCalibration: they are not in the file.
+  MeshRecord mesh;
+  std::vector<std::string> mesh_notes;
+};
+
+// The name in files and reports, e.g. "traded off".
+std::string VerdictName(ParameterEstimate::Verdict verdict);
+
+// Infinite numbers become null.
+nlohmann::json EstimateToJson(const ParameterEstimate& estimate);
+// Throws nlohmann::json::exception.
+ParameterEstimate EstimateFromJson(const nlohmann::json& value);
+
+void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem::path& file);
+// Throws InputError when the file is not a record of a calibration, or one in another format.
+CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_CALIBRATION_RECORD_H_

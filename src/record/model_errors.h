@@ -1,0 +1,42 @@
+// Errors of a model's predictions against the measurements, as plain data.
+//
+// A residual is predicted minus measured: the displacement of a marker, or the distance of a
+// surface patch along its normal. σ is the standard deviation of the measurement noise.
+#ifndef LACUNA_RECORD_MODEL_ERRORS_H_
+#define LACUNA_RECORD_MODEL_ERRORS_H_
+
+#include <string>
+
+namespace lacuna {
+
+// The residuals of a set of frames of one recording. The part of a point's residual that is common
+// to all frames (the error of its place on the object, or of the object's shape) is not counted.
+struct MisfitMeasure {
+  int frames = 0;
+  int points = 0;             // markers or patches observed, summed over the frames
+  double rms = 0;             // m, of the residual's length
+  double largest = 0;         // m
+  double rms_over_sigma = 0;  // rms of the components, each divided by its σ; 1 is noise alone
+};
+
+// The residuals of a model over all recordings of a study.
+struct ModelErrors {
+  double in_fit_rms = 0, held_out_rms = 0;  // m, of the fitted and of the held-out frames
+  double rms_over_sigma = 0;                // held-out frames, components divided by σ
+  // The same for the held-out frames of the fitted recordings only, after the adopted nuisances
+  // (mesh, time step, misplaced grips) have taken their best values.
+  double without_nuisances = 0;
+  double unfitted_rms_over_sigma =
+      0;                      // recordings that were not fitted at all; 0 if there are none
+  bool has_held_out = false;  // false: nothing was held out, the fitted frames are used
+};
+
+// An effect that a diagnosis could not test with these recordings.
+struct UntriedEffect {
+  std::string type;
+  std::string why;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_MODEL_ERRORS_H_

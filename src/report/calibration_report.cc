@@ -1,0 +1,156 @@
+#include "report/calibration_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "core/text_layout.h"
+
+namespace lacuna {
+namespace {
+
+// A parameter that finer elements would move by more standard deviations gets a note.
+constexpr double kMoved = 1;
+
+std::string ParameterTable(const CalibrationRecord& record) {
+  bool moved = false;
+  std::string text =
+      fmt::format("\n  {:34} {:>12} {:>25}  {}\n", "parameter", "value", "95 % interval", "");
+  for (const FittedParameter& parameter : record.parameters) {
+    const ParameterEstimate& estimate = parameter.estimate;
+    std::string note = VerdictName(estimate.verdict);
+    if (estimate.verdict == ParameterEstimate::Verdict::kPinnedDown) note.clear();
+    if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
+      note +=
+          fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
+    const double with_finest_mesh = parameter.with_finest_mesh.value_or(estimate.value);
+    if (std::abs(DeviationsTo(with_finest_mesh, estimate, parameter.log_scale)) > kMoved) {
+      note +=
+          fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
+      moved = true;
+    }
+    text += fmt::format("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name,
+                        estimate.value, estimate.low, estimate.high, parameter.unit, note);
+  }
+  if (moved)
+    text +=
+        "  The intervals include the change that finer elements would make; a smaller "
+        "mesh.max_volume\n  makes them narrower.\n";
+  return text;
+}
+
+std::string Describe(const MisfitMeasure& measure) {
+  if (measure.points == 0) return "-";
+  return fmt::format("{:.3f} mm (largest {:.3f}), {:.1f} σ, {} frames", 1e3 * measure.rms,
+                     1e3 * measure.largest, measure.rms_over_sigma, measure.frames);
+}
+
+std::string NoiseText(const CalibrationRecord& record) {
+  std::string text;
+  if (record.noise > 0)
+    text += fmt::format(
+        "\n  rms distance between predicted and measured markers; σ = {:.3f} mm per coordinate\n",
+        1e3 * record.noise);
+  if (record.scan_noise > 0)
+    text += fmt::format(
+        "{}  rms distance between the predicted surface and scanned patches, along the normal;\n"
+        "  σ = {:.3f} mm for one point, less for a patch\n",
+        record.noise > 0 ? "" : "\n", 1e3 * record.scan_noise);
+  return text;
+}
+
+std::string TimeStepText(const CalibrationRecord& record) {
+  const auto moves = [](const FittedRecording& recording) {
+    return recording.in_fit.frames + recording.held_out.frames > 1;
+  };
+  if (std::none_of(record.recordings.begin(), record.recordings.end(), moves)) return "";
+  const bool in_seconds = record.time_step >= 1;
+  return fmt::format(
+      "  time step {:.3g} {}{}\n", (in_seconds ? 1 : 1e3) * record.time_step,
+      in_seconds ? "s" : "ms",
+      record.step_error > 0
+          ? fmt::format("; half of it would change the prediction by {:.2g} σ", record.step_error)
+          : "");
+}
+
+std::string RecordingText(const FittedRecording& recording) {
+  std::string text =
+      fmt::format("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
+  text += fmt::format("  {:14} held out  {}\n", "", Describe(recording.held_out));
+  std::vector<std::string> own;
+  for (const OwnValue& value : recording.own) {
+    const bool is_small = value.unit == "m" || value.unit == "rad";
+    own.push_back(fmt::format("{} {:.3g} {}", value.name.substr(recording.name.size() + 1),
+                              is_small ? 1e3 * value.value : value.value,
+                              is_small ? "m" + value.unit : value.unit));
+  }
+  const std::string margin(17, ' ');
+  if (!own.empty())
+    text += Wrapped(fmt::format("estimated from its first tenth: {}", fmt::join(own, ", ")), margin,
+                    margin);
+  if (recording.scan)
+    text += fmt::format("  {:14} {} patches, {:.0f} % of the scanned points compared\n", "",
+                        recording.scan->places.cols(), 100 * recording.scan->used);
+  return text;
+}
+
+struct ConflictSentence {
+  std::string operator()(const NuisanceParameterConflict& conflict) const {
+    return fmt::format("{} is {:.1f} standard deviations of its prior away from 0",
+                       conflict.parameter, conflict.deviations);
+  }
+  std::string operator()(const MarkerConflict& conflict) const {
+    const Eigen::Vector3d offset = 1e3 * conflict.offset;
+    return fmt::format(
+        "{}: the fit places marker {} ({:.2g}, {:.2g}, {:.2g}) mm away from its recorded place on "
+        "the undeformed object; place_deviation is {:.2g} mm",
+        conflict.recording, conflict.marker, offset[0], offset[1], offset[2],
+        1e3 * conflict.deviation);
+  }
+  std::string operator()(const MarkerConflictCount& conflict) const {
+    return fmt::format("{}: {} of {} markers conflict with their priors; the worst are listed",
+                       conflict.recording, conflict.conflicting, conflict.markers);
+  }
+  std::string operator()(const ReferenceShapeConflict& conflict) const {
+    return fmt::format(
+        "{}: in frame {}, which must show the object undeformed, the tracked points lie {:.2g} mm "
+        "(rms) off the reference shape; place_deviation is {:.2g} mm",
+        conflict.recording, conflict.frame, 1e3 * conflict.rms, 1e3 * conflict.deviation);
+  }
+  std::string operator()(const PatchConflict& conflict) const {
+    return fmt::format(
+        "{}: {} of {} patches lie off the model's surface by the same distance in all frames, up "
+        "to {:.1f} mm; scan.shape_deviation is {:.1f} mm",
+        conflict.recording, conflict.conflicting, conflict.patches, 1e3 * conflict.largest,
+        1e3 * conflict.deviation);
+  }
+  std::string operator()(const UnmatchedScans& conflict) const {
+    return fmt::format(
+        "{}: in {} of {} frames, the first at {:.3f} s, fewer than {:.0f} % as many scanned points "
+        "as in the best frame are within scan.reach of the predicted surface; the others were not "
+        "compared",
+        conflict.recording, conflict.unmatched, conflict.frames, conflict.first_time,
+        100 * conflict.least_share);
+  }
+};
+
+}  // namespace
+
+std::string DescribePriorConflict(const PriorConflict& conflict) {
+  return std::visit(ConflictSentence{}, conflict);
+}
+
+std::string CalibrationReport(const CalibrationRecord& record) {
+  std::string text = ParameterTable(record) + NoiseText(record) + TimeStepText(record);
+  for (const FittedRecording& recording : record.recordings) text += RecordingText(recording);
+  for (const PriorConflict& conflict : record.prior_conflicts)
+    text += Wrapped("prior conflict: " + DescribePriorConflict(conflict), "  ", "    ");
+  for (const std::string& note : record.mesh_notes) text += Wrapped("mesh: " + note, "  ", "    ");
+  return text;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,219 @@
+#include "report/diagnosis_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "core/text_layout.h"
+#include "report/verdict_text.h"
+
+namespace lacuna {
+namespace {
+
+// Effects that were not refitted and whose evidence is not above this are listed in one line.
+constexpr double kWorthALine = 0;
+
+std::string Paragraph(const std::string& text, const std::string& first = "  ") {
+  return Wrapped(text, first, "  ");
+}
+
+std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
+
+std::string Millimetres(const ModelErrors& errors) {
+  return fmt::format("{:.3f} mm", 1e3 * errors.held_out_rms);
+}
+
+std::string WithUnit(const std::string& text, const std::string& unit) {
+  return unit.empty() ? text : text + " " + unit;
+}
+
+std::string Sizes(const RecordedEffect& effect) {
+  std::vector<std::string> sizes;
+  for (const RecordedSize& size : effect.sizes)
+    sizes.push_back(size.refitted ? fmt::format("{:.3g} [{:.3g}, {:.3g}]", size.refitted->value,
+                                                size.refitted->low, size.refitted->high)
+                                  : fmt::format("{:.3g} ± {:.2g}", size.expected, size.deviation));
+  const std::string all = fmt::format("{}", fmt::join(sizes, ", "));
+  return WithUnit(sizes.size() > 1 ? "(" + all + ")" : all, effect.sizes.front().unit);
+}
+
+std::string RefittedError(const RecordedEffect& effect) {
+  if (!effect.refit) return "";
+  if (!effect.HasUsableRefit()) return "not usable";
+  return fmt::format("{:.1f} σ", effect.refit->errors.without_nuisances);
+}
+
+std::string Row(const std::vector<std::string>& cells) {
+  constexpr size_t kWidths[] = {9, 9, 9, 11, 11, 10};
+  std::string line = "  " + PaddedRight(cells[0], 22);
+  for (size_t k = 0; k < std::size(kWidths); ++k) line += PaddedLeft(cells[k + 1], kWidths[k]);
+  line += "  " + cells.back();
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+// The parameters of a refit beside the effect's size, e.g. "centre_x 0.05 [0.04, 0.06] m".
+std::string OtherParameters(const RecordedRefit& refit) {
+  std::vector<std::string> others;
+  for (const RecordedValue& other : refit.others)
+    others.push_back(WithUnit(fmt::format("{} {:.3g} [{:.3g}, {:.3g}]",
+                                          other.parameter.substr(other.parameter.find('.') + 1),
+                                          other.found.value, other.found.low, other.found.high),
+                              other.unit));
+  return fmt::format("{}", fmt::join(others, ", "));
+}
+
+std::string EffectLines(const RecordedEffect& effect) {
+  const bool usable = effect.HasUsableRefit();
+  std::string text =
+      Row({effect.type, fmt::format("{:.1f}", effect.first_order.evidence),
+           usable ? fmt::format("{:.1f}", effect.refit->evidence) : "",
+           fmt::format("{:.1f} σ", effect.first_order.held_out_rms_over_sigma),
+           RefittedError(effect), usable ? Millimetres(effect.refit->errors) : "",
+           Percent(effect.first_order.absorbed), effect.sizes.size() == 1 ? Sizes(effect) : ""});
+  std::vector<std::string> more;
+  if (effect.sizes.size() > 1) more.push_back(Sizes(effect));
+  if (!effect.variant.empty()) more.push_back((usable ? "refitted from " : "") + effect.variant);
+  if (usable && !effect.refit->others.empty())
+    more.push_back("to " + OtherParameters(*effect.refit));
+  if (!effect.look_alikes.empty())
+    more.push_back(fmt::format("looks like {}", fmt::join(effect.look_alikes, ", ")));
+  if (effect.refit && !usable) more.push_back(effect.refit->message);
+  if (!more.empty()) text += Wrapped(fmt::format("{}", fmt::join(more, "; ")), "      ", "      ");
+  return text;
+}
+
+std::string RankingTable(const DiagnosisRecord& diagnosis) {
+  std::string text = fmt::format(
+      "\n  {}{}{}{}\n", PaddedRight("", 22), PaddedLeft("evidence", 18),
+      PaddedLeft(diagnosis.errors.has_held_out ? "error, held out" : "error, fitted", 31),
+      PaddedLeft("share", 10));
+  text += Row({"effect", "expected", "refitted", "expected", "refitted", "raw", "absorbed",
+               "size [95 %] or ±"});
+  text += Row({"(the model as it is)", "", "", "",
+               fmt::format("{:.1f} σ", diagnosis.errors.without_nuisances),
+               Millimetres(diagnosis.errors), "", ""});
+  std::vector<std::string> quiet;
+  for (const RecordedEffect& effect : diagnosis.ranking) {
+    if (effect.refit || effect.first_order.evidence > kWorthALine)
+      text += EffectLines(effect);
+    else
+      quiet.push_back(effect.type);
+  }
+  text += Paragraph(
+      "Errors in σ exclude what mesh, time step and the other adopted nuisances explain; raw "
+      "errors "
+      "include it.");
+  if (!quiet.empty()) text += Paragraph(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
+  for (const UntriedEffect& effect : diagnosis.untried)
+    text += Paragraph(fmt::format("not tried: {}; {}", effect.type, effect.why));
+  return text;
+}
+
+std::string NuisanceTable(const DiagnosisRecord& diagnosis) {
+  std::string text =
+      fmt::format("\n  {}{}{}{}\n", PaddedRight("nuisance", 22), PaddedLeft("evidence", 9),
+                  PaddedLeft("refitted", 9), PaddedLeft("explains", 10));
+  std::vector<std::string> quiet;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances) {
+    if (!nuisance.adopted && nuisance.evidence <= kWorthALine) {
+      if (std::count(quiet.begin(), quiet.end(), nuisance.name) == 0)
+        quiet.push_back(nuisance.name);
+      continue;
+    }
+    std::string line = fmt::format(
+        "  {}{}{}{}   {}", PaddedRight(nuisance.name, 22),
+        PaddedLeft(fmt::format("{:.1f}", nuisance.evidence), 9),
+        PaddedLeft(nuisance.refitted ? fmt::format("{:.1f}", *nuisance.refitted) : "", 9),
+        PaddedLeft(Percent(nuisance.explained), 10),
+        nuisance.adopted ? "in the model" : nuisance.what);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  if (!quiet.empty()) text += Paragraph(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
+  return text;
+}
+
+std::string AlternativesTable(const DiagnosisRecord& diagnosis) {
+  if (diagnosis.alternatives.effects.empty()) return "";
+  std::string text =
+      fmt::format("\n  in place of the adopted nuisances, whose evidence is {:.1f}\n",
+                  diagnosis.alternatives.nuisances_evidence);
+  for (const RecordedEffect& effect : diagnosis.alternatives.effects) text += EffectLines(effect);
+  return text;
+}
+
+std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
+  const RecordedNoise& noise = diagnosis.noise;
+  std::vector<std::string> sigma;
+  if (noise.coordinate > 0)
+    sigma.push_back(fmt::format("{:.3g} mm per marker coordinate", 1e3 * noise.coordinate));
+  if (noise.scanned_point > 0)
+    sigma.push_back(fmt::format("{:.3g} mm per scanned point", 1e3 * noise.scanned_point));
+  std::string text = fmt::format(
+      "Noise: σ = {}, {}.", fmt::join(sigma, " and "),
+      noise.correlation_time > 0 ? fmt::format("correlated over {:.3g} s", noise.correlation_time)
+                                 : "white in time");
+  text += fmt::format(" The residual of the best hypothesis is {:.1f} σ. Time step: {:.3g} ms.",
+                      diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
+  if (diagnosis.control_evidence > 0)
+    text += fmt::format(" Control: without any effect, chance gives evidence up to {:.1f}.",
+                        diagnosis.control_evidence);
+  return Paragraph(text);
+}
+
+std::string DetectableTable(const DiagnosisRecord& diagnosis) {
+  std::string text = "\n  Smallest size that these recordings could have shown\n";
+  for (const RecordedEffect& effect : diagnosis.ranking) {
+    double least = INFINITY, most = 0;
+    for (const RecordedSize& size : effect.sizes) {
+      least = std::min(least, size.detectable);
+      most = std::max(most, size.detectable);
+    }
+    const std::string& unit = effect.sizes.front().unit;
+    const std::string sizes = !std::isfinite(least) ? "no size could be seen"
+                              : least == most
+                                  ? WithUnit(fmt::format("{:.2g}", least), unit)
+                                  : WithUnit(fmt::format("{:.2g} to {:.2g}", least, most), unit) +
+                                        ", depending on the direction";
+    text += fmt::format("    {}{}\n", PaddedRight(effect.type, 24), sizes);
+  }
+  return text;
+}
+
+std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+  if (diagnosis.verdict == Verdict::kMissing)
+    return fmt::format(
+        "lacuna add {0} {1}, or lacuna diagnose {0} --until-done; lacuna explain {1}", run.string(),
+        diagnosis.effects.front());
+  if (!diagnosis.next_steps.empty()) return DescribeNextSteps(diagnosis);
+  if (diagnosis.verdict == Verdict::kNotInLibrary)
+    return fmt::format(
+        "lacuna compare {} shows where and when the model fails; docs/expression.md says how to "
+        "try a force law of your own",
+        run.string());
+  return "";
+}
+
+}  // namespace
+
+std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+  std::string text = "\n" + VerdictWithNames(diagnosis) + "\n";
+  text += Paragraph(ExplainVerdict(diagnosis));
+  text += NoiseParagraph(diagnosis);
+  text += RankingTable(diagnosis);
+  text += NuisanceTable(diagnosis);
+  text += AlternativesTable(diagnosis);
+  if (diagnosis.verdict == Verdict::kAdequate || diagnosis.verdict == Verdict::kNoPower)
+    text += DetectableTable(diagnosis);
+  const std::string next = WhatNext(diagnosis, run);
+  if (!next.empty()) text += "\n" + Paragraph(next, "next: ");
+  return text +
+         fmt::format("\n{} holds all of it\n", (run / "diagnosis" / "diagnosis.json").string());
+}
+
+}  // namespace lacuna

@@ -1,0 +1,23 @@
+// The sentences that explain a verdict, made from the recorded diagnosis alone.
+#ifndef LACUNA_REPORT_VERDICT_TEXT_H_
+#define LACUNA_REPORT_VERDICT_TEXT_H_
+
+#include <string>
+
+#include "record/diagnosis_record.h"
+
+namespace lacuna {
+
+// The verdict with the names it gives, e.g. "ambiguous {drag, mass_damping}".
+std::string VerdictWithNames(const Conclusion& conclusion);
+
+// Why the verdict was reached, in whole sentences on one line.
+std::string ExplainVerdict(const DiagnosisRecord& diagnosis);
+
+// What would settle an open question, e.g. an experiment or a finer mesh, in phrases separated by
+// semicolons. Empty where nothing is open.
+std::string DescribeNextSteps(const DiagnosisRecord& diagnosis);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_REPORT_VERDICT_TEXT_H_

@@ -1,0 +1,82 @@
+#include "record/diagnosis_record.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/error.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+DiagnosisRecord SmallDiagnosis() {
+  DiagnosisRecord record;
+  record.verdict = Verdict::kMissing;
+  record.effects = {"drag"};
+  record.reasons = {EffectReducesError{"drag", 300, true, false, 5, 1}};
+  record.noise = {1e-4, 2e-4, 0.02, 1.5};
+  record.baseline_rms_over_sigma = 5;
+  record.best_rms_over_sigma = 1;
+  record.errors.has_held_out = true;
+  record.errors.rms_over_sigma = 4;
+  record.nuisances.push_back({"mesh", "a finer mesh", "refine it", 3, 0.1, 2.5, true, 0.5});
+  RecordedEffect& effect = record.ranking.emplace_back();
+  effect.type = "drag";
+  effect.title = "Drag";
+  effect.separating_experiment = "film it in vacuum";
+  effect.first_order = {310, 0.9, 0.2, 1.1};
+  effect.sizes.push_back({"coefficient", "kg/m^3", 1, INFINITY, INFINITY, std::nullopt});
+  record.untried.push_back({"plane_contact", "nothing is near"});
+  return record;
+}
+
+TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
+  DiagnosisRecord record = SmallDiagnosis();
+  RecordedEffect refitted = record.ranking[0];
+  refitted.sizes[0].refitted = RecordedInterval{2, 1, INFINITY};
+  refitted.refit.emplace().evidence = 300;
+  refitted.refit->errors.without_nuisances = 1;
+  refitted.refit->remainder = {"gravity", 2, 1};
+  refitted.refit->others.push_back({"drag.centre_x", "m", {0.05, -INFINITY, 0.07}});
+  record.ranking.push_back(refitted);
+  record.alternatives = {{refitted}, 1000, 10};
+  const TemporaryFolder folder;
+  WriteDiagnosisFile(record, folder / "diagnosis.json");
+  const DiagnosisRecord read = ReadDiagnosisFile(folder / "diagnosis.json");
+  EXPECT_EQ(read.verdict, Verdict::kMissing);
+  EXPECT_EQ(read.effects, record.effects);
+  ASSERT_EQ(read.reasons.size(), 1u);
+  EXPECT_EQ(std::get<EffectReducesError>(read.reasons[0]).over_sigma_before, 5);
+  EXPECT_EQ(read.noise.correlation_time, 0.02);
+  EXPECT_EQ(read.errors.rms_over_sigma, 4);
+  EXPECT_EQ(read.nuisances[0].refitted, 2.5);
+  EXPECT_EQ(read.untried[0].why, "nothing is near");
+  EXPECT_FALSE(read.ranking[0].refit.has_value());
+  EXPECT_EQ(read.ranking[0].sizes[0].detectable, INFINITY);
+  ASSERT_TRUE(read.ranking[1].HasUsableRefit());
+  EXPECT_TRUE(read.ranking[1].refit->errors.has_held_out);
+  EXPECT_EQ(read.ranking[1].refit->remainder.effect, "gravity");
+  EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
+  EXPECT_EQ(read.ranking[1].refit->others[0].found.low, -INFINITY);
+  EXPECT_EQ(read.alternatives.effects.size(), 1u);
+  EXPECT_EQ(read.alternatives.rms_over_sigma_without_both, 10);
+  // Every field is written and read: the second file equals the first.
+  WriteDiagnosisFile(read, folder / "again.json");
+  EXPECT_EQ(FileContent(folder / "again.json"), FileContent(folder / "diagnosis.json"));
+}
+
+TEST(DiagnosisRecord, AnEarlierFormatIsRefusedWithTheCommandToRun) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "diagnosis.json") << R"({"schema_version": 8})";
+  EXPECT_THAT([&] { ReadDiagnosisFile(folder / "diagnosis.json"); },
+              ThrowsMessage<InputError>(HasSubstr("run `lacuna diagnose` again")));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,58 @@
+#include "record/ledger.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/small_ledger.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+TEST(Ledger, MeasuresTheGainAndTheMovedParameters) {
+  const Ledger ledger = SmallLedger();
+  const LedgerModel& model = ledger.models[1];
+  EXPECT_EQ(ledger.models[0].name, "bar");
+  EXPECT_DOUBLE_EQ(ledger.models[0].errors.held_out_rms, 4e-4);
+  EXPECT_DOUBLE_EQ(ledger.models[0].errors.in_fit_rms, 2e-4);
+  EXPECT_DOUBLE_EQ(model.gain, 0.5);
+  ASSERT_EQ(model.moves.size(), 2u);
+  EXPECT_FALSE(model.moves[0].added);
+  // ln(after/before) = 0.3, the parent's deviation of the logarithm 0.1.
+  EXPECT_NEAR(model.moves[0].in_deviations, 3, 1e-9);
+  EXPECT_TRUE(model.moves[1].added);
+  EXPECT_EQ(ledger.Best().name, "bar+drag");
+}
+
+TEST(Ledger, AModelThatCouldNotBeFittedIsNeverTheBest) {
+  Ledger ledger = SmallLedger();
+  CalibrationRecord failed;
+  failed.message = "no convergence";
+  ledger.models.push_back(
+      MakeLedgerModel(ledger, "/runs/bar+drag+swelling", failed, 1, "swelling"));
+  EXPECT_EQ(ledger.Best().name, "bar+drag");
+}
+
+TEST(Ledger, IsWrittenAsATree) {
+  const TemporaryFolder folder;
+  WriteLedgerFile(SmallLedger(), folder.Path());
+  std::ifstream stream(folder / "ledger.json");
+  const auto written = nlohmann::json::parse(stream);
+  EXPECT_TRUE(written["finished"]);
+  EXPECT_EQ(written["ending"]["reason"], "little_gain");
+  EXPECT_EQ(written["best"], "bar+drag");
+  EXPECT_DOUBLE_EQ(written["models"][0]["errors"]["held_out_rms_over_sigma"].get<double>(), 4);
+  EXPECT_EQ(written["models"][0]["diagnosis"]["verdict"], "missing");
+  EXPECT_EQ(written["models"][1]["parent"], "bar");
+  EXPECT_EQ(written["models"][1]["added"], "drag");
+  EXPECT_NEAR(written["models"][1]["gain"], 0.5, 1e-12);
+  const auto& tried = written["models"][0]["diagnosis"]["tried"];
+  EXPECT_EQ(tried[0]["added"], true);
+  EXPECT_EQ(tried[1]["added"], false);
+  EXPECT_FALSE(written["models"][0].contains("parent"));
+}
+
+}  // namespace
+}  // namespace lacuna

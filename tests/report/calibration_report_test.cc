@@ -1,0 +1,53 @@
+#include "report/calibration_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
+  CalibrationRecord record;
+  record.noise = 1e-4;
+  record.time_step = 0.002;
+  record.step_error = 0.03;
+  FittedParameter& parameter = record.parameters.emplace_back();
+  parameter.name = "mass_damping.alpha";
+  parameter.unit = "1/s";
+  parameter.estimate.value = 12;
+  parameter.estimate.low = 11;
+  parameter.estimate.high = 13;
+  parameter.estimate.posterior_deviation = 0.5;
+  parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
+  parameter.estimate.traded_with = "drag.coefficient";
+  parameter.estimate.correlation = 0.97;
+  parameter.with_finest_mesh = 14;
+  record.recordings.push_back({"swing", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
+  record.prior_conflicts = {MarkerConflictCount{"swing", 7, 8}};
+  const std::string text = CalibrationReport(record);
+  EXPECT_THAT(text, HasSubstr("traded off with drag.coefficient (correlation 0.97)"));
+  EXPECT_THAT(text, HasSubstr("14 with finer elements"));
+  EXPECT_THAT(text, HasSubstr("fitted    0.100 mm (largest 0.200), 1.5 σ, 3 frames"));
+  EXPECT_THAT(text, HasSubstr("held out  -"));
+  EXPECT_THAT(text, HasSubstr("time step 2 ms; half of it would change the prediction by 0.03 σ"));
+  EXPECT_THAT(text, HasSubstr("7 of 8 markers conflict with their priors; the worst are listed"));
+}
+
+TEST(CalibrationReport, DescribesEveryConflict) {
+  EXPECT_EQ(DescribePriorConflict(NuisanceParameterConflict{"swing.delay", 4.2}),
+            "swing.delay is 4.2 standard deviations of its prior away from 0");
+  EXPECT_THAT(
+      DescribePriorConflict(MarkerConflict{"swing", "tip", Eigen::Vector3d(1e-3, 0, 0), 1e-4}),
+      HasSubstr("the fit places marker tip (1, 0, 0) mm away from its recorded place"));
+  EXPECT_THAT(DescribePriorConflict(ReferenceShapeConflict{"swing", 5, 1e-3, 1e-4}),
+              HasSubstr("the tracked points lie 1 mm (rms) off the reference shape"));
+  EXPECT_THAT(DescribePriorConflict(PatchConflict{"swing", 7, 8, 1e-3, 1e-4}),
+              HasSubstr("7 of 8 patches lie off the model's surface"));
+  EXPECT_THAT(DescribePriorConflict(UnmatchedScans{"swing", 7, 8, 0.5, 0.85}),
+              HasSubstr("in 7 of 8 frames, the first at 0.500 s, fewer than 85 %"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,69 @@
+#include "report/diagnosis_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+RecordedEffect Effect(const std::string& type, double evidence) {
+  RecordedEffect effect;
+  effect.type = effect.title = type;
+  effect.first_order.evidence = evidence;
+  effect.sizes.push_back({"coefficient", "kg/m^3", 1, 0.1, 0.5, std::nullopt});
+  return effect;
+}
+
+// Drag is missing; swelling shows no sign.
+DiagnosisRecord MissingDrag() {
+  DiagnosisRecord record;
+  record.verdict = Verdict::kMissing;
+  record.effects = {"drag"};
+  record.reasons = {EffectReducesError{"drag", 300, true, false, 5, 1}};
+  record.noise.coordinate = 1e-4;
+  record.errors.has_held_out = true;
+  record.errors.held_out_rms = 9e-4;
+  record.errors.without_nuisances = 5;
+  record.ranking = {Effect("drag", 310), Effect("swelling", -3)};
+  record.ranking[0].sizes[0].refitted = RecordedInterval{2, 1, 3};
+  record.ranking[0].refit.emplace().evidence = 300;
+  record.ranking[0].refit->errors.without_nuisances = 1;
+  return record;
+}
+
+TEST(DiagnosisReport, ShowsVerdictReasonsAndNextCommand) {
+  const std::string text = DiagnosisReport(MissingDrag(), "runs/bar");
+  EXPECT_THAT(text, HasSubstr("\nmissing {drag}\n"));
+  EXPECT_THAT(text, HasSubstr("goes from 5.0 σ to 1.0 σ"));
+  EXPECT_THAT(text, HasSubstr("2 [1, 3] kg/m^3"));
+  EXPECT_THAT(text, HasSubstr("no sign of: swelling"));
+  EXPECT_THAT(text, HasSubstr("next: lacuna add runs/bar drag"));
+  EXPECT_THAT(text, Not(HasSubstr("Smallest size")));
+}
+
+TEST(DiagnosisReport, ShowsWhatWouldHaveBeenSeenWhereNothingIsMissing) {
+  DiagnosisRecord record = MissingDrag();
+  record.verdict = Verdict::kAdequate;
+  record.effects.clear();
+  record.ranking[1].sizes[0].detectable = INFINITY;
+  const std::string text = DiagnosisReport(record, "runs/bar");
+  EXPECT_THAT(text, HasSubstr("Smallest size that these recordings could have shown"));
+  EXPECT_THAT(text, HasSubstr("0.5 kg/m^3"));
+  EXPECT_THAT(text, HasSubstr("no size could be seen"));
+}
+
+TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {
+  DiagnosisRecord record = MissingDrag();
+  record.ranking[0].refit->message = "no step could be taken";
+  const std::string text = DiagnosisReport(record, "runs/bar");
+  EXPECT_THAT(text, HasSubstr("not usable"));
+  EXPECT_THAT(text, HasSubstr("no step could be taken"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,105 @@
+#include "report/verdict_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+
+// A record with the effects drag and gravity, and with the nuisances mesh (0) and jitter (1).
+DiagnosisRecord SmallDiagnosis() {
+  DiagnosisRecord record;
+  record.ranking.resize(2);
+  record.ranking[0].type = "drag";
+  record.ranking[0].title = "Drag of the air";
+  record.ranking[0].separating_experiment = "film it in vacuum";
+  record.ranking[1].type = "gravity";
+  record.ranking[1].title = "Gravity";
+  record.nuisances.resize(2);
+  record.nuisances[0].name = "mesh";
+  record.nuisances[0].what = "the coarse mesh";
+  record.nuisances[0].advice = "choose a smaller mesh.max_volume";
+  record.nuisances[1].name = "time_jitter";
+  record.nuisances[1].what = "the times of the frames";
+  record.nuisances[1].advice = "check the camera's clock";
+  return record;
+}
+
+TEST(VerdictText, NamesWhatTheVerdictNames) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.verdict = Verdict::kNotInLibrary;
+  EXPECT_EQ(VerdictWithNames(record), "not in library");
+  record.verdict = Verdict::kAmbiguous;
+  record.effects = {"drag", "time_jitter"};
+  EXPECT_EQ(VerdictWithNames(record), "ambiguous {drag, time_jitter}");
+  EXPECT_EQ(ExplainVerdict(record),
+            "These recordings cannot distinguish between: Drag of the air; the times of the "
+            "frames.");
+}
+
+TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.verdict = Verdict::kMissing;
+  record.effects = {"drag"};
+  record.reasons = {EffectReducesError{"drag", 300, true, false, 5, 1}};
+  EXPECT_EQ(ExplainVerdict(record),
+            "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; the "
+            "odds for it are e^300.");
+  record.reasons = {EffectReducesError{"drag", 300, false, true, 5, 1}};
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("the fitted error, without what mesh, time step"));
+  EXPECT_EQ(DescribeNextSteps(record), "");
+}
+
+TEST(VerdictText, SaysWhatMayAccountForTheEvidenceOfAnAdequateModel) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.verdict = Verdict::kAdequate;
+  record.reasons = {ErrorIsNoise{1e-4, 1.04}, UncertainDiscretisation{0, 12, 13}};
+  EXPECT_EQ(ExplainVerdict(record),
+            "The error, 0.100 mm or 1.0 σ, is that of the noise, and no effect has sufficient "
+            "evidence. The uncertainty in the coarse mesh could account for up to 13.0 of the best "
+            "effect's evidence of 12.0.");
+  record.next_steps = {RefineDiscretisation{0, false}};
+  EXPECT_EQ(DescribeNextSteps(record), "choose a smaller mesh.max_volume, and diagnose again");
+}
+
+TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.verdict = Verdict::kNotInLibrary;
+  record.reasons = {ErrorUnexplained{1e-3, 10, 2}, NuisanceExplains{1, 0.3}};
+  EXPECT_EQ(ExplainVerdict(record),
+            "The residual, 1.000 mm or 10.0 σ, exceeds the noise, and no effect of the catalogue "
+            "explains it (best evidence 2.0). 30 % of the squared misfit is explained by the times "
+            "of the frames: check the camera's clock.");
+  record.reasons = {EvidenceForAnother{"drag", 300, "gravity", 16}};
+  record.next_steps = {AddAndDiagnose{"drag", "gravity"}};
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it the odds for gravity are e^16"));
+  EXPECT_THAT(DescribeNextSteps(record), HasSubstr("add drag and diagnose again"));
+}
+
+TEST(VerdictText, SuggestsAnExperimentOrACheck) {
+  DiagnosisRecord record = SmallDiagnosis();
+  record.next_steps = {SeparateLookAlikes{"drag"}, CheckNuisance{1}};
+  EXPECT_EQ(DescribeNextSteps(record), "film it in vacuum; or check the camera's clock");
+  record.next_steps = {RefineDiscretisation{0, true}};
+  EXPECT_EQ(DescribeNextSteps(record), "choose a smaller mesh.max_volume, and fit again");
+}
+
+TEST(VerdictText, HasASentenceForEveryReason) {
+  DiagnosisRecord record = SmallDiagnosis();
+  const std::vector<VerdictReason> all{
+      NothingDetectable{},       ErrorIsNoise{},         ErrorUnexplained{},
+      UncertainDiscretisation{}, NuisanceExplains{},     NuisanceIsNegligible{},
+      ResidualRemains{},         HeldOutErrorRemains{},  EvidenceForAnother{},
+      EffectReducesError{},      RivalPredictsBetter{},  RivalNotFitted{},
+      NuisanceHasMoreEvidence{}, UnadjustedErrorRises{}, EffectReplacesNuisances{}};
+  ASSERT_EQ(all.size(), std::variant_size_v<VerdictReason>);
+  for (const VerdictReason& reason : all) {
+    record.reasons = {reason};
+    EXPECT_THAT(ExplainVerdict(record), testing::EndsWith(".")) << reason.index();
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
