@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "app/commands.h"
@@ -9,6 +11,7 @@
 #include "diagnosis/extension_rounds.h"
 #include "prediction/recorded_motion.h"
 #include "report/diagnosis_report.h"
+#include "report/ledger_picture.h"
 #include "report/ledger_report.h"
 #include "report/verdict_text.h"
 
@@ -34,6 +37,26 @@ void PrintStep(const Ledger& ledger) {
   (void)fflush(stdout);
 }
 
+// Every model that could be fitted, with its error in the frames and recordings that were held out.
+LedgerPicture MakeLedgerPicture(const Ledger& ledger) {
+  const LedgerModel& first = ledger.models.front();
+  LedgerPicture picture;
+  const char* frames = first.errors.has_held_out ? "held-out" : "fitted";
+  picture.title = fmt::format("{}: rms error in the {} frames", first.name, frames);
+  for (const LedgerModel& model : ledger.models) {
+    if (!model.record.usable) continue;
+    picture.models.push_back({picture.models.empty()       ? "model as given"
+                              : picture.models.size() == 1 ? "with " + model.added
+                                                           : "and with " + model.added,
+                              model.errors.held_out_rms});
+  }
+  // A scan's noise is that of its patches, which differs between recordings: no line for it.
+  const bool has_scans = std::any_of(first.record.recordings.begin(), first.record.recordings.end(),
+                                     [](const auto& recording) { return recording.scan; });
+  if (!has_scans) picture.noise = std::sqrt(3.0) * first.record.noise;
+  return picture;
+}
+
 int RunUntilDone(const DiagnoseArguments& arguments) {
   ExtensionOptions options;
   options.diagnosis.refits = arguments.refits;
@@ -43,6 +66,10 @@ int RunUntilDone(const DiagnoseArguments& arguments) {
   const Ledger ledger = ExtendUntilDone(arguments.run, options, &progress, PrintStep);
   fmt::print("\n{}\n{} holds it, with all numbers in ledger.json\n", LedgerReport(ledger),
              (std::filesystem::path(arguments.run) / "ledger.txt").string());
+  const std::filesystem::path picture = std::filesystem::path(arguments.run) / "ledger.png";
+  const PictureResult drawn = RenderLedgerPng(picture, MakeLedgerPicture(ledger));
+  fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows the errors as a picture"
+                                      : drawn.message);
   return ledger.IsUsable() ? 0 : 1;
 }
 

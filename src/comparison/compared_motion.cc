@@ -1,11 +1,16 @@
+#include "comparison/compared_motion.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "analysis/measurement_errors.h"
+#include "analysis/residual_statistics.h"
 #include "calibration/calibration_run.h"
-#include "comparison/comparison.h"
 #include "comparison/comparison_fields.h"
+#include "comparison/force_estimate.h"
+#include "comparison/part_comparison.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "prediction/replayed_motion.h"
@@ -13,21 +18,19 @@
 namespace lacuna {
 namespace {
 
-constexpr int kBins = 10;
-
-// How far a replayed difference may be from the recorded one, in σ: what another order of sums can
-// do is far less.
+// In σ. A replayed difference may deviate so much from the recorded one: rounding in another order
+// of summation causes far less, another model causes more.
 constexpr double kSameMotion = 0.1;
-constexpr double kAnyPlace = 1;  // m: a place that nothing is known of
+constexpr double kAnyPlace = 1;  // m: prior deviation of a marker's place of which nothing is known
 
-// Whether the motion is the one that the fit left its misfits of: they differ by errors of the
-// markers' places alone, that move with the object.
-bool IsThatMotion(const ComparedRecording& recording, const ReplayedMotion& motion, double noise) {
-  if (motion.predicted.cols() != recording.measured.cols() ||
-      motion.predicted.rows() != recording.measured.rows())
+// Whether the motion is the one that was fitted. It then differs from the recorded residuals only
+// by errors of the markers' places, which move with the object and which the fit has subtracted.
+bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion, double noise) {
+  if (motion.predicted.cols() != residuals.measured.cols() ||
+      motion.predicted.rows() != residuals.measured.rows())
     return false;
-  const Eigen::MatrixXd shown = motion.predicted - recording.measured - recording.difference;
-  const int markers = static_cast<int>(shown.rows() / 3);
+  const Eigen::MatrixXd shown = motion.predicted - residuals.measured - residuals.difference;
+  const int markers = residuals.PointCount();
   std::vector<int> seen;
   for (Eigen::Index f = 0; f < shown.cols(); ++f)
     for (int m = 0; m < markers; ++m) seen.push_back(shown.col(f).segment<3>(3 * m).allFinite());
@@ -43,58 +46,64 @@ bool IsThatMotion(const ComparedRecording& recording, const ReplayedMotion& moti
   return true;
 }
 
-void AddAgainst(const ReplayedMotion& motion, const ComparedRecording& recording,
-                ComparedPart* part) {
-  const Eigen::Index first = part->first, count = part->last - part->first + 1;
-  const Eigen::VectorXd error =
-      RmsOfFrames(PointLengths(recording.difference.middleCols(first, count)));
-  const auto against = [&](const std::string& quantity, const Eigen::VectorXd& of_frames) {
-    part->against.push_back(
-        {quantity, BinnedResiduals(of_frames, error, kBins), RankCorrelation(of_frames, error)});
+void AddMotionTrends(const ReplayedMotion& motion, const RecordedResiduals& residuals,
+                     const FrameRange& range, ComparedPart* part) {
+  const auto in_range = [&](const Eigen::MatrixXd& all) -> Eigen::MatrixXd {
+    return all.middleCols(range.first, range.Count());
   };
-  against("strain", RmsOfFrames(motion.strain.middleCols(first, count)));
-  against("strain_rate_per_s", RmsOfFrames(motion.strain_rate.middleCols(first, count)));
-  against("height_m", motion.height.middleCols(first, count).colwise().mean().transpose());
+  const Eigen::VectorXd error = RmsOfFrames(PointLengths(in_range(residuals.difference)));
+  part->trends.push_back(TrendWith("strain", RmsOfFrames(in_range(motion.strain)), error));
+  part->trends.push_back(
+      TrendWith("strain_rate_per_s", RmsOfFrames(in_range(motion.strain_rate)), error));
+  part->trends.push_back(
+      TrendWith("height_m", in_range(motion.height).colwise().mean().transpose(), error));
 }
 
 }  // namespace
 
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison) {
-  const auto without = [&](const std::string& why) {
-    comparison->notes.push_back(
-        "Without strain, height, fields and the unexplained force, for which the model must be run "
-        "again: " +
-        why);
+  const auto note_omission = [&](const std::string& why) {
+    comparison->record.notes.push_back(
+        "Strain, height, fields and the unexplained force are left out, because they need the "
+        "model to be run again: " +
+        why + ".");
   };
   FittedRun fitted;
   try {
     fitted = OpenRun(run);
   } catch (const InputError& error) {
-    return without(error.what());
+    return note_omission(error.what());
   }
   const CalibrationProblem problem(fitted.study, fitted.mesh);
-  progress->Begin("replay", static_cast<int64_t>(comparison->recordings.size()));
-  for (size_t r = 0; r < comparison->recordings.size(); ++r) {
+  progress->Begin("replay", static_cast<int64_t>(comparison->residuals.size()));
+  for (size_t r = 0; r < comparison->residuals.size(); ++r) {
     ThrowIfInterrupted();
-    ComparedRecording& recording = comparison->recordings[r];
+    ComparedRecording& recording = comparison->record.recordings[r];
+    const RecordedResiduals& residuals = comparison->residuals[r];
     const RecordingModel model = problem.ModelAt(r, fitted.values);
     if (model.Markers() == nullptr) {
-      without(recording.name + " is a recording of scans");
+      note_omission("this is not implemented for scans, of which " + recording.name + " consists");
       continue;
     }
     const ReplayedMotion motion = Replay(model, problem.NuisanceOf(r, fitted.values));
-    if (!motion.summary.IsUsable() || !IsThatMotion(recording, motion, comparison->noise)) {
-      without(recording.name + (motion.summary.IsUsable()
-                                    ? " is not predicted as it was when it was fitted"
-                                    : " is not predicted to its end: " + motion.summary.message));
+    if (!motion.summary.IsUsable()) {
+      note_omission("the prediction of " + recording.name +
+                    " stops before its end: " + motion.summary.message);
+      continue;
+    }
+    if (!MatchesFit(residuals, motion, comparison->record.noise)) {
+      note_omission("the model no longer predicts " + recording.name + " as it did in the fit");
       continue;
     }
     recording.height_by_gravity = motion.up_from_gravity;
-    for (ComparedPart& part : recording.parts) AddAgainst(motion, recording, &part);
-    recording.force =
-        EstimateUnexplainedForce(model, motion, problem.noise(), fitted.study.place_deviation);
-    recording.field_frames = WriteComparisonFields(model, recording, motion, comparison->noise,
-                                                   run / "comparison" / std::to_string(r));
+    const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
+    for (size_t p = 0; p < ranges.size(); ++p)
+      AddMotionTrends(motion, residuals, ranges[p], &recording.parts[p]);
+    comparison->forces[r] = EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
+    recording.force = comparison->forces[r]->record;
+    recording.field_frames =
+        WriteComparisonFields(model, residuals, motion, *comparison->forces[r],
+                              comparison->record.noise, run / "comparison" / std::to_string(r));
     progress->Report(static_cast<int64_t>(r) + 1);
   }
   progress->End();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "fem/element_strain.h"
@@ -16,56 +17,54 @@ void WriteBody(const Body& body, const TrajectoryState& state,
                const Eigen::Isometry3d& registration, const UnexplainedForce* force,
                double recorded_time, const std::filesystem::path& file) {
   const Eigen::Matrix3Xd position = state.position.reshaped(3, body.NodeCount());
-  const Eigen::Matrix3d& turn = registration.linear();
+  const Eigen::Matrix3d& rotation = registration.linear();
   TetMesh deformed = body.mesh;
   deformed.nodes = registration * position;
   Eigen::RowVectorXd strain(body.ElementCount());
   for (int element = 0; element < body.ElementCount(); ++element)
     strain[element] =
         LargestPrincipal(MeanStrain(body, element, state.position, state.velocity).strain);
-  FieldSet fields{{{"displacement_m", turn * (position - body.mesh.nodes)},
-                   {"velocity_m_per_s", turn * state.velocity.reshaped(3, body.NodeCount())}},
+  FieldSet fields{{{"displacement_m", rotation * (position - body.mesh.nodes)},
+                   {"velocity_m_per_s", rotation * state.velocity.reshaped(3, body.NodeCount())}},
                   {{"strain", strain}}};
   if (force != nullptr)
     fields.nodes.push_back({"unexplained_force_N_per_m3",
-                            turn * force->field.DensityAt(recorded_time - force->delay)});
+                            rotation * force->field.DensityAt(recorded_time - force->delay)});
   WriteVtu(file, deformed, fields);
 }
 
-void WriteMarkers(const ComparedRecording& recording, int frame, double noise,
+void WriteMarkers(const RecordedResiduals& residuals, int frame, double noise,
                   const std::filesystem::path& file) {
   std::vector<int> seen;
-  for (int m = 0; 3 * m < recording.measured.rows(); ++m)
-    if (recording.difference.col(frame).segment<3>(3 * m).allFinite()) seen.push_back(m);
+  for (int m = 0; m < residuals.PointCount(); ++m)
+    if (residuals.difference.col(frame).segment<3>(3 * m).allFinite()) seen.push_back(m);
   const Eigen::Index count = static_cast<Eigen::Index>(seen.size());
   PointCloud cloud;
   cloud.points.resize(3, count);
   Eigen::MatrixXd difference(3, count), marker(1, count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    cloud.points.col(k) = recording.measured.col(frame).segment<3>(3 * seen[k]);
-    difference.col(k) = recording.difference.col(frame).segment<3>(3 * seen[k]);
+    cloud.points.col(k) = residuals.measured.col(frame).segment<3>(3 * seen[k]);
+    difference.col(k) = residuals.difference.col(frame).segment<3>(3 * seen[k]);
     marker(0, k) = seen[k];
   }
   WriteVtp(file, cloud,
            {{"predicted_m", cloud.points + difference},
             {"difference_m", difference},
-            {"difference_in_noise", difference.colwise().norm() / (std::sqrt(3.0) * noise)},
-            {"fitted", Eigen::MatrixXd::Constant(1, count, recording.fitted[frame] != 0)},
+            {"difference_over_sigma", difference.colwise().norm() / (std::sqrt(3.0) * noise)},
+            {"fitted", Eigen::MatrixXd::Constant(1, count, residuals.fitted[frame] != 0)},
             {"marker", marker}});
 }
 
 }  // namespace
 
-int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& recording,
-                          const ReplayedMotion& motion, double noise,
+int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
+                          const ReplayedMotion& motion, const UnexplainedForce& force, double noise,
                           const std::filesystem::path& folder) {
   MakeFolder(folder / "fields");
-  const UnexplainedForce* force =
-      recording.force && recording.force->usable ? &*recording.force : nullptr;
   const auto file = [&](const char* what, int frame, const char* extension) {
-    return folder / "fields" / fmt::format("{}_{:05}.{}", what, recording.frames[frame], extension);
+    return folder / "fields" / fmt::format("{}_{:05}.{}", what, residuals.frames[frame], extension);
   };
-  // The first frame and the last, and as many between them as may be.
+  // The first state stands for the last frame before the motion, if there is one.
   const int first = motion.state_frame.front() < 0 ? 1 : 0;
   const int states = static_cast<int>(motion.states.size()) - first;
   const int count = std::min(states, kMostFieldFrames);
@@ -73,11 +72,11 @@ int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& 
   for (int i = 0; i < count; ++i) {
     const int k = first + (count > 1 ? i * (states - 1) / (count - 1) : 0);
     const int frame = motion.state_frame[k];
-    const double time = recording.times[frame];
-    WriteBody(*model.model().body, motion.states[k], motion.registration, force, time,
-              file("body", frame, "vtu"));
+    const double time = residuals.times[frame];
+    WriteBody(*model.model().body, motion.states[k], motion.registration,
+              force.record.usable ? &force : nullptr, time, file("body", frame, "vtu"));
     bodies.push_back({time, file("body", frame, "vtu")});
-    WriteMarkers(recording, frame, noise, file("markers", frame, "vtp"));
+    WriteMarkers(residuals, frame, noise, file("markers", frame, "vtp"));
     markers.push_back({time, file("markers", frame, "vtp")});
   }
   WritePvd(folder / "body.pvd", bodies);

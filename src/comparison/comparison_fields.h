@@ -1,26 +1,30 @@
-// The comparison as ParaView opens it.
+// Writes predicted and measured motion as fields that ParaView opens.
 #ifndef LACUNA_COMPARISON_COMPARISON_FIELDS_H_
 #define LACUNA_COMPARISON_COMPARISON_FIELDS_H_
 
 #include <filesystem>
 
-#include "comparison/comparison.h"
+#include "comparison/recorded_residuals.h"
 #include "comparison/unexplained_force.h"
 #include "prediction/replayed_motion.h"
 
 namespace lacuna {
 
-// Frames of a recording that are written, at most: of those that the replayed motion keeps, every
-// k-th, counted back from the last, with the smallest k that leaves so few.
+// Of the states that a replayed motion keeps, at most this many are written, evenly spread, the
+// first and the last always. Larger: smoother animations, more disk space.
 inline constexpr int kMostFieldFrames = 60;
 
-// <folder>/body.pvd with the predicted mesh (displacement_m, velocity_m_per_s,
-// unexplained_force_N_per_m3 at the nodes; strain, the largest principal Green–Lagrange strain of
-// each tetrahedron) and <folder>/markers.pvd with the measured markers that were seen (predicted_m,
-// difference_m, difference_in_noise, fitted, marker), files under <folder>/fields, of the frames in
-// motion; both in the recording's measuring frame. Returns how many.
-int WriteComparisonFields(const RecordingModel& model, const ComparedRecording& recording,
-                          const ReplayedMotion& motion, double noise,
+// Writes two time series and the files that they list to <folder>/fields:
+//   body.pvd     the predicted mesh: displacement_m, velocity_m_per_s and
+//                unexplained_force_N_per_m3 (if usable) at the nodes; strain, the largest principal
+//                Green–Lagrange strain, in the tetrahedra;
+//   markers.pvd  the measured markers: predicted_m, difference_m, difference_over_sigma (length
+//   over
+//                √3 `noise`, m), fitted, marker. Markers that were not observed are left out.
+// Both are in the recording's measuring frame. Returns the number of frames. Throws InputError when
+// a file cannot be written.
+int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
+                          const ReplayedMotion& motion, const UnexplainedForce& force, double noise,
                           const std::filesystem::path& folder);
 
 }  // namespace lacuna

@@ -1,8 +1,9 @@
+#include "comparison/force_measures.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "comparison/unexplained_force.h"
+#include <vector>
 
 namespace lacuna {
 namespace {
@@ -10,23 +11,26 @@ namespace {
 constexpr double kStandardGravity = 9.80665;  // m/s²
 constexpr int kShapes = SmoothForce::kShapes;
 
-// Weights of all amplitudes in what is linear (rows × 6) in the force at one time.
-Eigen::MatrixXd OverKnots(const SmoothForce& force, const Eigen::MatrixXd& by, double time) {
-  const SmoothForce::Between at = force.At(time);
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(by.rows(), force.amplitudes.size());
-  all.middleCols<kShapes>(kShapes * at.knot) = (1 - at.next) * by;
-  all.middleCols<kShapes>(kShapes * (at.knot + 1)) = at.next * by;
+// A quantity that is linear in the amplitudes at one time (`jacobian`: rows × 6), as a function of
+// the amplitudes at all knots (rows × 6·knots).
+Eigen::MatrixXd JacobianOverKnots(const SmoothForce& force, const Eigen::MatrixXd& jacobian,
+                                  double time) {
+  const SmoothForce::KnotWeight at = force.At(time);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(jacobian.rows(), force.amplitudes.size());
+  all.middleCols<kShapes>(kShapes * at.knot) = (1 - at.next) * jacobian;
+  all.middleCols<kShapes>(kShapes * (at.knot + 1)) = at.next * jacobian;
   return all;
 }
 
-Eigen::VectorXd Deviations(const Eigen::MatrixXd& weights, const Eigen::MatrixXd& covariance) {
-  Eigen::VectorXd deviations(weights.rows());
-  for (Eigen::Index k = 0; k < weights.rows(); ++k) {
-    // At one time all but 12 weights are 0.
+// Standard deviations of what is linear in amplitudes with that covariance.
+Eigen::VectorXd Deviations(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& covariance) {
+  Eigen::VectorXd deviations(jacobian.rows());
+  for (Eigen::Index k = 0; k < jacobian.rows(); ++k) {
+    // At one time all but 12 entries are 0.
     std::vector<Eigen::Index> active;
-    for (Eigen::Index c = 0; c < weights.cols(); ++c)
-      if (weights(k, c) != 0) active.push_back(c);
-    const Eigen::RowVectorXd row = weights(k, active);
+    for (Eigen::Index c = 0; c < jacobian.cols(); ++c)
+      if (jacobian(k, c) != 0) active.push_back(c);
+    const Eigen::RowVectorXd row = jacobian(k, active);
     const Eigen::MatrixXd among = covariance(active, active);
     deviations[k] = std::sqrt(std::max(row.dot(row * among), 0.0));
   }
@@ -40,34 +44,7 @@ double CorrelationOver(const Eigen::Matrix3Xd& force, const Eigen::Matrix3Xd& mo
   return product > 0 ? a.cwiseProduct(b).sum() / product : 0;
 }
 
-void MeasurePlace(const Model& model, const ReplayedMotion& motion, UnexplainedForce* force) {
-  const Body& body = *model.body;
-  const std::vector<char> held = GrippedNodes(model);
-  force->place = Eigen::Matrix3Xd::Zero(3, force->times.size());
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(body.NodeCount());
-  for (Eigen::Index k = 0; k < force->times.size(); ++k) {
-    const Eigen::VectorXd amount = force->field.DensityAt(motion.states[k].time)
-                                       .colwise()
-                                       .norm()
-                                       .transpose()
-                                       .cwiseProduct(body.node_mass);
-    if (amount.sum() > 0) force->place.col(k) = body.mesh.nodes * amount / amount.sum();
-    all += amount;
-  }
-  if (all.sum() > 0) force->mean_place = body.mesh.nodes * all / all.sum();
-  if (std::none_of(held.begin(), held.end(), [](char is) { return is != 0; })) return;
-  const auto distance = [&](const Eigen::Vector3d& from) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (Eigen::Index i = 0; i < body.mesh.nodes.cols(); ++i)
-      if (held[i]) nearest = std::min(nearest, (body.mesh.nodes.col(i) - from).norm());
-    return nearest;
-  };
-  force->grip_distance = distance(force->mean_place);
-  for (Eigen::Index i = 0; i < body.mesh.nodes.cols(); ++i)
-    force->farthest = std::max(force->farthest, distance(body.mesh.nodes.col(i)));
-}
-
-// The net force (3 × 6) and the torque about `centre` of unit amplitudes.
+// The net force and the torque about `centre` as functions of the amplitudes, 3 × 6 each.
 struct Resultants {
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3, kShapes);
   Eigen::MatrixXd torque = Eigen::MatrixXd::Zero(3, kShapes);
@@ -85,85 +62,144 @@ Resultants ResultantsOf(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& po
   return resultants;
 }
 
-bool StandsOut(const UnexplainedForce& force) {
-  constexpr double kClear = 2, kClearWork = 3, kEvident = 5;
-  if (!(force.evidence > kEvident)) return false;
-  if (std::abs(force.work) > kClearWork * force.work_deviation) return true;
-  return (force.rms.array() > kClear * force.rms_deviation.array()).any() ||
-         (force.mean_force.array().abs() > kClear * force.mean_deviation.array()).any();
+// The weight, s, of each state in an integral over time by the trapezoidal rule.
+double TrapezoidalWeight(const ReplayedMotion& motion, Eigen::Index k) {
+  const Eigen::Index count = static_cast<Eigen::Index>(motion.states.size());
+  const double from = motion.states[std::max<Eigen::Index>(k - 1, 0)].time;
+  const double to = motion.states[std::min(k + 1, count - 1)].time;
+  return 0.5 * (to - from);
 }
 
-}  // namespace
-
-void MeasureForce(const Model& model, const ReplayedMotion& motion,
-                  const Eigen::MatrixXd& covariance, UnexplainedForce* force) {
+// The net force, torque and power over time, and their means.
+void MeasureHistory(const Model& model, const ReplayedMotion& motion,
+                    const Eigen::MatrixXd& covariance, UnexplainedForce* force) {
   const Body& body = *model.body;
   const SmoothForce& field = force->field;
   const Eigen::MatrixXd shapes = field.Shapes();
-  const Eigen::VectorXd mass = body.node_mass.cwiseProduct(field.modes.col(0));
   const Eigen::Vector3d centroid = body.mesh.nodes * body.node_mass / body.node_mass.sum();
   const Eigen::Index count = static_cast<Eigen::Index>(motion.states.size());
-  force->weight = mass.sum() * kStandardGravity;
-  force->delay = motion.delay;
-  force->times.resize(count);
-  force->power.resize(count);
+  ForceHistory& history = force->history;
+  history.times.resize(count);
+  history.power.resize(count);
   for (Eigen::Matrix3Xd* rows :
-       {&force->force, &force->force_deviation, &force->torque, &force->torque_deviation})
+       {&history.force, &history.force_deviation, &history.torque, &history.torque_deviation})
     rows->resize(3, count);
 
-  Eigen::MatrixXd mean_by = Eigen::MatrixXd::Zero(3, field.amplitudes.size());
-  Eigen::MatrixXd work_by = Eigen::MatrixXd::Zero(1, field.amplitudes.size());
-  Eigen::Matrix3Xd displacement(3, count), velocity(3, count), acceleration(3, count);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = sum, variances = sum;
-  double duration = 0;
+  Eigen::MatrixXd impulse_jacobian = Eigen::MatrixXd::Zero(3, field.amplitudes.size());
+  Eigen::MatrixXd work_jacobian = Eigen::MatrixXd::Zero(1, field.amplitudes.size());
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero(), squares = impulse, variances = impulse;
+  double duration = 0, work = 0;
   for (Eigen::Index k = 0; k < count; ++k) {
     const TrajectoryState& state = motion.states[k];
     const Eigen::VectorXd amplitudes = field.AmplitudesAt(state.time);
-    const Resultants by = ResultantsOf(shapes, state.position, centroid);
-    const Eigen::MatrixXd power_by = state.velocity.transpose() * shapes;
-    const Eigen::MatrixXd force_over_knots = OverKnots(field, by.force, state.time);
-    force->times[k] = state.time + motion.delay;
-    force->force.col(k) = by.force * amplitudes;
-    force->torque.col(k) = by.torque * amplitudes;
-    force->power[k] = (power_by * amplitudes)(0);
-    force->force_deviation.col(k) = Deviations(force_over_knots, covariance);
-    force->torque_deviation.col(k) =
-        Deviations(OverKnots(field, by.torque, state.time), covariance);
+    const Resultants resultants = ResultantsOf(shapes, state.position, centroid);
+    const Eigen::MatrixXd power_jacobian = state.velocity.transpose() * shapes;
+    const Eigen::MatrixXd force_jacobian = JacobianOverKnots(field, resultants.force, state.time);
+    history.times[k] = state.time + motion.delay;
+    history.force.col(k) = resultants.force * amplitudes;
+    history.torque.col(k) = resultants.torque * amplitudes;
+    history.power[k] = (power_jacobian * amplitudes)(0);
+    history.force_deviation.col(k) = Deviations(force_jacobian, covariance);
+    history.torque_deviation.col(k) =
+        Deviations(JacobianOverKnots(field, resultants.torque, state.time), covariance);
 
-    // The trapezoidal rule.
-    const double from = motion.states[std::max<Eigen::Index>(k - 1, 0)].time;
-    const double to = motion.states[std::min(k + 1, count - 1)].time;
-    const double share = 0.5 * (to - from);
-    duration += share;
-    mean_by += share * force_over_knots;
-    work_by += share * OverKnots(field, power_by, state.time);
-    sum += share * force->force.col(k);
-    squares += share * force->force.col(k).cwiseAbs2();
-    variances += share * force->force_deviation.col(k).cwiseAbs2();
-    force->work += share * force->power[k];
-    const auto of_mass = [&](const Eigen::VectorXd& nodal) -> Eigen::Vector3d {
-      return nodal.reshaped(3, mass.size()) * mass / mass.sum();
-    };
-    displacement.col(k) = of_mass(state.position - body.mesh.nodes.reshaped());
-    velocity.col(k) = of_mass(state.velocity);
+    const double weight = TrapezoidalWeight(motion, k);
+    duration += weight;
+    impulse_jacobian += weight * force_jacobian;
+    work_jacobian += weight * JacobianOverKnots(field, power_jacobian, state.time);
+    impulse += weight * history.force.col(k);
+    squares += weight * history.force.col(k).cwiseAbs2();
+    variances += weight * history.force_deviation.col(k).cwiseAbs2();
+    work += weight * history.power[k];
+  }
+  NetForce& net = force->record.net;
+  net.mean = impulse / duration;
+  net.mean_deviation = Deviations(impulse_jacobian, covariance) / duration;
+  net.rms = (squares / duration).cwiseSqrt();
+  net.rms_deviation = (variances / duration).cwiseSqrt();
+  if (net.rms.norm() > 0) net.constant_share = net.mean.norm() / net.rms.norm();
+  force->record.work = {history.times[count - 1] - history.times[0], work,
+                        Deviations(work_jacobian, covariance)[0], work / duration};
+}
+
+// With the displacement, velocity and acceleration of the centre of mass of the part that moves.
+std::vector<ForceCorrelation> CorrelationsWithMotion(const Model& model,
+                                                     const ReplayedMotion& motion,
+                                                     const Eigen::VectorXd& moving_mass,
+                                                     const Eigen::Matrix3Xd& force) {
+  const Eigen::Index count = static_cast<Eigen::Index>(motion.states.size());
+  const auto mean_over_mass = [&](const Eigen::VectorXd& nodal) -> Eigen::Vector3d {
+    return nodal.reshaped(3, moving_mass.size()) * moving_mass / moving_mass.sum();
+  };
+  Eigen::Matrix3Xd displacement(3, count), velocity(3, count), acceleration(3, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const TrajectoryState& state = motion.states[k];
+    displacement.col(k) = mean_over_mass(state.position - model.body->mesh.nodes.reshaped());
+    velocity.col(k) = mean_over_mass(state.velocity);
   }
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index a = std::max<Eigen::Index>(k - 1, 0), b = std::min(k + 1, count - 1);
     acceleration.col(k) =
         (velocity.col(b) - velocity.col(a)) / (motion.states[b].time - motion.states[a].time);
   }
-  force->mean_force = sum / duration;
-  force->mean_deviation = Deviations(mean_by, covariance) / duration;
-  force->rms = (squares / duration).cwiseSqrt();
-  force->rms_deviation = (variances / duration).cwiseSqrt();
-  if (force->rms.norm() > 0) force->constant_share = force->mean_force.norm() / force->rms.norm();
-  force->work_deviation = Deviations(work_by, covariance)[0];
-  force->mean_power = force->work / duration;
-  force->likeness = {{"displacement", CorrelationOver(force->force, displacement)},
-                     {"velocity", CorrelationOver(force->force, velocity)},
-                     {"acceleration", CorrelationOver(force->force, acceleration)}};
+  return {{"displacement", CorrelationOver(force, displacement)},
+          {"velocity", CorrelationOver(force, velocity)},
+          {"acceleration", CorrelationOver(force, acceleration)}};
+}
+
+void MeasurePlace(const Model& model, const ReplayedMotion& motion, UnexplainedForce* force) {
+  const Body& body = *model.body;
+  const std::vector<char> gripped = GrippedNodes(model);
+  ForcePlace& place = force->record.place;
+  const Eigen::Index count = static_cast<Eigen::Index>(motion.states.size());
+  force->history.centroid = Eigen::Matrix3Xd::Zero(3, count);
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(body.NodeCount());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::VectorXd amount = force->field.DensityAt(motion.states[k].time)
+                                       .colwise()
+                                       .norm()
+                                       .transpose()
+                                       .cwiseProduct(body.node_mass);
+    if (amount.sum() > 0) force->history.centroid.col(k) = body.mesh.nodes * amount / amount.sum();
+    total += amount;
+  }
+  if (total.sum() > 0) place.centroid = body.mesh.nodes * total / total.sum();
+  if (std::none_of(gripped.begin(), gripped.end(), [](char is) { return is != 0; })) return;
+  const auto distance = [&](const Eigen::Vector3d& from) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < body.mesh.nodes.cols(); ++i)
+      if (gripped[i]) nearest = std::min(nearest, (body.mesh.nodes.col(i) - from).norm());
+    return nearest;
+  };
+  place.grip_distance = distance(place.centroid);
+  for (Eigen::Index i = 0; i < body.mesh.nodes.cols(); ++i)
+    place.largest_grip_distance =
+        std::max(place.largest_grip_distance, distance(body.mesh.nodes.col(i)));
+}
+
+// Thresholds in standard deviations, and of the natural log of the likelihood ratio. Larger: fewer
+// forces that noise alone has made are reported, and fewer small forces that are real.
+bool IsSignificant(const UnexplainedForceRecord& force) {
+  constexpr double kClearForce = 2, kClearWork = 3, kClearEvidence = 5;
+  if (!(force.fit.log_evidence > kClearEvidence)) return false;
+  if (std::abs(force.work.work) > kClearWork * force.work.deviation) return true;
+  const NetForce& net = force.net;
+  return (net.rms.array() > kClearForce * net.rms_deviation.array()).any() ||
+         (net.mean.array().abs() > kClearForce * net.mean_deviation.array()).any();
+}
+
+}  // namespace
+
+void MeasureForce(const Model& model, const ReplayedMotion& motion,
+                  const Eigen::MatrixXd& covariance, UnexplainedForce* force) {
+  const Eigen::VectorXd moving_mass = model.body->node_mass.cwiseProduct(force->field.modes.col(0));
+  force->delay = motion.delay;
+  force->record.net.weight = moving_mass.sum() * kStandardGravity;
+  MeasureHistory(model, motion, covariance, force);
+  force->record.correlations =
+      CorrelationsWithMotion(model, motion, moving_mass, force->history.force);
   MeasurePlace(model, motion, force);
-  force->stands_out = StandsOut(*force);
+  force->record.fit.is_significant = IsSignificant(force->record);
 }
 
 }  // namespace lacuna

@@ -10,14 +10,14 @@
 
 namespace lacuna {
 
-SmoothForce::Between SmoothForce::At(double time) const {
+SmoothForce::KnotWeight SmoothForce::At(double time) const {
   const double at = std::clamp((time - start) / spacing, 0.0, KnotCount() - 1.0);
   const int knot = std::min(static_cast<int>(at), KnotCount() - 2);
   return {knot, at - knot};
 }
 
 Eigen::VectorXd SmoothForce::AmplitudesAt(double time) const {
-  const Between at = At(time);
+  const KnotWeight at = At(time);
   return (1 - at.next) * amplitudes.col(at.knot) + at.next * amplitudes.col(at.knot + 1);
 }
 
@@ -55,19 +55,19 @@ SmoothForce MakeSmoothForce(const Model& model, double start, double end, int kn
   force.spacing = (end - start) / (knots - 1);
   force.amplitudes.setZero(SmoothForce::kShapes, knots);
 
-  const std::vector<char> held = GrippedNodes(model);
+  const std::vector<char> gripped = GrippedNodes(model);
   Eigen::VectorXd mass = body.node_mass;
   for (Eigen::Index i = 0; i < mass.size(); ++i)
-    if (held[i]) mass[i] = 0;
+    if (gripped[i]) mass[i] = 0;
   const Eigen::Vector3d centre = body.mesh.nodes * mass / mass.sum();
   const Eigen::Matrix3Xd arm = body.mesh.nodes.colwise() - centre;
   const Eigen::Matrix3d moments = arm * mass.asDiagonal() * arm.transpose() / mass.sum();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(moments);
   force.modes.setZero(mass.size(), SmoothForce::kModes);
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    if (held[i]) continue;
+    if (gripped[i]) continue;
     force.modes(i, 0) = 1;
-    // Eigenvalues ascend.
+    // Eigenvalues are in ascending order.
     force.modes(i, 1) =
         principal.eigenvectors().col(2).dot(arm.col(i)) / std::sqrt(principal.eigenvalues()[2]);
   }

@@ -196,36 +196,42 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                                .plausible_max = 1,
                                .default_value = 0,
                                .log_scale = false});
-    card.parameters.push_back({.name = "friction",
-                               .meaning = "coefficient of friction, μ",
-                               .dimension = kDimensionless,
-                               .bounds = kNotNegative,
-                               .null_value = 0,
-                               .plausible_min = 0,
-                               .plausible_max = 1.5,
-                               .default_value = 0,
-                               .log_scale = false});
-    card.parameters.push_back({.name = "slip_velocity",
-                               .meaning = "slip at which friction reaches 71 % of its limit, w",
-                               .dimension = kVelocity,
-                               .bounds = kPositive,
-                               .null_value = kNoNull,
-                               .plausible_min = 1e-5,
-                               .plausible_max = 1e-2,
-                               .default_value = 1e-3,
-                               .log_scale = true,
-                               .setting = true});
-    card.parameters.push_back({.name = "smoothing",
-                               .meaning = "depth over which the push becomes proportional, s",
-                               .dimension = kLength,
-                               .bounds = kPositive,
-                               .null_value = kNoNull,
-                               .plausible_min = 1e-6,
-                               .plausible_max = 1e-3,
-                               .default_value = 1e-4,
-                               .log_scale = true,
-                               .setting = true});
+    AppendContactLaw(&card);
     return card;
+  }
+
+  // Appends the friction and the two regularisations of the contact law.
+  static void AppendContactLaw(EffectCard* card) {
+    constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
+    card->parameters.push_back({.name = "friction",
+                                .meaning = "coefficient of friction, μ",
+                                .dimension = kDimensionless,
+                                .bounds = kNotNegative,
+                                .null_value = 0,
+                                .plausible_min = 0,
+                                .plausible_max = 1.5,
+                                .default_value = 0,
+                                .log_scale = false});
+    card->parameters.push_back({.name = "slip_velocity",
+                                .meaning = "slip at which friction reaches 71 % of its limit, w",
+                                .dimension = kVelocity,
+                                .bounds = kPositive,
+                                .null_value = kNoNull,
+                                .plausible_min = 1e-5,
+                                .plausible_max = 1e-2,
+                                .default_value = 1e-3,
+                                .log_scale = true,
+                                .setting = true});
+    card->parameters.push_back({.name = "smoothing",
+                                .meaning = "depth over which the push becomes proportional, s",
+                                .dimension = kLength,
+                                .bounds = kPositive,
+                                .null_value = kNoNull,
+                                .plausible_min = 1e-6,
+                                .plausible_max = 1e-3,
+                                .default_value = 1e-4,
+                                .log_scale = true,
+                                .setting = true});
   }
 
   double Stiffness() const { return parameters_[kStiffness]; }

@@ -12,9 +12,9 @@
 namespace lacuna {
 namespace {
 
-// Where the mesh noise was not measured, D differs if it does by this share.
+// Relative difference of D that counts where the mesh noise was not measured.
 constexpr double kDefaultNoise = 0.01;
-// An evaluation that takes so many times as long is worth a word.
+// Ratio of the evaluation times from which on the difference is mentioned.
 constexpr double kCostRatio = 1.5;
 
 bool IsSearched(const Table1Configuration& configuration, size_t variable) {
@@ -28,13 +28,14 @@ const AblationRow* Find(const std::vector<AblationRow>& rows, const std::string&
   return nullptr;
 }
 
-// How far a modulus is off, as a factor of at least 1.
+// The error of a modulus as a factor of at least 1.
 double FactorOff(double ratio) { return std::exp(std::abs(std::log(ratio))); }
 
 std::string Compared(const AblationRow& row, const AblationRow& other, double noise) {
-  const double difference = row.best.median / other.best.median - 1;
+  const double difference = row.residual.best.median / other.residual.best.median - 1;
   if (std::abs(difference) <= 2 * noise)
-    return fmt::format("D as that of {}, within two deviations of the mesh noise", other.name);
+    return fmt::format("D equals that of {} within two standard deviations of the mesh noise",
+                       other.name);
   return fmt::format("D {:.1f} % {} than that of {}", 100 * std::abs(difference),
                      difference < 0 ? "lower" : "higher", other.name);
 }
@@ -43,12 +44,14 @@ std::string ParametersInWords(const Table1Configuration& configuration, const Ab
                               const AblationRow* other) {
   std::string text;
   if (IsSearched(configuration, 2)) {
-    text += fmt::format("; y off by a factor {:.2f}", FactorOff(row.modulus_factor.median));
-    if (other != nullptr) text += fmt::format(" ({:.2f})", FactorOff(other->modulus_factor.median));
+    text += fmt::format("; y off by a factor {:.2f}", FactorOff(row.optimum.modulus_factor.median));
+    if (other != nullptr)
+      text += fmt::format(" ({:.2f})", FactorOff(other->optimum.modulus_factor.median));
   }
   if (IsSearched(configuration, 3)) {
-    text += fmt::format("; p off by {:.3f}", std::abs(row.poisson_error.median));
-    if (other != nullptr) text += fmt::format(" ({:.3f})", std::abs(other->poisson_error.median));
+    text += fmt::format("; p off by {:.3f}", std::abs(row.optimum.poisson_error.median));
+    if (other != nullptr)
+      text += fmt::format(" ({:.3f})", std::abs(other->optimum.poisson_error.median));
   }
   return text;
 }
@@ -56,19 +59,19 @@ std::string ParametersInWords(const Table1Configuration& configuration, const Ab
 std::string InWords(const Table1Configuration& configuration, const AblationRow& row,
                     const AblationRow* other, double noise) {
   if (row.seeds == 0) return "no evaluation succeeded";
-  std::string text = "what the others are held against";
+  std::string text = "the reference of the other rows";
   if (other != nullptr) {
     text = Compared(row, *other, noise);
   } else if (!row.against.empty()) {
-    text = fmt::format("nothing to hold it against: {} found nothing", row.against);
+    text = fmt::format("no comparison: the search of {} failed", row.against);
   }
   text += ParametersInWords(configuration, row, other);
-  const double below = 1 - row.best.median / row.at_truth.median;
+  const double below = 1 - row.residual.best.median / row.residual.at_truth.median;
   const bool seeks_material = IsSearched(configuration, 2) || IsSearched(configuration, 3);
   if (seeks_material && below > 2 * noise) {
     text += fmt::format(
-        "; {:.1f} % below D at the true y and p, so that the least D does not tell "
-        "them",
+        "; {:.1f} % below D at the true y and p, so that the smallest D does not "
+        "identify them",
         100 * below);
   }
   if (other != nullptr) {
@@ -89,11 +92,11 @@ struct SeedValues {
 
 void Add(const Table1Study& study, const Table1Configuration& configuration,
          const Table1Search& search, SeedValues* values) {
-  const OuterSearchResult& found = search.found;
-  const OuterEvaluation& first = found.evaluations.front();
-  const OuterEvaluation& best = found.evaluations[found.best];
-  const OuterParameters& at = found.parameters[found.best];
-  const OuterMeasure measure = configuration.search.measure;
+  const ParameterSearchResult& found = search.found;
+  const ObjectiveEvaluation& first = found.evaluations.front();
+  const ObjectiveEvaluation& best = found.evaluations[found.best];
+  const SearchedParameters& at = found.parameters[found.best];
+  const ObjectiveMeasure measure = configuration.search.measure;
   values->start.push_back(first.residual_per_point);
   values->best.push_back(best.residual_per_point);
   values->start_sum.push_back(first.residual_sum);
@@ -120,18 +123,18 @@ nlohmann::json JsonOf(const SeedRange& range) {
 
 // The columns of the table, named with their units.
 std::vector<std::pair<const char*, const SeedRange*>> ColumnsOf(const AblationRow& row) {
-  return {{"start_per_point_m", &row.start},
-          {"best_per_point_m", &row.best},
-          {"start_sum_m", &row.start_sum},
-          {"best_sum_m", &row.best_sum},
-          {"drop", &row.drop},
-          {"radius_edge_ratio", &row.radius_edge_ratio},
-          {"max_volume_m3", &row.max_volume},
-          {"young_modulus_Pa", &row.young_modulus},
-          {"poisson_ratio", &row.poisson_ratio},
-          {"young_modulus_over_truth", &row.modulus_factor},
-          {"poisson_ratio_less_truth", &row.poisson_error},
-          {"truth_per_point_m", &row.at_truth},
+  return {{"start_per_point_m", &row.residual.start},
+          {"best_per_point_m", &row.residual.best},
+          {"start_sum_m", &row.residual.start_sum},
+          {"best_sum_m", &row.residual.best_sum},
+          {"drop", &row.residual.drop},
+          {"radius_edge_ratio", &row.optimum.radius_edge_ratio},
+          {"max_volume_m3", &row.optimum.max_volume},
+          {"young_modulus_Pa", &row.optimum.young_modulus},
+          {"poisson_ratio", &row.optimum.poisson_ratio},
+          {"young_modulus_over_truth", &row.optimum.modulus_factor},
+          {"poisson_ratio_less_truth", &row.optimum.poisson_error},
+          {"truth_per_point_m", &row.residual.at_truth},
           {"evaluations", &row.evaluations},
           {"failures", &row.failures},
           {"seconds", &row.seconds}};
@@ -192,18 +195,18 @@ AblationSummary SummariseAblation(const Table1Study& study, const Table1Result& 
     for (const Table1Seed& seed : result.seeds)
       if (seed.searches[c].found.IsUsable()) Add(study, configuration, seed.searches[c], &values);
     row.seeds = static_cast<int>(values.best.size());
-    row.start = RangeOf(values.start);
-    row.best = RangeOf(values.best);
-    row.start_sum = RangeOf(values.start_sum);
-    row.best_sum = RangeOf(values.best_sum);
-    row.drop = RangeOf(values.drop);
-    row.radius_edge_ratio = RangeOf(values.q);
-    row.max_volume = RangeOf(values.v);
-    row.young_modulus = RangeOf(values.y);
-    row.poisson_ratio = RangeOf(values.p);
-    row.modulus_factor = RangeOf(values.factor);
-    row.poisson_error = RangeOf(values.error);
-    row.at_truth = RangeOf(values.truth);
+    row.residual.start = RangeOf(values.start);
+    row.residual.best = RangeOf(values.best);
+    row.residual.start_sum = RangeOf(values.start_sum);
+    row.residual.best_sum = RangeOf(values.best_sum);
+    row.residual.drop = RangeOf(values.drop);
+    row.optimum.radius_edge_ratio = RangeOf(values.q);
+    row.optimum.max_volume = RangeOf(values.v);
+    row.optimum.young_modulus = RangeOf(values.y);
+    row.optimum.poisson_ratio = RangeOf(values.p);
+    row.optimum.modulus_factor = RangeOf(values.factor);
+    row.optimum.poisson_error = RangeOf(values.error);
+    row.residual.at_truth = RangeOf(values.truth);
     row.evaluations = RangeOf(values.evaluations);
     row.failures = RangeOf(values.failures);
     row.seconds = RangeOf(values.seconds);
@@ -232,12 +235,15 @@ std::string AblationText(const Table1Study& study, const Table1Result& result) {
     const auto cell = [](double value, size_t width, int digits) {
       return PaddedLeft(std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, digits), width);
     };
-    text += PaddedRight(row.name, 20) + cell(1e3 * row.start.median, 7, 3) +
-            cell(1e3 * row.best.median, 8, 3) + cell(row.start_sum.median, 10, 3) +
-            cell(row.best_sum.median, 7, 3) + cell(100 * row.drop.median, 8, 1) +
-            cell(row.radius_edge_ratio.median, 7, 3) + cell(1e6 * row.max_volume.median, 9, 1) +
-            cell(1e-3 * row.young_modulus.median, 8, 1) + cell(row.modulus_factor.median, 8, 2) +
-            cell(row.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
+    text += PaddedRight(row.name, 20) + cell(1e3 * row.residual.start.median, 7, 3) +
+            cell(1e3 * row.residual.best.median, 8, 3) +
+            cell(row.residual.start_sum.median, 10, 3) + cell(row.residual.best_sum.median, 7, 3) +
+            cell(100 * row.residual.drop.median, 8, 1) +
+            cell(row.optimum.radius_edge_ratio.median, 7, 3) +
+            cell(1e6 * row.optimum.max_volume.median, 9, 1) +
+            cell(1e-3 * row.optimum.young_modulus.median, 8, 1) +
+            cell(row.optimum.modulus_factor.median, 8, 2) +
+            cell(row.optimum.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
             cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0) + "\n";
   }
   text += "\nWhat each row shows (in brackets: the row it is held against)\n";

@@ -1,7 +1,7 @@
-// An ablation: the outer search again and again with one thing changed, and what each change does.
+// An ablation: the parameter search is repeated with one thing changed at a time.
 //
-// Each row is an experiment file like those of Table 1 (paper/table1.h), run by the same machinery;
-// it names what varies, the question it answers and the row that it is held against.
+// Each row is an experiment file like those of Table 1 (paper/table1.h). It names what varies, the
+// question that it answers, and the row that it is compared with.
 #ifndef LACUNA_PAPER_ABLATION_H_
 #define LACUNA_PAPER_ABLATION_H_
 
@@ -13,32 +13,43 @@
 
 namespace lacuna {
 
-// A row over all seeds whose search found something; medians and extremes.
+// The residual of a row: at its start, at its best parameters and at the truth.
+struct AblationResidual {
+  SeedRange start, best;          // mean of D per point, m, whatever measure was searched
+  SeedRange start_sum, best_sum;  // |D_anim| of the paper, m
+  SeedRange drop;                 // 1 − best / start of the searched measure
+  SeedRange at_truth;  // mean of D per point, m, at the true y and p and the row's own q and v
+};
+
+// The parameters that a row found, SI, and their errors.
+struct AblationOptimum {
+  SeedRange radius_edge_ratio, max_volume, young_modulus, poisson_ratio;
+  SeedRange modulus_factor;  // y divided by its true value
+  SeedRange poisson_error;   // p minus its true value
+};
+
+// One row, summarised over all seeds whose search succeeded.
 struct AblationRow {
   std::string name, varies, question, against;
   int seeds = 0;
-  SeedRange start, best;          // D per point, m, whatever was searched
-  SeedRange start_sum, best_sum;  // the paper's |D_anim|, m
-  SeedRange drop;                 // 1 − best / start of the measure searched
-  // What was found; of y and p also how far from the truth: y over it, and p less it.
-  SeedRange radius_edge_ratio, max_volume, young_modulus, poisson_ratio;
-  SeedRange modulus_factor, poisson_error;
-  SeedRange at_truth;  // D per point at the true y and p, the row's own start q and v, m
+  AblationResidual residual;
+  AblationOptimum optimum;
   SeedRange evaluations, failures, seconds;
-  std::string method_message;  // of the first seed's search
-  std::string shows;           // in words, from the numbers alone
+  std::string method_message;  // from the search of the first seed
+  std::string shows;           // a sentence that is derived from the numbers alone
 };
 
 struct AblationSummary {
   std::vector<AblationRow> rows;
-  double mesh_noise = kNotMeasured;  // of D per point, as in Table1Summary
+  double mesh_noise = kNotMeasured;  // of the mean of D per point, as in Table1Summary
 };
 
-// Rows in the order of the configurations. A row is held against the one it names, or the first.
+// Rows in the order of the configurations. A row is compared with the one that it names, or the
+// first.
 AblationSummary SummariseAblation(const Table1Study& study, const Table1Result& result);
 
 std::string AblationText(const Table1Study& study, const Table1Result& result);
-// ablation.txt, ablation.json and ablation.csv.
+// Writes ablation.txt, ablation.json and ablation.csv.
 void WriteAblation(const Table1Study& study, const Table1Result& result,
                    const std::filesystem::path& folder);
 

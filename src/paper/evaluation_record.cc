@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-std::string KeyOf(const OuterParameters& p) {
+std::string KeyOf(const SearchedParameters& p) {
   return fmt::format("{:a} {:a} {:a} {:a}", p.radius_edge_ratio, p.max_volume, p.young_modulus,
                      p.poisson_ratio);
 }
@@ -25,11 +25,11 @@ double NumberOf(const nlohmann::json& value) {
   return value.is_null() ? kNotMeasured : value.get<double>();
 }
 
-// Keys of the derivatives, in the order of OuterEvaluation::by_moduli.
+// Keys of the derivatives, in the order of ObjectiveEvaluation::by_moduli.
 constexpr const char* kModuli[] = {"by_young_modulus", "by_poisson_ratio"};
 
-OuterEvaluation EvaluationFrom(const nlohmann::json& json) {
-  OuterEvaluation evaluation;
+ObjectiveEvaluation EvaluationFrom(const nlohmann::json& json) {
+  ObjectiveEvaluation evaluation;
   evaluation.usable = json.at("usable");
   evaluation.failure = json.at("failure");
   evaluation.residual_sum = NumberOf(json.at("residual_sum_m"));
@@ -52,19 +52,19 @@ OuterEvaluation EvaluationFrom(const nlohmann::json& json) {
 
 }  // namespace
 
-nlohmann::json ToJson(const OuterParameters& parameters) {
+nlohmann::json ToJson(const SearchedParameters& parameters) {
   return {{"radius_edge_ratio", parameters.radius_edge_ratio},
           {"max_volume_m3", parameters.max_volume},
           {"young_modulus_Pa", parameters.young_modulus},
           {"poisson_ratio", parameters.poisson_ratio}};
 }
 
-OuterParameters OuterParametersFrom(const nlohmann::json& json) {
+SearchedParameters SearchedParametersFrom(const nlohmann::json& json) {
   return {json.at("radius_edge_ratio"), json.at("max_volume_m3"), json.at("young_modulus_Pa"),
           json.at("poisson_ratio")};
 }
 
-nlohmann::json ToJson(const OuterEvaluation& evaluation) {
+nlohmann::json ToJson(const ObjectiveEvaluation& evaluation) {
   nlohmann::json json{{"usable", evaluation.usable},
                       {"failure", evaluation.failure},
                       {"residual_sum_m", Measured(evaluation.residual_sum)},
@@ -77,7 +77,7 @@ nlohmann::json ToJson(const OuterEvaluation& evaluation) {
                       {"surface_points", evaluation.surface_points},
                       {"seconds", evaluation.seconds}};
   for (size_t i = 0; i < evaluation.by_moduli.size(); ++i) {
-    const OuterSlope& by = evaluation.by_moduli[i];
+    const ObjectiveSlope& by = evaluation.by_moduli[i];
     json[kModuli[i]] = {{"residual_sum", by.residual_sum},
                         {"residual_per_point", by.residual_per_point},
                         {"residual_rms", by.residual_rms}};
@@ -109,7 +109,7 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
         throw InputError({file.string(), 1},
                          "was made with other settings; remove its folder to search anew");
       }
-      known_[KeyOf(OuterParametersFrom(json.at("parameters")))] =
+      known_[KeyOf(SearchedParametersFrom(json.at("parameters")))] =
           EvaluationFrom(json.at("evaluation"));
     } catch (const nlohmann::json::exception& problem) {
       throw InputError({file.string(), number}, problem.what());
@@ -117,7 +117,7 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
   }
 }
 
-const OuterEvaluation* EvaluationRecord::Find(const OuterParameters& parameters) const {
+const ObjectiveEvaluation* EvaluationRecord::Find(const SearchedParameters& parameters) const {
   const auto found = known_.find(KeyOf(parameters));
   return found == known_.end() ? nullptr : &found->second;
 }
@@ -128,8 +128,8 @@ void EvaluationRecord::AppendLine(const nlohmann::json& line) {
   if (!stream) throw InputError(SourcePosition{file_.string()}, "cannot be written");
 }
 
-void EvaluationRecord::Append(const OuterParameters& parameters,
-                              const OuterEvaluation& evaluation) {
+void EvaluationRecord::Append(const SearchedParameters& parameters,
+                              const ObjectiveEvaluation& evaluation) {
   AppendLine({{"parameters", ToJson(parameters)}, {"evaluation", ToJson(evaluation)}});
   known_[KeyOf(parameters)] = evaluation;
 }

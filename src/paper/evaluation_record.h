@@ -1,7 +1,8 @@
-// What each evaluation of an outer search measured, beside the one number that the search sees.
+// The full result of each evaluation of a parameter search, of which the search itself sees one
+// number.
 //
-// A line is written before the search's own log learns of the evaluation, so that whatever stands
-// in the log stands here; a last line torn by a crash is dropped.
+// A line is written before the search's own log receives the evaluation, so that every evaluation
+// in the log is in the record too. An incomplete last line, as a crash may leave it, is dropped.
 #ifndef LACUNA_PAPER_EVALUATION_RECORD_H_
 #define LACUNA_PAPER_EVALUATION_RECORD_H_
 
@@ -14,9 +15,9 @@
 
 namespace lacuna {
 
-nlohmann::json ToJson(const OuterParameters& parameters);
-OuterParameters OuterParametersFrom(const nlohmann::json& json);
-nlohmann::json ToJson(const OuterEvaluation& evaluation);
+nlohmann::json ToJson(const SearchedParameters& parameters);
+SearchedParameters SearchedParametersFrom(const nlohmann::json& json);
+nlohmann::json ToJson(const ObjectiveEvaluation& evaluation);
 
 class EvaluationRecord {
  public:
@@ -24,15 +25,16 @@ class EvaluationRecord {
   // when it cannot be written, is damaged, or belongs to another objective.
   EvaluationRecord(const std::filesystem::path& file, const std::string& key);
 
-  // Null where these parameters have not been evaluated.
-  const OuterEvaluation* Find(const OuterParameters& parameters) const;
-  void Append(const OuterParameters& parameters, const OuterEvaluation& evaluation);
+  // The evaluation of these parameters; null where there is none.
+  const ObjectiveEvaluation* Find(const SearchedParameters& parameters) const;
+  // Throws InputError when the file cannot be written.
+  void Append(const SearchedParameters& parameters, const ObjectiveEvaluation& evaluation);
 
  private:
   void AppendLine(const nlohmann::json& line);
 
   std::filesystem::path file_;
-  std::map<std::string, OuterEvaluation> known_;
+  std::map<std::string, ObjectiveEvaluation> known_;
 };
 
 }  // namespace lacuna

@@ -37,7 +37,7 @@ std::shared_ptr<const Effect> WithModuli(const Effect& material, double young_mo
   return material.WithParameters(values);
 }
 
-ReferenceBody MakeTurnedBody(const OuterProblem& problem, const ReconstructionStudy& study) {
+ReferenceBody MakeTurnedBody(const ParameterObjective& problem, const ReconstructionStudy& study) {
   TriMesh surface = problem.states.front().surface;
   if (problem.remesh_surface) {
     RemeshOptions options;
@@ -59,7 +59,7 @@ ReferenceBody MakeTurnedBody(const OuterProblem& problem, const ReconstructionSt
 }
 
 // D at the fixed sampling (3 × points, m), frame k.
-Eigen::Matrix3Xd ResidualAtSamples(const OuterProblem& problem, const SurfaceTracks& samples,
+Eigen::Matrix3Xd ResidualAtSamples(const ParameterObjective& problem, const SurfaceTracks& samples,
                                    const BoundarySurface& boundary, const FollowedFrame& frame,
                                    size_t k) {
   if (!problem.registration_in_loop) {
@@ -95,10 +95,10 @@ double SlopeOfLengths(const Eigen::Matrix3Xd& residual, const Eigen::Matrix3Xd& 
 // Adds a frame's share; that of the root mean square is of the mean square as yet.
 void AddSlopes(const BoundarySurface& boundary, const SurfaceTracks& samples,
                const FollowedFrame& frame, const Eigen::Matrix3Xd& at_samples, double frames,
-               OuterEvaluation* result) {
+               ObjectiveEvaluation* result) {
   const SurfaceTracks moving{samples.at_rest, Eigen::Matrix3Xd::Zero(3, samples.Count())};
   for (size_t i = 0; i < result->by_moduli.size(); ++i) {
-    OuterSlope& slope = result->by_moduli[i];
+    ObjectiveSlope& slope = result->by_moduli[i];
     const Eigen::Matrix3Xd nodes =
         frame.position_by.col(static_cast<Eigen::Index>(i)).reshaped(3, frame.position.cols());
     const double share = 1 / (frames * static_cast<double>(samples.Count()));
@@ -109,7 +109,8 @@ void AddSlopes(const BoundarySurface& boundary, const SurfaceTracks& samples,
   }
 }
 
-void Measure(const OuterProblem& problem, const FollowedMotion& motion, OuterEvaluation* result) {
+void Measure(const ParameterObjective& problem, const FollowedMotion& motion,
+             ObjectiveEvaluation* result) {
   const BoundarySurface& boundary = motion.body->boundary;
   const SurfaceTracks samples = TrackOnSurface(boundary, problem.tracked.points);
   result->residual_sum = result->residual_per_point = result->scan_distance = result->force = 0;
@@ -132,9 +133,9 @@ void Measure(const OuterProblem& problem, const FollowedMotion& motion, OuterEva
     result->force += frame.force.rowwise().sum().norm() / frames;
   }
   result->residual_rms = std::sqrt(mean_square);
-  for (OuterSlope& slope : result->by_moduli)
+  for (ObjectiveSlope& slope : result->by_moduli)
     slope.residual_rms /= 2 * std::max(result->residual_rms, 1e-300);
-  const auto is_finite = [](const OuterSlope& by) {
+  const auto is_finite = [](const ObjectiveSlope& by) {
     return std::isfinite(by.residual_sum + by.residual_per_point + by.residual_rms);
   };
   if (!std::all_of(result->by_moduli.begin(), result->by_moduli.end(), is_finite))
@@ -142,7 +143,8 @@ void Measure(const OuterProblem& problem, const FollowedMotion& motion, OuterEva
   result->usable = true;
 }
 
-ReconstructionStudy StudyAt(const OuterProblem& problem, const OuterParameters& parameters) {
+ReconstructionStudy StudyAt(const ParameterObjective& problem,
+                            const SearchedParameters& parameters) {
   ReconstructionStudy study = problem.study;
   study.mesh.tets.radius_edge_ratio = parameters.radius_edge_ratio;
   study.mesh.tets.max_volume = parameters.max_volume;
@@ -155,16 +157,18 @@ ReconstructionStudy StudyAt(const OuterProblem& problem, const OuterParameters& 
 
 }  // namespace
 
-bool CanDifferentiate(const OuterProblem& problem) {
+bool CanDifferentiate(const ParameterObjective& problem) {
   return !problem.registration_in_loop && HasModulusSensitivity(problem.study.follow.forces);
 }
 
-ReferenceBody MakeOuterBody(const OuterProblem& problem, const OuterParameters& parameters) {
+ReferenceBody MakeObjectiveBody(const ParameterObjective& problem,
+                                const SearchedParameters& parameters) {
   return MakeTurnedBody(problem, StudyAt(problem, parameters));
 }
 
-FollowedMotion FollowOuter(const OuterProblem& problem, const OuterParameters& parameters,
-                           const ReferenceBody& reference) {
+FollowedMotion FollowForObjective(const ParameterObjective& problem,
+                                  const SearchedParameters& parameters,
+                                  const ReferenceBody& reference) {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
   Progress progress(silent);
@@ -176,8 +180,9 @@ FollowedMotion FollowOuter(const OuterProblem& problem, const OuterParameters& p
                           : std::vector<int>());
 }
 
-OuterEvaluation MeasureOuter(const OuterProblem& problem, const FollowedMotion& motion) {
-  OuterEvaluation result;
+ObjectiveEvaluation MeasureObjective(const ParameterObjective& problem,
+                                     const FollowedMotion& motion) {
+  ObjectiveEvaluation result;
   result.nodes = motion.body->NodeCount();
   result.tets = motion.body->ElementCount();
   result.surface_points = static_cast<int>(motion.body->boundary.node.size());
@@ -191,12 +196,13 @@ OuterEvaluation MeasureOuter(const OuterProblem& problem, const FollowedMotion& 
   return result;
 }
 
-OuterEvaluation EvaluateOuter(const OuterProblem& problem, const OuterParameters& parameters) {
+ObjectiveEvaluation EvaluateObjective(const ParameterObjective& problem,
+                                      const SearchedParameters& parameters) {
   const auto begin = std::chrono::steady_clock::now();
-  OuterEvaluation result;
+  ObjectiveEvaluation result;
   try {
-    result =
-        MeasureOuter(problem, FollowOuter(problem, parameters, MakeOuterBody(problem, parameters)));
+    result = MeasureObjective(
+        problem, FollowForObjective(problem, parameters, MakeObjectiveBody(problem, parameters)));
   } catch (const InputError& refused) {
     result.failure = refused.what();
   }

@@ -30,7 +30,7 @@ SearchVariable ReadVariable(const Config& search, const std::string& name,
 }
 
 SearchResult Run(const SearchProblem& problem, const SearchControl& control,
-                 const OuterSearchSettings& settings) {
+                 const ParameterSearchSettings& settings) {
   CobylaOptions cobyla = settings.cobyla;
   GaussianProcessSearchOptions process;
   process.seed = settings.seed;
@@ -38,21 +38,21 @@ SearchResult Run(const SearchProblem& problem, const SearchControl& control,
   library.initial_radius = cobyla.initial_radius;
   library.final_radius = cobyla.final_radius;
   switch (settings.method) {
-    case OuterMethod::kCobylaModern:
+    case SearchMethod::kCobylaModern:
       cobyla.mode = CobylaMode::kModern;
       return MinimiseByCobyla(problem, control, cobyla);
-    case OuterMethod::kCobylaPowell:
+    case SearchMethod::kCobylaPowell:
       cobyla.mode = CobylaMode::kPowell;
       return MinimiseByCobyla(problem, control, cobyla);
-    case OuterMethod::kGaussianProcess:
+    case SearchMethod::kGaussianProcess:
       return MinimiseByGaussianProcess(problem, control, process);
-    case OuterMethod::kNloptBobyqa:
+    case SearchMethod::kNloptBobyqa:
       library.algorithm = NloptAlgorithm::kBobyqa;
       return MinimiseByNlopt(problem, control, library);
-    case OuterMethod::kCeres:
+    case SearchMethod::kCeres:
       return MinimiseByGradient(problem, control,
                                 {cobyla.initial_radius, cobyla.final_radius, settings.difference});
-    case OuterMethod::kNloptCobyla:
+    case SearchMethod::kNloptCobyla:
       break;
   }
   return MinimiseByNlopt(problem, control, library);
@@ -60,20 +60,20 @@ SearchResult Run(const SearchProblem& problem, const SearchControl& control,
 
 // Of an evaluation, or of its slopes.
 template <typename Residuals>
-double Chosen(const Residuals& residuals, OuterMeasure measure) {
+double Chosen(const Residuals& residuals, ObjectiveMeasure measure) {
   switch (measure) {
-    case OuterMeasure::kSum:
+    case ObjectiveMeasure::kSum:
       return residuals.residual_sum;
-    case OuterMeasure::kRms:
+    case ObjectiveMeasure::kRms:
       return residuals.residual_rms;
-    case OuterMeasure::kPerPoint:
+    case ObjectiveMeasure::kPerPoint:
       break;
   }
   return residuals.residual_per_point;
 }
 
 // By q, v, y and p; NaN where the evaluation does not tell.
-Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
+Eigen::VectorXd GradientOf(const ObjectiveEvaluation& evaluation, ObjectiveMeasure measure) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
   for (size_t i = 0; i < evaluation.by_moduli.size(); ++i)
     gradient[static_cast<Eigen::Index>(2 + i)] = Chosen(evaluation.by_moduli[i], measure);
@@ -82,8 +82,8 @@ Eigen::VectorXd GradientOf(const OuterEvaluation& evaluation, OuterMeasure measu
 
 }  // namespace
 
-OuterSearchSettings ReadOuterSearch(const Config& search) {
-  OuterSearchSettings settings;
+ParameterSearchSettings ReadParameterSearch(const Config& search) {
+  ParameterSearchSettings settings;
   settings.variables = {
       ReadVariable(search, "radius_edge_ratio", kDimensionless, {1, 100, true, false},
                    SearchScale::kLinear),
@@ -91,19 +91,20 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
       ReadVariable(search, "young_modulus", kPressure, kPositive, SearchScale::kLogarithmic),
       ReadVariable(search, "poisson_ratio", kDimensionless, {0, 0.5, false, true},
                    SearchScale::kLinear)};
-  settings.method = search.Choice<OuterMethod>("method",
-                                               {{"cobyla", OuterMethod::kCobylaModern},
-                                                {"cobyla_1994", OuterMethod::kCobylaPowell},
-                                                {"gaussian_process", OuterMethod::kGaussianProcess},
-                                                {"nlopt_cobyla", OuterMethod::kNloptCobyla},
-                                                {"nlopt_bobyqa", OuterMethod::kNloptBobyqa},
-                                                {"ceres", OuterMethod::kCeres}},
-                                               "cobyla");
-  settings.measure = search.Choice<OuterMeasure>("measure",
-                                                 {{"per_point", OuterMeasure::kPerPoint},
-                                                  {"rms", OuterMeasure::kRms},
-                                                  {"sum", OuterMeasure::kSum}},
-                                                 "per_point");
+  settings.method =
+      search.Choice<SearchMethod>("method",
+                                  {{"cobyla", SearchMethod::kCobylaModern},
+                                   {"cobyla_1994", SearchMethod::kCobylaPowell},
+                                   {"gaussian_process", SearchMethod::kGaussianProcess},
+                                   {"nlopt_cobyla", SearchMethod::kNloptCobyla},
+                                   {"nlopt_bobyqa", SearchMethod::kNloptBobyqa},
+                                   {"ceres", SearchMethod::kCeres}},
+                                  "cobyla");
+  settings.measure = search.Choice<ObjectiveMeasure>("measure",
+                                                     {{"per_point", ObjectiveMeasure::kPerPoint},
+                                                      {"rms", ObjectiveMeasure::kRms},
+                                                      {"sum", ObjectiveMeasure::kSum}},
+                                                     "per_point");
   settings.registration_in_loop =
       search.Choice<bool>("registration", {{"tracked", false}, {"in_loop", true}}, "tracked");
   settings.remesh_surface = search.Flag("remesh_surface", settings.remesh_surface);
@@ -120,25 +121,25 @@ OuterSearchSettings ReadOuterSearch(const Config& search) {
     return variable.lower < variable.upper;
   };
   const auto free = std::count_if(settings.variables.begin(), settings.variables.end(), is_free);
-  if (settings.method == OuterMethod::kNloptBobyqa && free < 2)
+  if (settings.method == SearchMethod::kNloptBobyqa && free < 2)
     search.Fail("method", "nlopt_bobyqa needs two free parameters at least");
   settings.seed = static_cast<uint64_t>(search.Integer("seed", 0, 1 << 30, 1));
   return settings;
 }
 
-OuterParameters ParametersOf(const Eigen::VectorXd& x) { return {x[0], x[1], x[2], x[3]}; }
+SearchedParameters ParametersOf(const Eigen::VectorXd& x) { return {x[0], x[1], x[2], x[3]}; }
 
-double ValueOf(const OuterEvaluation& evaluation, OuterMeasure measure) {
+double ValueOf(const ObjectiveEvaluation& evaluation, ObjectiveMeasure measure) {
   return Chosen(evaluation, measure);
 }
 
-double OuterSearchResult::Seconds() const {
+double ParameterSearchResult::Seconds() const {
   double seconds = 0;
-  for (const OuterEvaluation& evaluation : evaluations) seconds += evaluation.seconds;
+  for (const ObjectiveEvaluation& evaluation : evaluations) seconds += evaluation.seconds;
   return seconds;
 }
 
-int OuterSearchResult::Worst(OuterMeasure measure) const {
+int ParameterSearchResult::Worst(ObjectiveMeasure measure) const {
   int worst = best;
   for (size_t k = 0; k < evaluations.size(); ++k) {
     if (!evaluations[k].usable) continue;
@@ -148,21 +149,22 @@ int OuterSearchResult::Worst(OuterMeasure measure) const {
   return worst;
 }
 
-OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchSettings& settings,
-                                 const std::filesystem::path& folder, const std::string& key,
-                                 Progress* progress) {
+ParameterSearchResult RunParameterSearch(const ParameterObjective& problem,
+                                         const ParameterSearchSettings& settings,
+                                         const std::filesystem::path& folder,
+                                         const std::string& key, Progress* progress) {
   MakeFolder(folder);
   EvaluationRecord record(folder / "evaluations.jsonl", key);
   const SearchSpace space(settings.variables);
   progress->Begin("search", settings.evaluations);
   int64_t done = 0;
-  OuterProblem asked = problem;
-  asked.slopes = settings.method == OuterMethod::kCeres;
+  ParameterObjective asked = problem;
+  asked.slopes = settings.method == SearchMethod::kCeres;
   const auto evaluate = [&](const Eigen::VectorXd& x) {
-    const OuterParameters parameters = ParametersOf(x);
-    const OuterEvaluation* known = record.Find(parameters);
+    const SearchedParameters parameters = ParametersOf(x);
+    const ObjectiveEvaluation* known = record.Find(parameters);
     if (known == nullptr) {
-      record.Append(parameters, EvaluateOuter(asked, parameters));
+      record.Append(parameters, EvaluateObjective(asked, parameters));
       known = record.Find(parameters);
     }
     Evaluation outcome;
@@ -180,7 +182,7 @@ OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchS
   control.log = folder / "search.log";
   control.log_key = key;
   const SearchResult found = Run(search_problem, control, settings);
-  OuterSearchResult result;
+  ParameterSearchResult result;
   result.status = found.status;
   result.message = found.message;
   result.trace_hash = found.trace_hash;
@@ -188,7 +190,7 @@ OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchS
   result.failures = found.failures;
   for (const SearchStep& step : found.trace) {
     result.parameters.push_back(ParametersOf(space.FromUnit(step.x)));
-    const OuterEvaluation* known = record.Find(result.parameters.back());
+    const ObjectiveEvaluation* known = record.Find(result.parameters.back());
     const auto agrees = [&] {
       return step.outcome.value ? *step.outcome.value == ValueOf(*known, settings.measure)
                                 : !std::isfinite(ValueOf(*known, settings.measure));

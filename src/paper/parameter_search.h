@@ -1,4 +1,5 @@
-// The search for the (q, v, y, p) of least |D_anim|, which can be stopped at any evaluation.
+// The search for the parameters (q, v, y, p) with the smallest |D_anim|. It can be stopped after
+// any evaluation and resumed.
 #ifndef LACUNA_PAPER_PARAMETER_SEARCH_H_
 #define LACUNA_PAPER_PARAMETER_SEARCH_H_
 
@@ -14,60 +15,61 @@
 
 namespace lacuna {
 
-enum class OuterMethod {
+enum class SearchMethod {
   kCobylaModern,
   kCobylaPowell,
   kGaussianProcess,
   kNloptCobyla,
   kNloptBobyqa,
-  kCeres  // along the gradient: of the equations by y and p where no forces are fitted, else
-          // differences differences
+  kCeres  // gradient-based: analytic derivatives by y and p where no forces are fitted, else
+          // finite differences
 };
-enum class OuterMeasure {
-  kPerPoint,  // over a fixed sampling of the surface: does not see how many points a mesh has
-  kSum,       // the paper's sum over the mesh's own points: the fewer, the less
-  kRms,       // the root of the mean square over that sampling: what lies far off counts more
+enum class ObjectiveMeasure {
+  kPerPoint,  // the mean over a fixed sampling of the surface, independent of the mesh's vertices
+  kSum,       // the paper's sum over the vertices of the mesh, which decreases with their number
+  kRms,       // the rms over the fixed sampling, which gives large residuals more weight
 };
 
-struct OuterSearchSettings {
+struct ParameterSearchSettings {
   std::vector<SearchVariable> variables;  // q, v, y, p; fixed where lower == upper
-  OuterMethod method = OuterMethod::kCobylaModern;
-  OuterMeasure measure = OuterMeasure::kPerPoint;
+  SearchMethod method = SearchMethod::kCobylaModern;
+  ObjectiveMeasure measure = ObjectiveMeasure::kPerPoint;
   bool registration_in_loop = false;
-  bool remesh_surface = true;  // OuterProblem
-  int evaluations = 40;        // at most
+  bool remesh_surface = true;  // ParameterObjective
+  int evaluations = 40;        // the maximum
   CobylaOptions cobyla;
-  double difference = 0.1;  // of kCeres, in parts of a range (fit/gradient_search.h)
-  uint64_t seed = 1;        // of the Gaussian process's candidates
+  double difference = 0.1;  // step of finite differences, as a fraction of a range
+  uint64_t seed = 1;        // of the candidates of the Gaussian process
 };
 
-// The mapping `search` of an experiment; docs/search.md lists its keys.
-OuterSearchSettings ReadOuterSearch(const Config& search);
+// Reads the mapping `search` of an experiment; docs/search.md lists its keys. Throws InputError.
+ParameterSearchSettings ReadParameterSearch(const Config& search);
 
-OuterParameters ParametersOf(const Eigen::VectorXd& x);  // q, v, y, p
-double ValueOf(const OuterEvaluation& evaluation, OuterMeasure measure);
+SearchedParameters ParametersOf(const Eigen::VectorXd& x);  // x holds q, v, y, p
+double ValueOf(const ObjectiveEvaluation& evaluation, ObjectiveMeasure measure);
 
-struct OuterSearchResult {
+struct ParameterSearchResult {
   SearchStatus status = SearchStatus::kNotRun;
   std::string message;
-  std::string trace_hash;                    // equal for equal searches
-  std::vector<OuterParameters> parameters;   // of each evaluation, in order
-  std::vector<OuterEvaluation> evaluations;  // likewise
-  int best = -1;                             // index of the least value; -1: all failed
+  std::string trace_hash;                        // equal for equal searches
+  std::vector<SearchedParameters> parameters;    // of each evaluation, in order
+  std::vector<ObjectiveEvaluation> evaluations;  // likewise
+  int best = -1;                                 // index of the least value; -1: all failed
   int failures = 0;
 
   bool IsUsable() const { return best >= 0; }
-  double Seconds() const;  // of all evaluations, those of stopped runs included
-  // The evaluation of the largest value, which is where the paper's drops are counted from.
-  int Worst(OuterMeasure measure) const;
+  double Seconds() const;  // of all evaluations, including those before an interruption
+  // The evaluation of the largest value, which the reductions in the paper refer to.
+  int Worst(ObjectiveMeasure measure) const;
 };
 
-// Keeps search.log and evaluations.jsonl in `folder` (made where it is absent) and goes on from
-// them. `key` names all that decides the objective: files of another one are an InputError. Throws
-// Interrupted with every finished evaluation kept.
-OuterSearchResult RunOuterSearch(const OuterProblem& problem, const OuterSearchSettings& settings,
-                                 const std::filesystem::path& folder, const std::string& key,
-                                 Progress* progress);
+// Keeps search.log and evaluations.jsonl in `folder`, which is made where necessary, and resumes
+// from them. `key` identifies the objective: InputError where the files belong to another one.
+// Throws Interrupted; all finished evaluations are kept.
+ParameterSearchResult RunParameterSearch(const ParameterObjective& problem,
+                                         const ParameterSearchSettings& settings,
+                                         const std::filesystem::path& folder,
+                                         const std::string& key, Progress* progress);
 
 }  // namespace lacuna
 

@@ -52,8 +52,8 @@ class Recordings {
 };
 
 // The first seed starts where the file says, others nearby.
-OuterSearchSettings SettingsOf(const Table1Configuration& configuration, int seed) {
-  OuterSearchSettings settings = configuration.search;
+ParameterSearchSettings SettingsOf(const Table1Configuration& configuration, int seed) {
+  ParameterSearchSettings settings = configuration.search;
   if (seed == 1) return settings;
   settings.seed += static_cast<uint64_t>(seed) - 1;
   std::mt19937_64 random(static_cast<uint64_t>(seed));
@@ -75,7 +75,7 @@ OuterSearchSettings SettingsOf(const Table1Configuration& configuration, int see
 }
 
 // All that decides the objective.
-std::string KeyOf(const ReconstructionStudy& study, const OuterSearchSettings& settings,
+std::string KeyOf(const ReconstructionStudy& study, const ParameterSearchSettings& settings,
                   const std::string& scene_key, int seed) {
   nlohmann::json options = study.configuration;
   for (const char* key :
@@ -88,15 +88,15 @@ std::string KeyOf(const ReconstructionStudy& study, const OuterSearchSettings& s
 
 // An evaluation beside a search, made once. `key` is that of the search's objective, of which the
 // file's name tells the change.
-OuterEvaluation Kept(const OuterProblem& problem, const OuterParameters& parameters,
-                     const std::filesystem::path& file, const std::string& key) {
+ObjectiveEvaluation Kept(const ParameterObjective& problem, const SearchedParameters& parameters,
+                         const std::filesystem::path& file, const std::string& key) {
   EvaluationRecord record(file, key + " " + file.filename().string());
   if (record.Find(parameters) == nullptr)
-    record.Append(parameters, EvaluateOuter(problem, parameters));
+    record.Append(parameters, EvaluateObjective(problem, parameters));
   return *record.Find(parameters);
 }
 
-OuterParameters TruthOf(const Table1Study& study, const Table1Configuration& configuration) {
+SearchedParameters TruthOf(const Table1Study& study, const Table1Configuration& configuration) {
   const std::vector<SearchVariable>& variables = configuration.search.variables;
   return {variables[0].start, variables[1].start, study.true_young_modulus,
           study.true_poisson_ratio};
@@ -118,7 +118,7 @@ void RefuseOtherScans(const Table1Configuration& configuration, const nlohmann::
 }
 
 // What a gradient through a remesh would be: difference quotients over the mesh's parameters.
-std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
+std::vector<MeshQuotient> QuotientsOf(const ParameterObjective& problem,
                                       const Table1Configuration& configuration,
                                       const std::vector<double>& steps,
                                       const std::filesystem::path& file, const std::string& key,
@@ -134,9 +134,10 @@ std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
       below[i] = std::max(start[i] - step, 0.0);
       above[i] = std::min(start[i] + step, 1.0);
       if (variable.lower == variable.upper) continue;
-      const OuterEvaluation from = Kept(problem, ParametersOf(space.FromUnit(below)), file, key);
-      const OuterEvaluation to = Kept(problem, ParametersOf(space.FromUnit(above)), file, key);
-      const OuterMeasure measure = configuration.search.measure;
+      const ObjectiveEvaluation from =
+          Kept(problem, ParametersOf(space.FromUnit(below)), file, key);
+      const ObjectiveEvaluation to = Kept(problem, ParametersOf(space.FromUnit(above)), file, key);
+      const ObjectiveMeasure measure = configuration.search.measure;
       quotients.push_back(
           {variable.name, step,
            (ValueOf(to, measure) - ValueOf(from, measure)) / (above[i] - below[i])});
@@ -149,12 +150,12 @@ std::vector<MeshQuotient> QuotientsOf(const OuterProblem& problem,
 
 // What only the first seed is asked for.
 void RunFirstSeedExtras(const Table1Study& study, const Table1Options& options,
-                        const OuterProblem& problem, const std::filesystem::path& folder,
+                        const ParameterObjective& problem, const std::filesystem::path& folder,
                         const std::string& key, Table1Result* result, Progress* progress) {
-  const OuterParameters truth = TruthOf(study, study.configurations.front());
+  const SearchedParameters truth = TruthOf(study, study.configurations.front());
   progress->Begin("mesh noise", options.turns);
   for (int k = 0; k < options.turns; ++k) {
-    OuterProblem turned = problem;
+    ParameterObjective turned = problem;
     turned.turn = kTurnStep * k;
     result->turned.push_back(Kept(turned, truth, folder / fmt::format("turn_{}.jsonl", k), key));
     progress->Report(k + 1);
@@ -167,11 +168,11 @@ void RunFirstSeedExtras(const Table1Study& study, const Table1Options& options,
   if (!options.profile) return;
   ReconstructionStudy known_study = problem.study;
   known_study.follow.forces.kind = ForceSettings::Kind::kKnown;
-  const OuterProblem known{
+  const ParameterObjective known{
       known_study, problem.states, problem.tracked, problem.remesh_surface, false, 0};
   progress->Begin("modulus", std::size(kFactors));
   for (const double factor : kFactors) {
-    OuterParameters at = truth;
+    SearchedParameters at = truth;
     at.young_modulus *= factor;
     ModulusPoint point{factor, Kept(problem, at, folder / "modulus_fitted.jsonl", key), {}};
     if (!problem.study.recording.object.forces.empty())
@@ -196,17 +197,17 @@ void RunSeed(const Table1Study& study, const Table1Options& options, int seed,
   for (const Table1Configuration& configuration : study.configurations) {
     const ReconstructionStudy reconstruction = ReadReconstruction(configuration.config, recording);
     RefuseOtherScans(configuration, first.configuration, reconstruction.configuration);
-    const OuterSearchSettings settings = SettingsOf(configuration, seed);
-    OuterProblem problem{reconstruction,
-                         states,
-                         tracked,
-                         settings.remesh_surface,
-                         settings.registration_in_loop,
-                         kTurnStep * (seed - 1)};
+    const ParameterSearchSettings settings = SettingsOf(configuration, seed);
+    ParameterObjective problem{reconstruction,
+                               states,
+                               tracked,
+                               settings.remesh_surface,
+                               settings.registration_in_loop,
+                               kTurnStep * (seed - 1)};
     const std::filesystem::path place = folder / configuration.name;
     const std::string key = KeyOf(reconstruction, settings, study.scene_key, seed);
     Table1Search search;
-    search.found = RunOuterSearch(problem, settings, place, key, progress);
+    search.found = RunParameterSearch(problem, settings, place, key, progress);
     search.worst = search.found.Worst(settings.measure);
     search.at_truth = Kept(problem, TruthOf(study, configuration), place / "truth.jsonl", key);
     if (seed == 1) {
@@ -263,7 +264,7 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
   for (const Config& config : files) {
     if (config.Has("row")) config.Integer("row", 1, 1000);
     Table1Configuration configuration{
-        config.Text("name"), config, ReadOuterSearch(config.Child("search")), {}};
+        config.Text("name"), config, ReadParameterSearch(config.Child("search")), {}};
     // A search lies in a folder of that name, beside the recording.
     if (!IsFolderName(configuration.name) || configuration.name == "recording")
       config.Fail("name", "must be of letters, digits and _ - + ., and not \"recording\"");

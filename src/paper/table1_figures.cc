@@ -22,8 +22,8 @@ const Eigen::Vector3d kScanColour(0.15, 0.2, 0.3), kFaintColour(0.74, 0.78, 0.84
     kSkinColour(0.62, 0.72, 0.84), kInnerColour(0.95, 0.72, 0.42), kRemovedColour(0.85, 0.15, 0.1);
 constexpr double kDeg = 180 / M_PI;
 
-OuterProblem ProblemOf(const Table1Study& table1, const Table1Scans& scans) {
-  const OuterSearchSettings& search = table1.configurations.front().search;
+ParameterObjective ProblemOf(const Table1Study& table1, const Table1Scans& scans) {
+  const ParameterSearchSettings& search = table1.configurations.front().search;
   return {scans.study,
           scans.states,
           scans.tracked,
@@ -33,7 +33,7 @@ OuterProblem ProblemOf(const Table1Study& table1, const Table1Scans& scans) {
 }
 
 // The mesh where the first search starts, with the true moduli.
-OuterParameters ReferenceParameters(const Table1Study& table1) {
+SearchedParameters ReferenceParameters(const Table1Study& table1) {
   const std::vector<SearchVariable>& variables = table1.configurations.front().search.variables;
   return {variables[0].start, variables[1].start, table1.true_young_modulus,
           table1.true_poisson_ratio};
@@ -42,7 +42,7 @@ OuterParameters ReferenceParameters(const Table1Study& table1) {
 // What the table has of a search's end.
 struct Optimum {
   std::string name;
-  OuterParameters parameters;
+  SearchedParameters parameters;
   double residual_per_point = kNotMeasured;  // m
 };
 
@@ -61,7 +61,7 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
     for (const nlohmann::json& search : table.at("searches")) {
       if (search.at("seed") != 1 || !search.contains("best")) continue;
       optima.push_back(
-          {search.at("name"), OuterParametersFrom(search.at("best").at("parameters")),
+          {search.at("name"), SearchedParametersFrom(search.at("best").at("parameters")),
            search.at("best").at("evaluation").at("residual_per_point_m").get<double>()});
     }
   } catch (const nlohmann::json::exception& problem) {
@@ -72,8 +72,9 @@ std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem
   return optima;
 }
 
-FollowedMotion Followed(const OuterProblem& problem, const OuterParameters& parameters) {
-  FollowedMotion motion = FollowOuter(problem, parameters, MakeOuterBody(problem, parameters));
+FollowedMotion Followed(const ParameterObjective& problem, const SearchedParameters& parameters) {
+  FollowedMotion motion =
+      FollowForObjective(problem, parameters, MakeObjectiveBody(problem, parameters));
   const FollowedFrame& last = motion.frames.back();
   if (!last.solver.usable) {
     throw InputError(fmt::format("{}: frame {} cannot be followed: {}", problem.study.name,
@@ -172,13 +173,13 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
   figure.text =
       "Figure 4: meshes of the first surface\n"
       "       q     v cm³    nodes    tets   largest q   least dihedral °   volume dm³\n";
-  const OuterProblem problem = ProblemOf(table1, scans);
+  const ParameterObjective problem = ProblemOf(table1, scans);
   for (const double ratio : settings.radius_edge_ratios) {
     for (const double volume : settings.max_volumes) {
-      OuterParameters parameters = ReferenceParameters(table1);
+      SearchedParameters parameters = ReferenceParameters(table1);
       parameters.radius_edge_ratio = ratio;
       parameters.max_volume = volume;
-      const ReferenceBody body = MakeOuterBody(problem, parameters);
+      const ReferenceBody body = MakeObjectiveBody(problem, parameters);
       const CutMesh cut =
           CutOpen(body.mesh, BoundingBox(body.mesh.nodes).center(), -Eigen::Vector3d::UnitY());
       Panel panel;
@@ -225,8 +226,8 @@ FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
       "Figure 5: displacements from the first frame, mm; distance of the simulated surface from\n"
       "the scan's points, mm\n"
       "frame   time s   registered mean / max    simulated mean / max    distance mean\n";
-  const OuterProblem problem = ProblemOf(table1, scans);
-  const OuterParameters parameters = ReferenceParameters(table1);
+  const ParameterObjective problem = ProblemOf(table1, scans);
+  const SearchedParameters parameters = ReferenceParameters(table1);
   const FollowedMotion motion = Followed(problem, parameters);
   const BoundarySurface& boundary = motion.body->boundary;
   const Eigen::Matrix3Xd& at_rest = scans.tracked.points;
@@ -296,10 +297,10 @@ FigureContent DrawAlignment(const Table1Study& table1, const Table1Scans& scans,
   figure.text += "\n";
   std::vector<std::vector<Panel>> rows(settings.alignment_frames.size());
   for (const Optimum& optimum : optima) {
-    const OuterProblem problem = ProblemOf(table1, scans);
-    const OuterParameters& p = optimum.parameters;
+    const ParameterObjective problem = ProblemOf(table1, scans);
+    const SearchedParameters& p = optimum.parameters;
     const FollowedMotion motion = Followed(problem, p);
-    const OuterEvaluation again = MeasureOuter(problem, motion);
+    const ObjectiveEvaluation again = MeasureObjective(problem, motion);
     figure.text += fmt::format(
         "{:12} {:5.3f}  {:8.1f}  {:7.1f}  {:5.3f}  {:6}   {:.4f} ({:.4f})    ", optimum.name,
         p.radius_edge_ratio, 1e6 * p.max_volume, 1e-3 * p.young_modulus, p.poisson_ratio,

@@ -15,7 +15,7 @@
 
 namespace lacuna {
 
-// A figure: what to draw, and its numbers for text and JSON.
+// A figure: its picture, and its numbers as text and JSON.
 struct FigureContent {
   PanelPicture picture;
   PanelOptions options;
@@ -27,12 +27,13 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
                          const Table1FigureSettings& settings);
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings);
-// `results` holds table1.json. Throws InputError when it is not there, or of another recording.
+// `results` holds table1.json. Throws InputError when it is missing or belongs to another
+// recording.
 FigureContent DrawAlignment(const Table1Study& table1, const Table1Scans& scans,
                             const Table1FigureSettings& settings,
                             const std::filesystem::path& results);
 
-// NAME.png, NAME.txt and NAME.json.
+// Writes NAME.png, NAME.txt and NAME.json. The status is that of the picture.
 PictureResult WriteFigure(const FigureContent& figure, const std::string& name,
                           const std::filesystem::path& folder);
 

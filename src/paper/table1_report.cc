@@ -17,15 +17,16 @@ double DropOf(double from, double to) { return 1 - to / from; }
 
 double Percent(double fraction) { return 100 * fraction; }
 
-double LargestSum(const OuterSearchResult& found) {
-  return found.evaluations[found.Worst(OuterMeasure::kSum)].residual_sum;
+double LargestSum(const ParameterSearchResult& found) {
+  return found.evaluations[found.Worst(ObjectiveMeasure::kSum)].residual_sum;
 }
 
 // Standard deviation over mean of the evaluations that succeeded.
-double RelativeSpread(const std::vector<OuterEvaluation>& evaluations, OuterMeasure measure) {
+double RelativeSpread(const std::vector<ObjectiveEvaluation>& evaluations,
+                      ObjectiveMeasure measure) {
   double sum = 0, squares = 0;
   int count = 0;
-  for (const OuterEvaluation& evaluation : evaluations) {
+  for (const ObjectiveEvaluation& evaluation : evaluations) {
     if (!evaluation.usable) continue;
     const double value = ValueOf(evaluation, measure);
     sum += value;
@@ -54,15 +55,15 @@ void AppendSearches(const Table1Study& study, const Table1Result& result, std::s
   for (const Table1Seed& seed : result.seeds) {
     for (size_t c = 0; c < seed.searches.size(); ++c) {
       const Table1Search& search = seed.searches[c];
-      const OuterSearchResult& found = search.found;
+      const ParameterSearchResult& found = search.found;
       const std::string& name = study.configurations[c].name;
       if (!found.IsUsable()) {
         *text += fmt::format("{:4}  {:12} no evaluation succeeded\n", seed.seed, name);
         continue;
       }
       const auto row = [&](const char* what, int k, const std::string& end) {
-        const OuterEvaluation& at = found.evaluations[k];
-        const OuterParameters& p = found.parameters[k];
+        const ObjectiveEvaluation& at = found.evaluations[k];
+        const SearchedParameters& p = found.parameters[k];
         *text += fmt::format(
             "{:4}  {:12} {:<7} {:8.4f}   {:<7} {:8.4f}   {:6.3f}  {:8.1f}  {:7.1f}  {:5.3f}  {:6}{}"
             "\n",
@@ -117,8 +118,8 @@ void AppendEvidence(const Table1Study& study, const Table1Result& result,
       "\nWith CPD in the loop (the paper's align), seed 1: |D_anim| m, at the max and at the "
       "optimum\n";
   for (size_t c = 0; c < first.searches.size(); ++c) {
-    const OuterEvaluation& worst = first.searches[c].worst_in_loop;
-    const OuterEvaluation& best = first.searches[c].best_in_loop;
+    const ObjectiveEvaluation& worst = first.searches[c].worst_in_loop;
+    const ObjectiveEvaluation& best = first.searches[c].best_in_loop;
     if (!worst.usable || !best.usable) continue;
     *text +=
         fmt::format("{:12} {:.4f} -> {:.4f}, {:.1f} %; per point {:.4f} -> {:.4f} mm, {:.1f} %\n",
@@ -167,12 +168,12 @@ void WriteTraces(const Table1Study& study, const Table1Seed& seed,
                  const std::filesystem::path& folder) {
   std::vector<ChartLine> lines;
   for (size_t c = 0; c < seed.searches.size(); ++c) {
-    const OuterSearchResult& found = seed.searches[c].found;
+    const ParameterSearchResult& found = seed.searches[c].found;
     const auto count = static_cast<Eigen::Index>(found.evaluations.size());
     Eigen::MatrixXd columns(count, 8);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const OuterEvaluation& at = found.evaluations[static_cast<size_t>(k)];
-      const OuterParameters& p = found.parameters[static_cast<size_t>(k)];
+      const ObjectiveEvaluation& at = found.evaluations[static_cast<size_t>(k)];
+      const SearchedParameters& p = found.parameters[static_cast<size_t>(k)];
       columns.row(k) << static_cast<double>(k + 1), p.radius_edge_ratio, p.max_volume,
           p.young_modulus, p.poisson_ratio, at.residual_sum, at.residual_per_point, at.nodes;
     }
@@ -262,12 +263,12 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
   Table1Summary summary;
   summary.seeds = static_cast<int>(result.seeds.size());
   for (size_t c = 0; c < study.configurations.size(); ++c) {
-    const OuterMeasure measure = study.configurations[c].search.measure;
+    const ObjectiveMeasure measure = study.configurations[c].search.measure;
     std::vector<double> from_max, from_start, of_sum, best, below_truth, modulus, ratio;
     for (const Table1Seed& seed : result.seeds) {
-      const OuterSearchResult& found = seed.searches[c].found;
+      const ParameterSearchResult& found = seed.searches[c].found;
       if (!found.IsUsable()) continue;
-      const OuterEvaluation& at = found.evaluations[found.best];
+      const ObjectiveEvaluation& at = found.evaluations[found.best];
       const double value = ValueOf(at, measure);
       from_max.push_back(
           DropOf(ValueOf(found.evaluations[seed.searches[c].worst], measure), value));
@@ -286,12 +287,12 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
                             static_cast<int>(with_start)});
   }
   for (const Table1Seed& seed : result.seeds) {
-    const OuterSearchResult& last = seed.searches.back().found;
+    const ParameterSearchResult& last = seed.searches.back().found;
     if (!last.IsUsable()) continue;
     bool is_best = true;
     for (size_t c = 0; c < seed.searches.size(); ++c) {
-      const OuterSearchResult& found = seed.searches[c].found;
-      const OuterMeasure measure = study.configurations[c].search.measure;
+      const ParameterSearchResult& found = seed.searches[c].found;
+      const ObjectiveMeasure measure = study.configurations[c].search.measure;
       if (!found.IsUsable()) continue;
       is_best = is_best && ValueOf(last.evaluations[last.best], measure) <=
                                ValueOf(found.evaluations[found.best], measure);
@@ -300,7 +301,7 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
     ++summary.compared;
   }
   summary.mesh_noise = RelativeSpread(result.turned, study.configurations.front().search.measure);
-  summary.mesh_noise_of_sum = RelativeSpread(result.turned, OuterMeasure::kSum);
+  summary.mesh_noise_of_sum = RelativeSpread(result.turned, ObjectiveMeasure::kSum);
   return summary;
 }
 

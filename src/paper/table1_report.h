@@ -1,4 +1,4 @@
-// Table 1 as a text, as JSON and as plots; and which of the paper's claims it bears out.
+// Table 1 as text, JSON and plots, and which claims of the paper it supports.
 #ifndef LACUNA_PAPER_TABLE1_REPORT_H_
 #define LACUNA_PAPER_TABLE1_REPORT_H_
 
@@ -11,38 +11,39 @@
 
 namespace lacuna {
 
-// Median and extremes over the seeds: with ten or fewer of them, the extremes are the honest
-// interval.
+// Median and extremes over the seeds. With ten seeds or fewer no narrower interval is justified.
 struct SeedRange {
   double median = kNotMeasured, least = kNotMeasured, largest = kNotMeasured;
 };
 SeedRange RangeOf(std::vector<double> values);
 
-// A configuration over all seeds whose search found something.
+// A configuration, summarised over all seeds whose search succeeded.
 struct Table1Row {
   std::string name;
   int seeds = 0;
-  SeedRange drop_from_max;  // 1 − best / largest met, of the measure searched: what the paper has
+  SeedRange drop_from_max;    // 1 − best / largest value of the searched measure, as in the paper
   SeedRange drop_from_start;  // 1 − best / start
-  SeedRange sum_drop;         // 1 − |D_anim| at the best / its largest, the paper's sum
+  SeedRange sum_drop;         // the same as the first for the paper's sum |D_anim|
   SeedRange best, young_modulus, poisson_ratio;  // m per point, Pa, 1
-  // 1 − best / value at the true parameters; > 0: the search beats the truth.
+  // 1 − best / value at the true parameters; positive where the search finds less than the truth
+  // has.
   SeedRange below_truth;
-  int with_start = 0;  // seeds whose start succeeded, too
+  int with_start = 0;  // seeds whose start could be evaluated
 };
 
 struct Table1Summary {
   int seeds = 0;
   std::vector<Table1Row> rows;
-  // Seeds in which the last configuration does at least as well as each of the others.
+  // The number of seeds in which the last configuration is at least as good as all others.
   int last_is_best = 0, compared = 0;
-  // Standard deviation over small turns of S_0 over the mean: of the value searched, of the sum.
+  // Relative standard deviation under small rotations of S_0, of the searched measure and of the
+  // sum.
   double mesh_noise = kNotMeasured, mesh_noise_of_sum = kNotMeasured;
 };
 Table1Summary Summarise(const Table1Study& study, const Table1Result& result);
 
 std::string Table1Text(const Table1Study& study, const Table1Result& result);
-// table1.txt, table1.json, and of the first seed's searches NAME.csv and traces.svg.
+// Writes table1.txt, table1.json and, for the searches of the first seed, NAME.csv and traces.svg.
 void WriteTable1(const Table1Study& study, const Table1Result& result,
                  const std::filesystem::path& folder);
 

@@ -1,4 +1,4 @@
-// What Figures 3 to 6 are drawn from: which frames and meshes, and the recording of Table 1.
+// The data of Figures 3 to 6: the recording of Table 1, and the choice of frames and meshes.
 #ifndef LACUNA_PAPER_TABLE1_SCANS_H_
 #define LACUNA_PAPER_TABLE1_SCANS_H_
 
@@ -14,25 +14,25 @@
 
 namespace lacuna {
 
-// What is drawn. Frames are those of the recording, the first one 0.
+// What is drawn. Frames are numbered from 0 as in the recording.
 struct Table1FigureSettings {
   std::filesystem::path table1;  // the folder of experiments
   int cloud_frame = 1;
   std::vector<double> radius_edge_ratios;  // q, the rows of Figure 4
-  std::vector<double> max_volumes;         // v, m³, its columns
+  std::vector<double> max_volumes;         // v, m³, the columns of Figure 4
   std::vector<int> bend_frames;
   std::vector<int> alignment_frames;
 };
 Table1FigureSettings ReadTable1Figures(const Config& config);
 
-// The recording of the first seed with what is made of it once for all figures.
+// The recording of the first seed, processed once for all figures.
 struct Table1Scans {
-  ReconstructionStudy study;  // of the first row
+  ReconstructionStudy study;  // that of the first row
   std::vector<FrameState> states;
   TrackedFrames tracked;
 };
-// Takes the recording of `results` (where `lacuna table1` has been), or makes it in `folder`.
-// Throws InputError for frames that the recording does not have.
+// Uses the recording in `results`, where `lacuna table1` has written one, or makes it in `folder`.
+// Throws InputError for frames that the recording does not have, and Interrupted.
 Table1Scans PrepareScans(const Table1Study& table1, const Table1FigureSettings& settings,
                          const std::filesystem::path& results, const std::filesystem::path& folder,
                          Progress* progress);

@@ -17,10 +17,10 @@ void FindUp(const Model& model, ReplayedMotion* motion) {
   motion->up_from_gravity = true;
 }
 
-// Follows the memory of the effects from one visited state to the next.
-class MemoryAlong {
+// The memory of the effects along a trajectory, from one visited state to the next.
+class EffectMemory {
  public:
-  explicit MemoryAlong(const Model& model) : model_(model) {
+  explicit EffectMemory(const Model& model) : model_(model) {
     for (const auto& effect : model.effects) {
       Eigen::VectorXd state(effect->StateSize(*model.body));
       effect->InitialState(*model.body, &state);
@@ -28,7 +28,7 @@ class MemoryAlong {
     }
   }
 
-  // `time_step` after the last one; 0: the equilibrium.
+  // The memory at a state that follows the last one after `time_step` s (0 for the equilibrium).
   const std::vector<Eigen::VectorXd>& Advance(const PredictedState& at, double time_step) {
     const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(at.position.size());
     for (size_t j = 0; j < state_.size(); ++j) {
@@ -46,6 +46,30 @@ class MemoryAlong {
   std::vector<Eigen::VectorXd> state_;
 };
 
+// The motion and deformation of the markers in one frame. Frames must be stored in their order.
+void StoreMarkers(const RecordingModel& recording, const PredictedState& state, int frame,
+                  ReplayedMotion* motion) {
+  const MarkerObserver& observer = *recording.Markers();
+  const Embedding& places = observer.places_in_mesh();
+  const Eigen::Index markers = recording.PointCount();
+  const auto vectors = [&](const Eigen::VectorXd& nodal) {
+    const Eigen::VectorXd stacked = observer.rows() * nodal;
+    return Eigen::Matrix3Xd(stacked.reshaped(3, markers));
+  };
+  motion->predicted.col(frame) = (motion->registration * vectors(state.position)).reshaped();
+  motion->velocity.col(frame) =
+      (motion->registration.linear() * vectors(state.velocity)).reshaped();
+  for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
+    motion->deformation.emplace_back(motion->registration.linear() * deformation);
+  const Body& body = *recording.model().body;
+  for (Eigen::Index m = 0; m < markers; ++m) {
+    const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
+    motion->strain(m, frame) = LargestPrincipal(strain.strain);
+    motion->strain_rate(m, frame) = LargestPrincipal(strain.rate);
+    motion->height(m, frame) = motion->up.dot(motion->predicted.col(frame).segment<3>(3 * m));
+  }
+}
+
 }  // namespace
 
 ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
@@ -54,10 +78,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   const Model& model = recording.model();
   Model loaded = model;
   loaded.effects.insert(loaded.effects.end(), further.begin(), further.end());
-  const Body& body = *model.body;
   CHECK(recording.Markers() != nullptr) << "only markers are replayed";
-  const MarkerObserver& observer = *recording.Markers();
-  const Embedding& places = observer.places_in_mesh();
   const std::vector<int>& frames = recording.item().frames;
   const PredictionOptions options = recording.Options(nuisance);
   motion.nuisance = nuisance;
@@ -65,7 +86,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   motion.registration = recording.Registration(nuisance);
   FindUp(model, &motion);
 
-  // The start is visited too, between the frames before it and those after.
+  // The start of the motion is visited too, between the frames before it and those after it.
   std::vector<double> times;
   for (const int frame : frames)
     times.push_back(recording.item().recording.times[frame] - motion.delay);
@@ -82,7 +103,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   motion.height.resize(markers, count);
   const int last = static_cast<int>(count) - 1;
   const int stride = std::max(1, (last - at_start) / (ReplayedMotion::kMostStates - 2) + 1);
-  MemoryAlong memory(model);
+  EffectMemory memory(model);
   double time_before = options.start_time;
   motion.summary = Predict(loaded, options, times, {}, [&](int index, const PredictedState& state) {
     const auto keep = [&](int frame, const std::vector<Eigen::VectorXd>& effect_state) {
@@ -94,21 +115,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       return;
     }
     const int frame = index < at_start ? index : index - 1;
-    const auto vectors = [&](const Eigen::VectorXd& nodal) {
-      const Eigen::VectorXd stacked = observer.rows() * nodal;
-      return Eigen::Matrix3Xd(stacked.reshaped(3, markers));
-    };
-    motion.predicted.col(frame) = (motion.registration * vectors(state.position)).reshaped();
-    motion.velocity.col(frame) =
-        (motion.registration.linear() * vectors(state.velocity)).reshaped();
-    for (const Eigen::Matrix3d& deformation : observer.DeformationAt(state.position))
-      motion.deformation.emplace_back(motion.registration.linear() * deformation);
-    for (Eigen::Index m = 0; m < markers; ++m) {
-      const ElementStrain strain = MeanStrain(body, places.tet[m], state.position, state.velocity);
-      motion.strain(m, frame) = LargestPrincipal(strain.strain);
-      motion.strain_rate(m, frame) = LargestPrincipal(strain.rate);
-      motion.height(m, frame) = motion.up.dot(motion.predicted.col(frame).segment<3>(3 * m));
-    }
+    StoreMarkers(recording, state, frame, &motion);
     if (index < at_start) return;
     const auto& effect_state = memory.Advance(state, state.time - time_before);
     time_before = state.time;

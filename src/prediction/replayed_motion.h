@@ -1,12 +1,10 @@
-// The motion that a fitted model predicts for a recording, run again: what the markers' misfits
-// alone do not keep.
+// Runs a fitted model again and keeps the motion that it predicts for one recording: velocities,
+// strains and whole states, which the fit does not keep.
 #ifndef LACUNA_PREDICTION_REPLAYED_MOTION_H_
 #define LACUNA_PREDICTION_REPLAYED_MOTION_H_
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "fem/prediction.h"
@@ -15,33 +13,38 @@
 
 namespace lacuna {
 
-// Rows are markers (3 rows each where they are vectors), columns the recording's chosen frames.
+// Matrices have one column for each chosen frame of the recording. Their rows are the m markers, or
+// 3m for vectors (x, y, z of a marker in three rows).
 struct ReplayedMotion {
+  // Where it is not usable, only the frames that were reached are filled.
   PredictionSummary summary;
-  double delay = 0;  // s, by which the recording's clock is late: model time = time − delay
-  Eigen::VectorXd nuisance;  // of the recording
-  // From the model to the measuring frame, in which are:
+  double delay = 0;          // s, delay of the recording's clock: model time = time − delay
+  Eigen::VectorXd nuisance;  // values of RecordingModel::nuisances()
+  // From the model's frame to the measuring frame. Places, velocities and F are in the latter.
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
-  Eigen::MatrixXd predicted;                 // m, the markers' places
-  Eigen::MatrixXd velocity;                  // m/s
-  std::vector<Eigen::Matrix3d> deformation;  // markers × frames: F at each
-  // Of the element that the marker sits in, the mean over it: the largest magnitude among the
-  // principal Green–Lagrange strains, and among those of the strain's rate, 1/s.
+  Eigen::MatrixXd predicted;                 // 3m, m, places of the markers
+  Eigen::MatrixXd velocity;                  // 3m, m/s
+  std::vector<Eigen::Matrix3d> deformation;  // m × frames: deformation gradient F at each marker
+  // Mean over the element that contains the marker: the principal value of largest magnitude of the
+  // Green–Lagrange strain, and of its rate, 1/s.
   Eigen::MatrixXd strain, strain_rate;
+  // The direction against gravity; z if the model has no gravity.
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  bool up_from_gravity = false;  // else z
-  Eigen::MatrixXd height;        // m, of the marker along `up`
-  // The equilibrium before the motion, then at most kMostStates frames, evenly spread, the last
-  // one always.
+  bool up_from_gravity = false;
+  Eigen::MatrixXd height;  // m, of each marker along `up`
+  // The equilibrium before the motion, then at most kMostStates − 1 frames of the motion, evenly
+  // spread, the last frame always. More: finer derivatives along the motion, more memory.
   static constexpr int kMostStates = 200;
   std::vector<TrajectoryState> states;
-  // Column of each state; of the first that of the last frame before the motion, −1: there is none.
+  // The column of each state. That of the equilibrium is the last frame before the motion, or −1 if
+  // there is none.
   std::vector<int> state_frame;
 };
 
-// With the model's effects as they are, further forces that have no memory, and the recording's
-// nuisances (RecordingModel::nuisances). A prediction that stops leaves the summary alone.
-ReplayedMotion Replay(const RecordingModel& model, const Eigen::VectorXd& nuisance,
+// Predicts the recording of markers (CHECK) with the model's effects, with `further` effects that
+// have no memory, and with these values of the recording's nuisance parameters. A prediction that
+// stops early is reported in the summary.
+ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
                       const EffectList& further = {});
 
 }  // namespace lacuna

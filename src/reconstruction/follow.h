@@ -1,5 +1,5 @@
-// Stages 3, 5 and 6 of the paper: registered states, the simulated body, and the forces that make
-// the one follow the other.
+// Stages 3, 5 and 6 of Transue & Choi 2015: the states are registered, and forces are fitted that
+// make the simulated body follow them.
 #ifndef LACUNA_RECONSTRUCTION_FOLLOW_H_
 #define LACUNA_RECONSTRUCTION_FOLLOW_H_
 
@@ -16,39 +16,41 @@
 
 namespace lacuna {
 
-// One frame, followed. Vectors are 3 × nodes.
+// One frame of the followed motion. Matrices are 3 × nodes unless stated otherwise.
 struct FollowedFrame {
   double time = 0;            // s
   Eigen::Matrix3Xd position;  // m, the simulated nodes under `force`
-  Eigen::Matrix3Xd force;     // N, the outer forces, fitted or known
-  // Of the fitted forces' resultant, N; NaN where they are no coefficients of a basis.
+  Eigen::Matrix3Xd force;     // N, the external forces, fitted or known
+  // Standard deviation of the resultant of the fitted forces, N; NaN where the forces are not
+  // coefficients of a basis.
   Eigen::Vector3d force_deviation = Eigen::Vector3d::Constant(kNotMeasured);
-  // The paper's first guess of the forces, m α with v = d/dt and α = dv/dt from the registered
-  // displacements, m the nodes' masses or 1 kg.
+  // The initial guess of the paper, N: m α, with v = d/dt and α = dv/dt from the registered
+  // displacements, and m the masses of the nodes or 1 kg.
   Eigen::Matrix3Xd pseudo_force;
-  // align(p, S) − p of Eq. 1: from each boundary vertex to where the state has it, after the step.
+  // align(p, S) − p of Eq. 1 after the step: from each boundary vertex to its place in the state.
   Eigen::Matrix3Xd residual;  // 3 × boundary vertices, m
-  double weighted_rms = 0;    // of the observations, in their standard deviations
+  double weighted_rms = 0;    // rms of the observations' residuals, each divided by its σ
   int observations = 0;
-  // dx/dθ of the moduli asked for (3·nodes × moduli); not kept in files. Empty: not asked for,
-  // or not to be had (reconstruction/followed_sensitivity.h).
+  // dx/dθ for the requested moduli (3·nodes × moduli). It is not kept in files, and empty where it
+  // was not requested or does not exist (followed_sensitivity.h).
   Eigen::MatrixXd position_by;
   SolverStatus solver;
 };
 
 struct FollowedMotion {
   std::shared_ptr<const Body> body;
-  double noise = 0;                   // m, the standard deviation of a scanned point that was used
-  std::vector<FollowedFrame> frames;  // ends at the first frame that could not be followed
+  double noise = 0;                   // m, the σ of a scanned point that the fit used
+  std::vector<FollowedFrame> frames;  // ends before the first frame that could not be followed
   std::vector<std::string> warnings;
 };
 
-// Simulates the body from frame to frame. In each: register the simulated surface to the next state
-// by CPD, fit the forces to the registered displacements and the scanned points (Eq. 1), and take
-// the step under them. `tracked`: registrations of the same states, taken in place of CPD; only for
-// scans whose first frame is the reference shape (CHECK). `moduli`: parameters of the first effect
-// by which to differentiate the motion; only with `tracked` and without fitted forces (CHECK):
-// correspondences have no derivative.
+// Simulates the body from frame to frame. Each frame takes three steps: register the simulated
+// surface to the next state by CPD, fit the forces to the registered displacements and the scanned
+// points (Eq. 1), and advance the body under them. `tracked`: registrations of the same states that
+// replace CPD; only for scans whose first frame is the reference shape (CHECK). `moduli`: the
+// parameters of the first effect by which the motion is differentiated; only with `tracked` and
+// without fitted forces (CHECK), as correspondences have no derivative. Throws InputError and
+// Interrupted; a frame that cannot be followed ends the motion.
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
                             const std::vector<FrameState>& states, Progress* progress,
                             const TrackedFrames* tracked = nullptr,

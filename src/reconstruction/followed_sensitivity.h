@@ -1,9 +1,9 @@
-// How a motion that follows a recording changes with the moduli of its material, where no forces
-// are fitted: the tangent-linear model along it (fem/tangent_linear.h).
+// The derivative of a followed motion by the moduli of its material, from the tangent-linear model
+// along it (fem/tangent_linear.h). It exists where no forces are fitted.
 //
-// Forces that are fitted answer to the moduli, and so do the correspondences that they are fitted
-// to: nearest points of scans, taken anew from where the body has come to. A derivative through the
-// forces with correspondences held did not agree with differences (docs/search.md).
+// Fitted forces depend on the moduli, and so do the correspondences that they are fitted to, which
+// are the nearest points of scans and found anew as the body moves. A derivative through the forces
+// with fixed correspondences does not agree with finite differences (docs/search.md).
 #ifndef LACUNA_RECONSTRUCTION_FOLLOWED_SENSITIVITY_H_
 #define LACUNA_RECONSTRUCTION_FOLLOWED_SENSITIVITY_H_
 
@@ -16,15 +16,15 @@
 
 namespace lacuna {
 
-// No forces, or known ones.
+// Whether the derivative exists: there are no forces, or they are known.
 bool HasModulusSensitivity(const ForceSettings& forces);
 
 class FollowedSensitivity {
  public:
-  // By these parameters of the model's first effect.
+  // Differentiates by these parameters of the model's first effect.
   FollowedSensitivity(const Model& model, const std::vector<int>& parameters);
 
-  // The step from `before` to `position` has been taken.
+  // To be called after each step, which led from `before` to `position`.
   void Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
                const Eigen::VectorXd& position);
 

@@ -8,8 +8,9 @@
 
 namespace lacuna {
 
-// The force model that the settings describe: on boundary nodes of the region that no grip holds,
-// where a force would move nothing. Throws InputError when there is no such node.
+// The force model that the settings describe. It acts on the boundary nodes of the region except
+// those that a grip holds, where a force would move nothing. Throws InputError when no node is
+// left.
 ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body);
 
 }  // namespace lacuna

@@ -1,4 +1,5 @@
-// Stage 7 of the paper: how well the model follows, and the files that show it.
+// Stage 7 of Transue & Choi 2015: measures of how well the model follows the recording, and files
+// that show it.
 #ifndef LACUNA_RECONSTRUCTION_RECONSTRUCTION_MEASURES_H_
 #define LACUNA_RECONSTRUCTION_RECONSTRUCTION_MEASURES_H_
 
@@ -14,22 +15,25 @@
 
 namespace lacuna {
 
-// |D| (Eq. 1) and distances of every frame, |D_anim| (Eq. 2), held-out points and known truths
-// where the study names them. Measures beside the frames' own, in RunRecord::measures:
-//   noise_m                        of a scanned point, as used
+// Computes |D| (Eq. 1) and distances for each frame, |D_anim| (Eq. 2), and the errors against
+// held-out points and known truths where the study names them. RunRecord::measures holds, beside
+// the values of the frames:
+//   noise_m                        σ of a scanned point, as used by the fit
 //   residual_per_point_m           mean of |D| per point over the frames
 //   surface_distance_mean_m        mean over the frames after the reference
-//   held_out_rms_max_m             the worst frame's RMS error of the held-out points
+//   held_out_rms_max_m             largest rms error of the held-out points in a frame
 //   held_out_spacing_m             their mean distance to the nearest other tracked point
-//   true_surface_distance_mean_m   of the true surface's vertices from the simulated surface, all
-//                                  frames after the reference together; ..._max_m the worst frame's
+//   true_surface_distance_mean_m   distance of the true surface's vertices from the simulated
+//   surface,
+//                                  over all frames after the reference; ..._max_m: the worst frame
 //   true_position_mean_error       mean error of the true points over the largest displacement
 //   true_force_median_error        median over the frames of |F − F_true| / |F_true|
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,
                      const std::vector<FrameState>& states, const FollowedMotion& motion);
 
-// body.pvd with the nodes' displacement_m and force_N; surface.pvd with the boundary's residual_m
-// and distance to the scan; scan.pvd with the points and their distance to the model.
+// Writes body.pvd with displacement_m and force_N at the nodes, surface.pvd with residual_m and the
+// distance to the scan on the boundary, and scan.pvd with the scanned points and their distance to
+// the model. Throws InputError where a file cannot be written.
 void WriteFields(const ReconstructionStudy& study, const std::vector<FrameState>& states,
                  const FollowedMotion& motion, const RunRecord& record,
                  const std::filesystem::path& folder);

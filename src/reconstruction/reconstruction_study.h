@@ -22,17 +22,17 @@
 
 namespace lacuna {
 
-// Where unknown forces may act, and how they may vary (fit/force_model.h).
+// Where unknown forces may act and how they may vary (fit/force_model.h).
 struct ForceSettings {
   enum class Kind { kNone, kKnown, kFree, kSmooth, kFootprint, kNodal };
-  Kind kind = Kind::kSmooth;     // kKnown: the recording's measured forces, nothing is fitted
-  std::optional<Region> region;  // absent: the whole boundary; a footprint needs one
+  Kind kind = Kind::kSmooth;     // kKnown: the measured forces of the recording, nothing is fitted
+  std::optional<Region> region;  // absent: the whole boundary; a footprint needs a region
   double length = 0;             // m, of smooth forces; 0: a quarter of the object's diagonal
   double traction_scale = 0;     // Pa, of smooth forces; 0: a tenth of Young's modulus
   double force_scale = 1;        // N, of a footprint or of each node
-  bool hold_net_force = false;   // no net force, no net torque
-  // Masses of the pseudo-acceleration forces (F = m α): the FEM's lumped ones, or 1 kg at each node
-  // as in the paper.
+  bool hold_net_force = false;   // restrict the forces to zero net force and net torque
+  // The masses in the initial guess F = m α: 1 kg at each node, as in the paper, or the lumped
+  // masses of the FEM.
   bool unit_pseudo_mass = false;
 };
 
@@ -42,24 +42,25 @@ struct FollowSettings {
       false;  // accept steps with inverted elements, as linear elasticity may need
   ForceSettings forces;
   ForceFitOptions fit;
-  double noise = 0;  // m, standard deviation of a scanned point; 0: estimated
-  // m, the least that a correspondence found by CPD is uncertain across the normal: points of two
-  // scans have no partners, so that CPD slides along a surface without features by more than its
-  // own deviation tells. 0: 3 % of the object's size. Larger: forces along the surface shrink.
+  double noise = 0;  // m, σ of a scanned point; 0: estimated
+  // m, a lower bound of the σ of a CPD correspondence along the surface. Points of two scans are
+  // not the same material points, so that CPD slides along a featureless surface by more than its
+  // own deviation suggests. 0: 3 % of the object's size. Larger: forces along the surface become
+  // smaller.
   double tangential_noise = 0;
-  int alignment_rounds = 3;  // correspondences are taken anew so often; more: slower, exacter
-  // Scanned points farther than this from the simulated surface are somebody else's, in parts of
-  // the object's size; larger: a worse start is forgiven, more foreign points are taken in.
+  int alignment_rounds =
+      3;  // how often correspondences are found anew; more: slower, more accurate
+  // Scanned points farther than this from the simulated surface do not belong to the object, as a
+  // fraction of its size. Larger: worse starts are tolerated, more foreign points are used.
   double reach = 0.1;
-  // Of tracked points and markers: believe that row i is the same material point in every frame.
-  // Otherwise correspondence comes from CPD.
+  // For tracked points and markers: whether row i is the same material point in every frame.
+  // Otherwise correspondences are found by CPD.
   bool use_identity = true;
 };
 
-// Numbers known from elsewhere, against which a reconstruction is checked. Nothing of it enters the
-// fit.
+// Independent knowledge that a reconstruction is checked against. None of it enters the fit.
 struct ValidationSettings {
-  int hold_out_every = 0;  // every k-th tracked point is kept from the fit and predicted; 0: none
+  int hold_out_every = 0;                // hold out every k-th tracked point from the fit; 0: none
   std::filesystem::path true_surfaces;   // the truth/ folder of a virtual scan
   std::filesystem::path true_positions;  // .npy, frames × points × 3, m
   std::filesystem::path true_mesh;       // the tet mesh whose nodes these points are
@@ -74,7 +75,8 @@ struct ReconstructionStudy {
   uint64_t seed = 1;
   FilterOptions filter;
   SurfaceOptions surface;
-  bool surfaces_of_frames = true;  // Poisson surface of each frame; else its points stand for it
+  // Whether a Poisson surface is reconstructed for each frame; else its points represent it.
+  bool surfaces_of_frames = true;
   CpdOptions registration;
   MeshSettings mesh;
   int sheet_layers = 1;
@@ -87,8 +89,8 @@ struct ReconstructionStudy {
 
 // Reads and checks everything that can be checked before the computation. Throws InputError.
 ReconstructionStudy ReadReconstruction(const Config& config);
-// The same for a given recording, which `config` then does not name; keys that the caller has read
-// before count as known.
+// The same for a given recording, which `config` then does not name. Keys that the caller has read
+// before are not reported as unknown.
 ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording);
 
 }  // namespace lacuna

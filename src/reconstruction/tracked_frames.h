@@ -1,9 +1,10 @@
-// The motion of a recording's first surface through all of its states, by CPD, once for all meshes.
+// The motion of a recording's first surface through all of its states, found by CPD once for all
+// meshes.
 //
-// S_0 is registered to every S_k once, whatever is simulated; the displacement is a field over the
-// undeformed space, and any mesh of S_0 reads its own vertices' places from it. What this leaves
-// out: align(p, S) of Eq. 1 no longer depends on where the simulation is, so that it keeps what CPD
-// is off along the surface, where alignment in the loop would slide along.
+// S_0 is registered to every S_k once, independent of any simulation. The displacement is a field
+// over the undeformed space, from which the vertices of any mesh of S_0 read their places. In
+// contrast to registration in the loop, align(p, S) of Eq. 1 does not depend on the simulated
+// shape, so that it retains the error of CPD along the surface.
 #ifndef LACUNA_RECONSTRUCTION_TRACKED_FRAMES_H_
 #define LACUNA_RECONSTRUCTION_TRACKED_FRAMES_H_
 
@@ -19,18 +20,18 @@
 namespace lacuna {
 
 struct TrackedFrames {
-  Eigen::Matrix3Xd points;                // 3 × n, m: the vertices of S_0, a fixed sampling of it
+  Eigen::Matrix3Xd points;                // 3 × n, m: the vertices of S_0
   std::vector<DisplacementField> fields;  // from S_0 to each state; the first one is empty
-  std::vector<std::string> warnings;      // registrations that did not settle
+  std::vector<std::string> warnings;      // registrations that did not converge
 
-  // Displacements (3 × n, m) in state k of points of the undeformed body (3 × n, m).
+  // The displacements (3 × n, m) in state k of points of the undeformed body (3 × n, m).
   Eigen::Matrix3Xd DisplacementAt(size_t k, const Eigen::Matrix3Xd& at_rest) const;
   // Their standard deviations, n, m.
   Eigen::VectorXd DeviationAt(size_t k, const Eigen::Matrix3Xd& at_rest) const;
 };
 
-// Each registration starts from the one before. The states need points that stand for them
-// (StatePoints), the first of which is S_0.
+// Each registration starts from the result of the one before. The first of the states, represented
+// by its StatePoints, is S_0. Throws InputError where a state has no points, and Interrupted.
 TrackedFrames TrackFrames(const ReconstructionStudy& study, const std::vector<FrameState>& states,
                           Progress* progress);
 

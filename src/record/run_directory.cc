@@ -42,9 +42,10 @@ void RefuseForeignFolder(const fs::path& folder) {
   if (fs::exists(folder / kManifestName)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().filename() == kLockName || IsPartialFolder(entry.path())) continue;
-    throw InputError({folder.string()},
-                     fmt::format("is neither empty nor a run folder (it has no {}); choose another",
-                                 kManifestName));
+    throw InputError(
+        {folder.string()},
+        fmt::format("is not a run folder (it has no {}) and is not empty; choose another",
+                    kManifestName));
   }
 }
 
@@ -201,8 +202,8 @@ fs::path FinishedStage(const fs::path& run, const std::string& stage) {
   const Manifest manifest = LoadManifest(run / kManifestName);
   if (!manifest.finished) {
     throw InputError({run.string()},
-                     "is the folder of an unfinished run; start the run again and it resumes where "
-                     "it stopped");
+                     "is the folder of a run that was not finished; start the run again and it "
+                     "resumes where it stopped");
   }
   const auto found = manifest.stages.find(stage);
   if (found == manifest.stages.end()) {

@@ -2,7 +2,6 @@
 
 #include <glog/logging.h>
 #include <vtkActor.h>
-#include <vtkActor2D.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
 #include <vtkColorTransferFunction.h>
@@ -12,12 +11,9 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataMapper.h>
-#include <vtkPolyDataMapper2D.h>
 #include <vtkProperty.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderer.h>
 #include <vtkScalarBarActor.h>
-#include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
@@ -25,6 +21,7 @@
 #include <limits>
 
 #include "report/offscreen_window.h"
+#include "report/page_drawing.h"
 
 namespace lacuna {
 namespace {
@@ -64,7 +61,7 @@ vtkNew<vtkPolyData> ToVtk(const PanelPoints& drawn) {
   return dots;
 }
 
-// Of all values in the picture, or the one that was asked for.
+// The range of all values in the picture, or the one that was asked for.
 std::pair<double, double> ColourRange(const PanelPicture& picture,
                                       const std::optional<std::pair<double, double>>& wanted) {
   if (wanted) return *wanted;
@@ -80,13 +77,13 @@ std::pair<double, double> ColourRange(const PanelPicture& picture,
     }
   }
   if (!(low <= high)) return {0, 1};
-  // A length that is almost nothing somewhere is read best from nothing.
-  constexpr double kAlmostNothing = 0.05;
-  if (low > 0 && low < kAlmostNothing * high) low = 0;
+  // Lengths that are almost zero somewhere are easiest to read on a scale that begins at zero.
+  constexpr double kAlmostZero = 0.05;
+  if (low > 0 && low < kAlmostZero * high) low = 0;
   return {low, high};
 }
 
-// Even steps of lightness from dark blue to yellow, readable in grey and for colour-blind eyes.
+// Even steps of lightness from dark blue to yellow: readable in grey and by colour-blind readers.
 vtkNew<vtkColorTransferFunction> Colours(std::pair<double, double> range) {
   constexpr double kStops[][3] = {{0.267, 0.005, 0.329}, {0.254, 0.265, 0.530},
                                   {0.164, 0.471, 0.558}, {0.135, 0.659, 0.518},
@@ -136,14 +133,6 @@ vtkNew<vtkActor> ActorOf(const PanelPoints& drawn) {
   return actor;
 }
 
-void SetDarkText(vtkTextProperty* text, double size) {
-  text->SetColor(0.1, 0.1, 0.1);
-  text->SetFontSize(static_cast<int>(size));
-  text->SetShadow(0);
-  text->SetItalic(0);
-  text->SetBold(0);
-}
-
 // Parts of the picture in pixels, from the lower left.
 struct Layout {
   double text = 0;                            // size of letters
@@ -175,20 +164,6 @@ Layout LayOut(const PanelPicture& picture, const PanelOptions& options, bool has
   return layout;
 }
 
-enum class Anchor { kLeft, kCentre };
-
-void AddText(const std::string& text, double x, double y, Anchor anchor, double size,
-             vtkRenderer* renderer) {
-  if (text.empty()) return;
-  vtkNew<vtkTextActor> actor;
-  actor->SetInput(text.c_str());
-  SetDarkText(actor->GetTextProperty(), size);
-  actor->GetTextProperty()->SetVerticalJustificationToCentered();
-  if (anchor == Anchor::kCentre) actor->GetTextProperty()->SetJustificationToCentered();
-  actor->SetDisplayPosition(static_cast<int>(x), static_cast<int>(y));
-  renderer->AddActor(actor);
-}
-
 void AddColourBar(const std::string& name, const Layout& layout, const PanelOptions& options,
                   vtkColorTransferFunction* colours, vtkRenderer* renderer) {
   vtkNew<vtkScalarBarActor> bar;
@@ -208,38 +183,20 @@ void AddColourBar(const std::string& name, const Layout& layout, const PanelOpti
   renderer->AddActor(bar);
 }
 
-vtkNew<vtkActor2D> Square(double left, double middle, double side, const Eigen::Vector3d& colour) {
-  Eigen::Matrix3Xd corners(3, 4);
-  corners << left, left + side, left + side, left,  //
-      middle - 0.5 * side, middle - 0.5 * side, middle + 0.5 * side, middle + 0.5 * side, 0, 0, 0,
-      0;
-  vtkNew<vtkCellArray> cells;
-  const vtkIdType order[] = {0, 1, 2, 3};
-  cells->InsertNextCell(4, order);
-  vtkNew<vtkPolyData> shape;
-  shape->SetPoints(ToPoints(corners));
-  shape->SetPolys(cells);
-  vtkNew<vtkPolyDataMapper2D> mapper;
-  mapper->SetInputData(shape);
-  vtkNew<vtkActor2D> square;
-  square->SetMapper(mapper);
-  square->GetProperty()->SetColor(colour[0], colour[1], colour[2]);
-  return square;
-}
-
-// Squares of colour with their texts, side by side from the left.
+// Coloured squares with their texts, side by side from the left.
 void AddLegend(const std::vector<LegendEntry>& legend, const Layout& layout,
                vtkRenderer* renderer) {
   double x = layout.text;
   for (const LegendEntry& entry : legend) {
-    renderer->AddActor(Square(x, layout.legend, 0.7 * layout.text, entry.colour));
-    AddText(entry.text, x + 1.4 * layout.text, layout.legend, Anchor::kLeft, 0.9 * layout.text,
-            renderer);
+    const double side = 0.7 * layout.text;
+    DrawRectangle({x, layout.legend - 0.5 * side}, {side, side}, entry.colour, renderer);
+    DrawText(entry.text, x + 1.4 * layout.text, layout.legend, TextAnchor::kLeft, 0.9 * layout.text,
+             renderer);
     x += (3 + 0.5 * static_cast<double>(entry.text.size())) * layout.text;
   }
 }
 
-// Parallel projection, so that equal lengths look equal; the whole framing box is in the panel.
+// A parallel projection, so that equal lengths look equal. The whole box is in the panel.
 void PlaceCamera(const Eigen::AlignedBox3d& box, const PanelOptions& options, double aspect,
                  vtkRenderer* renderer) {
   const Eigen::Vector3d forward = options.view_direction.normalized();
@@ -298,15 +255,17 @@ void CheckPicture(const PanelPicture& picture, const PanelOptions& options) {
 
 }  // namespace
 
+PictureResult NoRenderer() {
+  return {PictureResult::Status::kNoRenderer,
+          "no picture: this machine offers no OpenGL through EGL (Debian: libegl1, "
+          "libgl1-mesa-dri)"};
+}
+
 PictureResult RenderPanelPng(const std::filesystem::path& file, const PanelPicture& picture,
                              const PanelOptions& options) {
   CheckPicture(picture, options);
   OffscreenWindow window(options.width, options.height);
-  if (!window.IsUsable()) {
-    return {PictureResult::Status::kNoRenderer,
-            "no picture: this machine offers no OpenGL through EGL (Debian: libegl1, "
-            "libgl1-mesa-dri)"};
-  }
+  if (!window.IsUsable()) return NoRenderer();
   bool has_bar = false;
   for (const Panel& panel : picture.panels)
     for (const PanelSurface& surface : panel.surfaces)
@@ -317,9 +276,9 @@ PictureResult RenderPanelPng(const std::filesystem::path& file, const PanelPictu
 
   vtkNew<vtkRenderer> page;
   page->SetBackground(1, 1, 1);
-  AddText(picture.title, 0.5 * options.width, layout.title, Anchor::kCentre, 1.1 * layout.text,
-          page);
-  AddText(picture.caption, layout.text, layout.caption, Anchor::kLeft, layout.text, page);
+  DrawText(picture.title, 0.5 * options.width, layout.title, TextAnchor::kCentre, 1.1 * layout.text,
+           page);
+  DrawText(picture.caption, layout.text, layout.caption, TextAnchor::kLeft, layout.text, page);
   AddLegend(picture.legend, layout, page);
   if (has_bar) AddColourBar(picture.value_name, layout, options, colours, page);
   window.Add(page);
@@ -331,8 +290,8 @@ PictureResult RenderPanelPng(const std::filesystem::path& file, const PanelPictu
     const double left = width * static_cast<double>(k % picture.columns);
     const double top = layout.top - height * static_cast<double>(k / picture.columns);
     const double inner_top = top - layout.panel_title;
-    AddText(panel.title, left + 0.5 * width, top - 0.5 * layout.panel_title, Anchor::kCentre,
-            0.9 * layout.text, page);
+    DrawText(panel.title, left + 0.5 * width, top - 0.5 * layout.panel_title, TextAnchor::kCentre,
+             0.9 * layout.text, page);
     vtkNew<vtkRenderer> renderer;
     renderer->SetBackground(1, 1, 1);
     renderer->SetViewport(left / options.width, (top - height) / options.height,

@@ -74,6 +74,9 @@ struct PictureResult {
   bool IsUsable() const { return status == Status::kWritten; }
 };
 
+// The result where the machine offers no OpenGL through EGL; the message says what to install.
+PictureResult NoRenderer();
+
 // Writes the picture as PNG, atomically. kNoRenderer when the machine offers no OpenGL through EGL.
 // Throws InputError when the file cannot be written. A picture without anything to draw, and values
 // of another length than the vertices, are mistakes of the program (CHECK).

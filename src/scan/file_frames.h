@@ -27,7 +27,7 @@ using InfoLine = std::pair<std::string, std::string>;
 // The number of frames in the files, before frames are chosen.
 inline size_t CountFrames(const FileFrames& source) { return source.files.size(); }
 
-// The times that the frame files tell themselves, s, one per frame; empty when they tell none.
+// The times that the frame files themselves contain, s, one per frame; empty when they have none.
 inline std::vector<double> TimesInFiles(const FileFrames&) { return {}; }
 
 // Keeps only the frames `chosen` (numbers in the files, ascending), which are 0, 1, … from then on.

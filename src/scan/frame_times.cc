@@ -30,7 +30,7 @@ std::vector<double> ReadTimesFile(const Config& config, const std::filesystem::p
 }
 
 std::vector<double> ReadTimes(const Config& frames, size_t count,
-                              const std::vector<double>& told_by_files, const DataLocation& data,
+                              const std::vector<double>& file_times, const DataLocation& data,
                               std::filesystem::path* times_file) {
   const bool has_rate = frames.Has("rate"), has_times = frames.Has("times");
   const std::optional<Config> file = frames.OptionalChild("times_file");
@@ -49,8 +49,8 @@ std::vector<double> ReadTimes(const Config& frames, size_t count,
     key = "times_file";
     *times_file = data.folder / file->Text("file");
     times = ReadTimesFile(*file, *times_file);
-  } else if (!told_by_files.empty()) {
-    times = told_by_files;
+  } else if (!file_times.empty()) {
+    times = file_times;
   } else if (count == 1) {
     times = {0};
   } else {
@@ -86,10 +86,10 @@ std::vector<double> FrameTimes::OfChosen() const {
   return times;
 }
 
-FrameTimes ReadFrameTimes(const Config& frames, size_t count,
-                          const std::vector<double>& told_by_files, const DataLocation& data) {
+FrameTimes ReadFrameTimes(const Config& frames, size_t count, const std::vector<double>& file_times,
+                          const DataLocation& data) {
   FrameTimes times;
-  times.in_files = ReadTimes(frames, count, told_by_files, data, &times.file);
+  times.in_files = ReadTimes(frames, count, file_times, data, &times.file);
   times.chosen = ChooseFrames(frames, times.in_files);
   return times;
 }

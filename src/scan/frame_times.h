@@ -18,13 +18,13 @@ struct FrameTimes {
 };
 
 // Reads the times of `count` frames from one of `rate`, `times` and `times_file` of the mapping
-// `frames`, else takes `told_by_files` (s; empty where the frame files do not tell their times),
-// and chooses frames with `from` ≤ time ≤ `to`, of these each `every`-th. A single frame needs no
-// time. Throws InputError (file, line, column and field) when there are no times or more than one
-// source of them, when their number is not `count`, when they do not ascend, and when no frame is
-// chosen.
-FrameTimes ReadFrameTimes(const Config& frames, size_t count,
-                          const std::vector<double>& told_by_files, const DataLocation& data);
+// `frames`. Without these it takes `file_times`, the times that the frame files themselves contain
+// (s; empty when they have none). Of the frames with `from` ≤ time ≤ `to` it chooses every
+// `every`-th. A single frame needs no time. Throws InputError (file, line, column and field) when
+// there are no times or more than one source of them, when their number is not `count`, when they
+// do not ascend, and when no frame is chosen.
+FrameTimes ReadFrameTimes(const Config& frames, size_t count, const std::vector<double>& file_times,
+                          const DataLocation& data);
 
 }  // namespace lacuna
 

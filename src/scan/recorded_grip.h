@@ -26,8 +26,8 @@ struct RecordedGrip {
   bool deforms = false;  // whether it may deform instead of moving as a rigid body; not kGiven
   std::vector<std::string> markers;  // kFollowsMarkers
 
-  // kGiven: k poses relative to the undeformed place. The grip is rotated about `pivot` and then
-  // displaced.
+  // kGiven: k poses relative to the undeformed place. The grip is rotated about `pivot`, from the
+  // first rotation to that of the pose, and then displaced.
   Eigen::VectorXd times;           // k, s, ascending
   Eigen::Matrix3Xd displacements;  // 3 × k, m
   Eigen::Matrix3Xd rotations;      // 3 × k, rad, rotation vectors; 3 × 0: it does not rotate

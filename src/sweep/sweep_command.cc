@@ -75,8 +75,8 @@ CaseOutcome Fit(const Config& experiment, Progress* progress) {
 
 int SearchSeed(const Config& experiment) { return experiment.Integer("seed", 1, 1 << 30, 1); }
 
-CaseOutcome OuterSearch(const Config& experiment, const std::filesystem::path& folder,
-                        Progress* progress) {
+CaseOutcome RunCaseSearch(const Config& experiment, const std::filesystem::path& folder,
+                          Progress* progress) {
   const Table1Study study = ReadTable1(std::vector<Config>{experiment});
   Table1Options options;
   options.output = folder / "run";
@@ -85,7 +85,7 @@ CaseOutcome OuterSearch(const Config& experiment, const std::filesystem::path& f
   options.profile = options.in_loop = false;
   const Table1Result result = RunTable1(study, options, progress);
   const Table1Search& search = result.seeds.front().searches.front();
-  const OuterSearchResult& found = search.found;
+  const ParameterSearchResult& found = search.found;
   CaseOutcome outcome;
   outcome.done = found.IsUsable();
   outcome.words = {{"ended", ToString(found.status)}, {"trace_hash", found.trace_hash}};
@@ -94,10 +94,10 @@ CaseOutcome OuterSearch(const Config& experiment, const std::filesystem::path& f
     if (!found.evaluations.empty()) outcome.message += ": " + found.evaluations[0].failure;
     return outcome;
   }
-  const OuterMeasure measure = study.configurations.front().search.measure;
-  const OuterEvaluation& start = found.evaluations.front();
-  const OuterEvaluation& best = found.evaluations[static_cast<size_t>(found.best)];
-  const OuterParameters& at = found.parameters[static_cast<size_t>(found.best)];
+  const ObjectiveMeasure measure = study.configurations.front().search.measure;
+  const ObjectiveEvaluation& start = found.evaluations.front();
+  const ObjectiveEvaluation& best = found.evaluations[static_cast<size_t>(found.best)];
+  const SearchedParameters& at = found.parameters[static_cast<size_t>(found.best)];
   const auto failures = static_cast<double>(found.failures);
   outcome.numbers = {
       {"start_value_m", ValueOf(start, measure)},
@@ -207,7 +207,7 @@ CaseOutcome RunCommand(SweepCommand command, const SweepSettings& settings,
   const Config experiment = Config::Load(folder / "experiment.yaml");
   if (command == SweepCommand::kReconstruct) return Reconstruct(experiment, progress);
   if (command == SweepCommand::kFit) return Fit(experiment, progress);
-  return OuterSearch(experiment, folder, progress);
+  return RunCaseSearch(experiment, folder, progress);
 }
 
 }  // namespace lacuna

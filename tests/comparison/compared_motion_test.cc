@@ -1,3 +1,5 @@
+#include "comparison/compared_motion.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,9 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/calibration_run.h"
-#include "comparison/comparison.h"
+#include "comparison/comparison_files.h"
+#include "comparison/run_comparison.h"
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
+#include "report/comparison_report.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
 
@@ -23,7 +27,7 @@ ProgressOptions Silent() {
   return silent;
 }
 
-TEST(ComparedMotion, TellsStrainAndHeightAndWritesFieldsAndTheForce) {
+TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   const TemporaryFolder folder;
   HeldBarTruth truth;
   truth.alpha = 8;
@@ -40,40 +44,41 @@ TEST(ComparedMotion, TellsStrainAndHeightAndWritesFieldsAndTheForce) {
   const std::filesystem::path run = folder / "run";
   Comparison comparison = CompareRun(run);
   CompareMotion(run, &progress, &comparison);
-  EXPECT_THAT(comparison.notes, testing::IsEmpty());
-  const ComparedRecording& bar = comparison.recordings.at(0);
+  EXPECT_THAT(comparison.record.notes, testing::IsEmpty());
+  const ComparedRecording& bar = comparison.record.recordings.at(0);
   EXPECT_TRUE(bar.height_by_gravity);
   for (const ComparedPart& part : bar.parts) {
     std::vector<std::string> quantities;
-    for (const ErrorAgainst& against : part.against) quantities.push_back(against.quantity);
+    for (const ErrorTrend& trend : part.trends) quantities.push_back(trend.quantity);
     EXPECT_THAT(quantities, testing::IsSupersetOf({"strain", "strain_rate_per_s", "height_m"}));
   }
-  // A soft bar of 80 mm that hangs by some 10 mm: its surface strains by a few percent.
-  const std::vector<ResidualBin>& strain = (bar.parts[0].against.end() - 3)->bins;
+  // A soft bar of 80 mm whose end hangs down by about 10 mm has surface strains of a few percent.
+  const std::vector<ErrorBin>& strain = (bar.parts[0].trends.end() - 3)->bins;
   EXPECT_GT(strain.back().mean, 0.005);
   EXPECT_LT(strain.back().mean, 0.2);
   ASSERT_TRUE(bar.force && bar.force->usable);
-  EXPECT_THAT(ComparisonInWords(comparison), Contains(HasSubstr("it drains the motion")));
+  EXPECT_THAT(DescribeComparison(comparison.record),
+              Contains(HasSubstr("it removes energy from the motion")));
 
   SaveComparison(comparison, run);
   const CsvTable force = LoadCsv(run / "comparison/unexplained_force.csv");
-  EXPECT_EQ(force[0].values.size(), bar.force->times.size());
+  EXPECT_EQ(force[0].values.size(), comparison.forces.at(0)->history.times.size());
   std::ifstream stream(run / "comparison/comparison.json");
   const nlohmann::json record = nlohmann::json::parse(stream);
-  EXPECT_TRUE(record.at("recordings").at(0).at("unexplained_force").at("stands_out"));
+  EXPECT_TRUE(record.at("recordings").at(0).at("unexplained_force").at("is_significant"));
   EXPECT_EQ(record.at("recordings").at(0).at("height_along"), "against gravity");
-  // 21 of the 26 frames lie after the release, and in the five before the bar rests.
+  // 21 of the 26 frames lie after the release; in the five before it the bar rests.
   EXPECT_EQ(bar.field_frames, 22);
   for (const char* file :
        {"body.pvd", "markers.pvd", "fields/body_00004.vtu", "fields/body_00025.vtu"})
     EXPECT_TRUE(std::filesystem::exists(run / "comparison/0" / file)) << file;
 
-  // With another experiment it is not that model any more.
+  // With a changed experiment the model is no longer the one that was fitted.
   std::ofstream(experiment) << text << "density: 900 kg/m^3\n";
   Comparison changed = CompareRun(run);
   CompareMotion(run, &progress, &changed);
-  EXPECT_THAT(changed.notes, Contains(HasSubstr("has changed since")));
-  EXPECT_FALSE(changed.recordings.at(0).force);
+  EXPECT_THAT(changed.record.notes, Contains(HasSubstr("has changed since")));
+  EXPECT_FALSE(changed.record.recordings.at(0).force);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ TEST_F(Npy, BrokenFilesAreRefusedWithTheirCause) {
   fs::resize_file(file, 4);
   expect(file, "is not an .npy file");
   expect(WriteByHand("{'descr': '>f8', 'fortran_order': False, 'shape': (2,), }", two), "'>f8'");
-  expect(WriteByHand("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", two), "asks for");
+  expect(WriteByHand("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", two), "needs 24");
   expect(WriteByHand("{'descr': '<f8', 'shape': (2,), }", two), "order");
   expect(WriteByHand(
              "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 99999999999)}", two),

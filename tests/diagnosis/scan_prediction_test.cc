@@ -6,10 +6,11 @@
 
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_run.h"
-#include "comparison/comparison.h"
+#include "comparison/run_comparison.h"
 #include "core/parallel.h"
 #include "diagnosis/effect_refit.h"
 #include "prediction/prediction_study_reader.h"
+#include "report/comparison_report.h"
 #include "support/scanned_bar.h"
 #include "support/temporary_folder.h"
 
@@ -277,16 +278,17 @@ TEST_F(CarriedBar, IsFittedFromItsScansAlone) {
   const CalibrationRecord read = LoadCalibration(folder_ / "run");
   EXPECT_EQ(read.scan_noise, record.scan_noise);
   EXPECT_EQ(read.recordings[0].scan->places, record.recordings[0].scan->places);
-  const Comparison comparison = CompareRun(folder_ / "run");
+  const ComparisonRecord comparison = CompareRun(folder_ / "run").record;
   ASSERT_EQ(comparison.recordings.size(), 1u);
   const ComparedRecording& compared = comparison.recordings[0];
   EXPECT_THAT(comparison.notes, testing::IsEmpty());
   EXPECT_EQ(compared.grip_distance.size(), 60);
   ASSERT_EQ(compared.parts.size(), 2u);
-  // Patches have one component; the table and the record tell the same rms.
-  EXPECT_NEAR(compared.parts[0].rms, record.recordings[0].in_fit.rms, 1e-9);
-  EXPECT_NEAR(compared.parts[0].in_noise, compared.parts[0].rms / compared.noise, 1e-12);
-  EXPECT_THAT(ComparisonInWords(comparison)[0], HasSubstr("at patch "));
+  // Patches have one component; the comparison and the record of the fit have the same rms.
+  const ErrorSize& error = compared.parts[0].error;
+  EXPECT_NEAR(error.rms, record.recordings[0].in_fit.rms, 1e-9);
+  EXPECT_NEAR(error.rms_over_sigma, error.rms / compared.noise, 1e-12);
+  EXPECT_THAT(DescribeComparison(comparison)[0], HasSubstr("(patch "));
 }
 
 TEST_F(CarriedBar, TellsWhatItCannotFollow) {

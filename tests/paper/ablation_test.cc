@@ -20,7 +20,7 @@ constexpr double kYoung = 1e6, kPoisson = 0.3;
 
 Table1Configuration Configuration(const std::string& name, const std::string& against,
                                   bool seeks_material) {
-  OuterSearchSettings settings;
+  ParameterSearchSettings settings;
   settings.variables = {{"radius_edge_ratio", 1.5, 3, 2, SearchScale::kLinear},
                         {"max_volume", 1e-5, 1e-3, 1e-4, SearchScale::kLogarithmic},
                         {"young_modulus", 1e5, 1e7, 5e5, SearchScale::kLogarithmic},
@@ -35,8 +35,8 @@ Table1Configuration Configuration(const std::string& name, const std::string& ag
   return configuration;
 }
 
-OuterEvaluation Evaluated(double per_point) {
-  OuterEvaluation evaluation;
+ObjectiveEvaluation Evaluated(double per_point) {
+  ObjectiveEvaluation evaluation;
   evaluation.usable = true;
   evaluation.residual_per_point = per_point;
   evaluation.residual_rms = 1.2 * per_point;
@@ -81,12 +81,12 @@ TEST(Ablation, RowsTellWhatWasFoundAndHowFarItIsFromTheTruth) {
   EXPECT_NEAR(summary.mesh_noise, 0.01, 1e-12);
   ASSERT_EQ(summary.rows.size(), 3u);
   const AblationRow& rival = summary.rows[1];
-  EXPECT_DOUBLE_EQ(rival.start.median, 4e-3);
-  EXPECT_DOUBLE_EQ(rival.best.median, 2.4e-3);
-  EXPECT_DOUBLE_EQ(rival.best_sum.median, 300 * 2.4e-3);
-  EXPECT_DOUBLE_EQ(rival.drop.median, 0.4);
-  EXPECT_DOUBLE_EQ(rival.modulus_factor.median, 1.25);
-  EXPECT_NEAR(rival.poisson_error.median, -0.05, 1e-12);
+  EXPECT_DOUBLE_EQ(rival.residual.start.median, 4e-3);
+  EXPECT_DOUBLE_EQ(rival.residual.best.median, 2.4e-3);
+  EXPECT_DOUBLE_EQ(rival.residual.best_sum.median, 300 * 2.4e-3);
+  EXPECT_DOUBLE_EQ(rival.residual.drop.median, 0.4);
+  EXPECT_DOUBLE_EQ(rival.optimum.modulus_factor.median, 1.25);
+  EXPECT_NEAR(rival.optimum.poisson_error.median, -0.05, 1e-12);
   EXPECT_EQ(rival.evaluations.median, 2);
   EXPECT_EQ(rival.seconds.median, 10);
   EXPECT_EQ(rival.against, "base");
@@ -103,7 +103,7 @@ TEST(Ablation, WordsFollowTheNumbers) {
   EXPECT_THAT(rival, HasSubstr("5.0 times as long"));
   // The same value as the rival's, and a mesh is not said to be a wrong material.
   const std::string mesh = summary.rows[2].shows;
-  EXPECT_THAT(mesh, HasSubstr("D as that of rival"));
+  EXPECT_THAT(mesh, HasSubstr("D equals that of rival"));
   EXPECT_THAT(mesh, Not(HasSubstr("y off")));
   EXPECT_THAT(mesh, Not(HasSubstr("true y")));
 }
@@ -113,7 +113,7 @@ TEST(Ablation, ARowThatFoundNothingSaysSo) {
   ablation.result.seeds.front().searches[1].found.best = -1;
   const AblationSummary summary = SummariseAblation(ablation.study, ablation.result);
   EXPECT_EQ(summary.rows[1].shows, "no evaluation succeeded");
-  EXPECT_THAT(summary.rows[2].shows, HasSubstr("nothing to hold it against"));
+  EXPECT_THAT(summary.rows[2].shows, HasSubstr("no comparison"));
 }
 
 TEST(Ablation, DifferenceQuotientsOfBothSignsAreToldApart) {

@@ -26,27 +26,28 @@ poisson_ratio: {start: 0.3, lower: 0.1, upper: 0.45}
 evaluations: 10
 )";
 
-class OuterSearchTest : public testing::Test {
+class ParameterSearchTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { scans_ = new Table1Scans(LoadReducedBend()); }
   static void TearDownTestSuite() { delete scans_; }
 
-  static OuterProblem Problem() {
+  static ParameterObjective Problem() {
     return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
   }
-  static OuterSearchSettings Settings() {
-    return ReadOuterSearch(Config::Parse(kSearch, "search.yaml"));
+  static ParameterSearchSettings Settings() {
+    return ReadParameterSearch(Config::Parse(kSearch, "search.yaml"));
   }
-  static OuterSearchResult Search(const OuterSearchSettings& settings, const fs::path& folder) {
+  static ParameterSearchResult Search(const ParameterSearchSettings& settings,
+                                      const fs::path& folder) {
     ProgressOptions silent;
     silent.style = ProgressStyle::kSilent;
     Progress progress(silent);
-    return RunOuterSearch(Problem(), settings, folder, "reduced", &progress);
+    return RunParameterSearch(Problem(), settings, folder, "reduced", &progress);
   }
 
   static Table1Scans* scans_;
 };
-Table1Scans* OuterSearchTest::scans_ = nullptr;
+Table1Scans* ParameterSearchTest::scans_ = nullptr;
 
 // The first `count` lines of a file, and a part of the next one.
 void CutAfter(const fs::path& file, int count) {
@@ -56,13 +57,13 @@ void CutAfter(const fs::path& file, int count) {
   std::ofstream(file) << text.substr(0, end + 9);
 }
 
-TEST_F(OuterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResult) {
+TEST_F(ParameterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResult) {
   const TemporaryFolder folder;
-  const OuterSearchResult whole = Search(Settings(), folder / "whole");
+  const ParameterSearchResult whole = Search(Settings(), folder / "whole");
   ASSERT_TRUE(whole.IsUsable());
   ASSERT_EQ(whole.evaluations.size(), 10u);
-  const OuterEvaluation& start = whole.evaluations.front();
-  const OuterEvaluation& best = whole.evaluations[whole.best];
+  const ObjectiveEvaluation& start = whole.evaluations.front();
+  const ObjectiveEvaluation& best = whole.evaluations[whole.best];
   ASSERT_TRUE(start.usable);
   // A fifth is well under what is found and well above a change by the mesh, of which there is
   // none: only the material is searched.
@@ -76,7 +77,7 @@ TEST_F(OuterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResu
     fs::copy_file(folder / "whole" / name, folder / "stopped" / name);
     CutAfter(folder / "stopped" / name, 5);
   }
-  const OuterSearchResult resumed = Search(Settings(), folder / "stopped");
+  const ParameterSearchResult resumed = Search(Settings(), folder / "stopped");
   EXPECT_EQ(resumed.trace_hash, whole.trace_hash);
   EXPECT_EQ(resumed.best, whole.best);
   for (size_t k = 0; k < whole.evaluations.size(); ++k)
@@ -92,9 +93,9 @@ TEST_F(OuterSearchTest, TheMaterialSearchLowersDAndAStoppedOneComesToTheSameResu
   EXPECT_THROW(Search(Settings(), folder / "stopped"), InputError);
 }
 
-TEST_F(OuterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
-  const OuterEvaluation coarse = EvaluateOuter(Problem(), {2.0, 3e-7, 1e5, 0.35});
-  const OuterEvaluation fine = EvaluateOuter(Problem(), {2.0, 5e-8, 1e5, 0.35});
+TEST_F(ParameterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
+  const ObjectiveEvaluation coarse = EvaluateObjective(Problem(), {2.0, 3e-7, 1e5, 0.35});
+  const ObjectiveEvaluation fine = EvaluateObjective(Problem(), {2.0, 5e-8, 1e5, 0.35});
   ASSERT_TRUE(coarse.usable && fine.usable) << coarse.failure << fine.failure;
   ASSERT_GT(fine.surface_points, 1.3 * coarse.surface_points);
   EXPECT_GT(fine.residual_sum, 1.2 * coarse.residual_sum);
@@ -102,23 +103,23 @@ TEST_F(OuterSearchTest, TheSumFollowsTheNumberOfPointsAndTheMeanDoesNot) {
   EXPECT_NEAR(fine.residual_per_point / coarse.residual_per_point, 1, 0.15);
 }
 
-TEST_F(OuterSearchTest, ARefusedMeshIsAFailedEvaluation) {
+TEST_F(ParameterSearchTest, ARefusedMeshIsAFailedEvaluation) {
   std::vector<FrameState> states = scans_->states;
   TriMesh& surface = states.front().surface;
   surface.triangles.conservativeResize(3, surface.triangles.cols() - 1);
-  const OuterProblem problem{scans_->study, states, scans_->tracked, false, false, 0};
-  const OuterEvaluation failed = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
+  const ParameterObjective problem{scans_->study, states, scans_->tracked, false, false, 0};
+  const ObjectiveEvaluation failed = EvaluateObjective(problem, {2.0, 3e-7, 1e5, 0.35});
   EXPECT_FALSE(failed.usable);
   EXPECT_NE(failed.failure.find("cannot be meshed"), std::string::npos) << failed.failure;
   EXPECT_TRUE(std::isnan(failed.residual_per_point));
 }
 
-TEST_F(OuterSearchTest, RegistrationInTheLoopAgreesWithTheTrackedFrames) {
-  OuterProblem problem = Problem();
-  const OuterParameters at{2.0, 3e-7, 1e5, 0.35};
-  const OuterEvaluation tracked = EvaluateOuter(problem, at);
+TEST_F(ParameterSearchTest, RegistrationInTheLoopAgreesWithTheTrackedFrames) {
+  ParameterObjective problem = Problem();
+  const SearchedParameters at{2.0, 3e-7, 1e5, 0.35};
+  const ObjectiveEvaluation tracked = EvaluateObjective(problem, at);
   problem.registration_in_loop = true;
-  const OuterEvaluation in_loop = EvaluateOuter(problem, at);
+  const ObjectiveEvaluation in_loop = EvaluateObjective(problem, at);
   ASSERT_TRUE(tracked.usable && in_loop.usable);
   // Both follow the same scans to their noise of 0.3 mm.
   EXPECT_NEAR(in_loop.scan_distance, tracked.scan_distance, 1e-4);
@@ -126,21 +127,21 @@ TEST_F(OuterSearchTest, RegistrationInTheLoopAgreesWithTheTrackedFrames) {
 
 // The derivative of what is measured by y (i = 0) or p (i = 1) with the central differences over
 // several steps, relative to the value's own size over a parameter's scale.
-void ExpectSlopes(const OuterProblem& problem, double tolerance) {
-  const OuterParameters at{2.0, 3e-7, 1.5e5, 0.35};
-  const OuterEvaluation evaluation = EvaluateOuter(problem, at);
+void ExpectSlopes(const ParameterObjective& problem, double tolerance) {
+  const SearchedParameters at{2.0, 3e-7, 1.5e5, 0.35};
+  const ObjectiveEvaluation evaluation = EvaluateObjective(problem, at);
   ASSERT_TRUE(evaluation.usable) << evaluation.failure;
   ASSERT_EQ(evaluation.by_moduli.size(), 2u);
   for (const size_t i : {0u, 1u}) {
     const double scale = i == 0 ? at.young_modulus : at.poisson_ratio;
     for (const double step : {0.1, 0.03}) {
-      OuterParameters below = at, above = at;
+      SearchedParameters below = at, above = at;
       (i == 0 ? below.young_modulus : below.poisson_ratio) -= step * scale;
       (i == 0 ? above.young_modulus : above.poisson_ratio) += step * scale;
-      const OuterEvaluation from = EvaluateOuter(problem, below);
-      const OuterEvaluation to = EvaluateOuter(problem, above);
+      const ObjectiveEvaluation from = EvaluateObjective(problem, below);
+      const ObjectiveEvaluation to = EvaluateObjective(problem, above);
       ASSERT_TRUE(from.usable && to.usable);
-      const OuterSlope& slope = evaluation.by_moduli[i];
+      const ObjectiveSlope& slope = evaluation.by_moduli[i];
       const auto expect = [&](double given, double high, double low, const char* name) {
         const double difference = (high - low) / (2 * step);
         EXPECT_NEAR(scale * given, difference, tolerance * std::abs(difference) + 2e-3 * high)
@@ -162,33 +163,33 @@ ReconstructionStudy WithForces(const std::string& forces) {
       LoadRecording(fs::path(LACUNA_SOURCE_DIR) / "experiments/recordings/bend"));
 }
 
-TEST_F(OuterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
+TEST_F(ParameterSearchTest, TheDerivativesByTheModuliAgreeWithDifferences) {
   // A body that bends by its weight, in a recording without: D grows as it gets softer.
   const ReconstructionStudy study =
       WithForces("{model: none}\neffects: [{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}]");
-  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
+  ParameterObjective problem{study, scans_->states, scans_->tracked, true, false, 0};
   problem.slopes = true;
   // The curvature of D over a tenth of y.
   ExpectSlopes(problem, 0.1);
 }
 
-TEST_F(OuterSearchTest, WhereForcesAreFittedThereAreNoDerivatives) {
+TEST_F(ParameterSearchTest, WhereForcesAreFittedThereAreNoDerivatives) {
   const ReconstructionStudy study =
       WithForces("{model: smooth, length: 60 mm, traction_scale: 0.1 kPa}");
-  OuterProblem problem{study, scans_->states, scans_->tracked, true, false, 0};
+  ParameterObjective problem{study, scans_->states, scans_->tracked, true, false, 0};
   EXPECT_FALSE(CanDifferentiate(problem));
   problem.slopes = true;
-  const OuterEvaluation evaluation = EvaluateOuter(problem, {2.0, 3e-7, 1e5, 0.35});
+  const ObjectiveEvaluation evaluation = EvaluateObjective(problem, {2.0, 3e-7, 1e5, 0.35});
   ASSERT_TRUE(evaluation.usable);
   EXPECT_TRUE(evaluation.by_moduli.empty());
 }
 
-TEST_F(OuterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSameResult) {
+TEST_F(ParameterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSameResult) {
   const TemporaryFolder folder;
-  OuterSearchSettings settings = Settings();
-  settings.method = OuterMethod::kCeres;
+  ParameterSearchSettings settings = Settings();
+  settings.method = SearchMethod::kCeres;
   settings.evaluations = 8;
-  const OuterSearchResult whole = Search(settings, folder / "whole");
+  const ParameterSearchResult whole = Search(settings, folder / "whole");
   ASSERT_TRUE(whole.IsUsable());
   // As of the search without derivatives above.
   EXPECT_LT(whole.evaluations[whole.best].residual_per_point,
@@ -201,30 +202,30 @@ TEST_F(OuterSearchTest, TheGradientSearchLowersDAndAStoppedOneComesToTheSameResu
   EXPECT_EQ(Search(settings, folder / "stopped").trace_hash, whole.trace_hash);
 }
 
-TEST_F(OuterSearchTest, TheMeasuresAreOfTheSameLengths) {
-  const OuterEvaluation evaluation = EvaluateOuter(Problem(), {2.0, 3e-7, 1e5, 0.35});
+TEST_F(ParameterSearchTest, TheMeasuresAreOfTheSameLengths) {
+  const ObjectiveEvaluation evaluation = EvaluateObjective(Problem(), {2.0, 3e-7, 1e5, 0.35});
   ASSERT_TRUE(evaluation.usable);
   EXPECT_GT(evaluation.residual_rms, evaluation.residual_per_point);      // Jensen's inequality
   EXPECT_LT(evaluation.residual_rms, 3 * evaluation.residual_per_point);  // no heavy tail
-  EXPECT_EQ(ValueOf(evaluation, OuterMeasure::kRms), evaluation.residual_rms);
+  EXPECT_EQ(ValueOf(evaluation, ObjectiveMeasure::kRms), evaluation.residual_rms);
 }
 
-TEST(OuterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
+TEST(ParameterSearchSettingsTest, BoundsAreRefusedWhereTheyAreWrong) {
   std::string text = kSearch;
   text.replace(text.find("lower: 0.01 MPa, "), 17, "");
-  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
-  EXPECT_NO_THROW(ReadOuterSearch(Config::Parse(kSearch, "s.yaml")));
+  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_NO_THROW(ReadParameterSearch(Config::Parse(kSearch, "s.yaml")));
   text = std::string(kSearch) + "method: nlopt_bobyqa\n";
   text.replace(text.find(", lower: 0.1, upper: 0.45"), 25, "");
-  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
+  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);  // one parameter
   // No tetrahedron's radius is so short beside its edges.
   text = std::regex_replace(std::string(kSearch),
                             std::regex("(radius_edge_ratio: \\{start: )[^,}]+"), "$011");
   EXPECT_NE(text, kSearch);
-  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
   text = kSearch;
   text.replace(text.find("start: 3 MPa"), 12, "start: 30 MPa");
-  EXPECT_THROW(ReadOuterSearch(Config::Parse(text, "s.yaml")), InputError);
+  EXPECT_THROW(ReadParameterSearch(Config::Parse(text, "s.yaml")), InputError);
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Table1FiguresTest : public testing::Test {
     table1_ = new Table1Study;
     table1_->configurations.push_back({"all",
                                        Config::Parse(kReducedBend, "reduced.yaml"),
-                                       ReadOuterSearch(Config::Parse(kSearch, "search.yaml")),
+                                       ReadParameterSearch(Config::Parse(kSearch, "search.yaml")),
                                        {}});
     table1_->scene_key = "a scene";
     table1_->true_young_modulus = 1e5;
@@ -46,7 +46,7 @@ class Table1FiguresTest : public testing::Test {
     delete table1_;
     delete settings_;
   }
-  static OuterProblem Problem() {
+  static ParameterObjective Problem() {
     return {scans_->study, scans_->states, scans_->tracked, true, false, 0};
   }
 
@@ -101,8 +101,8 @@ TEST_F(Table1FiguresTest, OptimaAreReadFromTheTableAndMeasureWhatItHas) {
   const TemporaryFolder folder;
   EXPECT_THAT([&] { DrawAlignment(*table1_, *scans_, *settings_, folder / "."); },
               ThrowsMessage<InputError>(HasSubstr("run `lacuna table1` first")));
-  const OuterParameters optimum{2, 3e-7, 1e5, 0.35};
-  const OuterEvaluation found = EvaluateOuter(Problem(), optimum);
+  const SearchedParameters optimum{2, 3e-7, 1e5, 0.35};
+  const ObjectiveEvaluation found = EvaluateObjective(Problem(), optimum);
   ASSERT_TRUE(found.usable) << found.failure;
   const nlohmann::json search{
       {"seed", 1},

@@ -263,7 +263,7 @@ TEST_F(RunDirectoryTest, FolderWithOtherContentsIsRefusedAndNotChanged) {
   fs::create_directories(folder_);
   std::ofstream(folder_ / "thesis.tex") << "x";
   EXPECT_THAT([this] { RunDirectory run(folder_); },
-              ThrowsMessage<InputError>(HasSubstr("is neither empty nor a run folder")));
+              ThrowsMessage<InputError>(HasSubstr("is not a run folder")));
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 

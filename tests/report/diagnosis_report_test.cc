@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-RecordedEffect Effect(const std::string& type, double evidence) {
+RecordedEffect MadeUpEffect(const std::string& type, double evidence) {
   RecordedEffect effect;
   effect.type = effect.title = type;
   effect.first_order.evidence = evidence;
@@ -29,7 +29,7 @@ DiagnosisRecord MissingDrag() {
   record.errors.has_held_out = true;
   record.errors.held_out_rms = 9e-4;
   record.errors.without_nuisances = 5;
-  record.ranking = {Effect("drag", 310), Effect("swelling", -3)};
+  record.ranking = {MadeUpEffect("drag", 310), MadeUpEffect("swelling", -3)};
   record.ranking[0].sizes[0].refitted = RecordedInterval{2, 1, 3};
   record.ranking[0].refit.emplace().evidence = 300;
   record.ranking[0].refit->errors.without_nuisances = 1;

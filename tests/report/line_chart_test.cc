@@ -10,7 +10,7 @@
 namespace lacuna {
 namespace {
 
-TEST(LineChart, EveryFinitePointIsDrawnAndAGapLiftsThePen) {
+TEST(LineChart, DrawsEveryFinitePointAndInterruptsTheLineAtAGap) {
   const TemporaryFolder folder;
   Eigen::VectorXd x(4), y(4);
   x << 1, 2, 3, 4;
@@ -23,7 +23,7 @@ TEST(LineChart, EveryFinitePointIsDrawnAndAGapLiftsThePen) {
   EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
 }
 
-TEST(LineChart, ValuesThatAreAllEqualOrAbsentAreAChartAllTheSame) {
+TEST(LineChart, AcceptsValuesThatAreAllEqualOrAbsent) {
   const TemporaryFolder folder;
   WriteLineChart(folder / "flat.svg",
                  {"flat", "x", "y", {{"one", Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1)}}});

@@ -12,8 +12,8 @@
 namespace lacuna {
 namespace {
 
-// A picture read back: how many of the pixels of a part of it, in parts of its width and height
-// from the lower left, are as asked.
+// A picture that is read back. It counts the pixels of a given kind in a part of the picture, which
+// is given as fractions of the width and height from the lower left corner.
 class Pixels {
  public:
   explicit Pixels(const std::filesystem::path& file) {
@@ -78,7 +78,7 @@ const Eigen::Vector3d kRed(1, 0, 0), kGreen(0, 1, 0);
     ASSERT_TRUE(result.IsUsable());                                      \
   } while (false)
 
-TEST(PanelPictureTest, PanelsFillTheirPlacesRowByRow) {
+TEST(PanelPictureTest, PanelsAreArrangedRowByRow) {
   const TemporaryFolder folder;
   PanelPicture picture;
   picture.columns = 2;
@@ -94,7 +94,7 @@ TEST(PanelPictureTest, PanelsFillTheirPlacesRowByRow) {
   EXPECT_EQ(pixels.Share(0.5, 1, 0, 0.5, IsDrawn), 0);
 }
 
-TEST(PanelPictureTest, TextsStandBesideThePanelsAndNotOverThem) {
+TEST(PanelPictureTest, TextsDoNotCoverThePanels) {
   const TemporaryFolder folder;
   PanelPicture picture;
   picture.title = "a title";
@@ -115,7 +115,7 @@ TEST(PanelPictureTest, TextsStandBesideThePanelsAndNotOverThem) {
   EXPECT_EQ(pixels.Share(0, 1, 1 - 2 * kLine, 1, IsRed), 0);
 }
 
-TEST(PanelPictureTest, OnlyEdgesLeaveTheRestOpen) {
+TEST(PanelPictureTest, AWireframeDoesNotFillItsTriangles) {
   const TemporaryFolder folder;
   PanelPicture picture;
   picture.panels = {{"", {Square(kRed)}, {}}};
@@ -127,7 +127,7 @@ TEST(PanelPictureTest, OnlyEdgesLeaveTheRestOpen) {
   EXPECT_LT(share, 0.05);
 }
 
-TEST(PanelPictureTest, AllPanelsShareOneScaleOfColours) {
+TEST(PanelPictureTest, AllPanelsShareOneColourScale) {
   const TemporaryFolder folder;
   PanelPicture picture;
   picture.columns = 2;
@@ -147,7 +147,7 @@ TEST(PanelPictureTest, AllPanelsShareOneScaleOfColours) {
   EXPECT_GT(pixels.Share(0.83, 1, 0, 1, IsDrawn), 0.02) << "the bar";
 }
 
-TEST(PanelPictureDeathTest, SomethingMustBeDrawn) {
+TEST(PanelPictureDeathTest, RefusesAPictureWithNothingToDraw) {
   EXPECT_DEATH(RenderPanelPng("a.png", PanelPicture()), "nothing to draw");
 }
 

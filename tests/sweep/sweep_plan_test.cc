@@ -126,7 +126,7 @@ TEST(SweepPlan, RefusesAFolderWithOtherContents) {
   ExpectRefused(folder, kGrid, HasSubstr("is neither empty nor a sweep"));
 }
 
-TEST(SweepPlan, ReadsTheBundledOuterSearchesAndTable) {
+TEST(SweepPlan, ReadsTheBundledSearchesAndTable) {
   const TemporaryFolder folder;
   const std::string table = std::string(LACUNA_SOURCE_DIR) + "/experiments/table1";
   const auto plan = [&](const std::string& name, const std::string& lines) {

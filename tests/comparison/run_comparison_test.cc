@@ -1,4 +1,4 @@
-#include "comparison/comparison.h"
+#include "comparison/run_comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "analysis/residual_statistics.h"
+#include "comparison/comparison_files.h"
 #include "core/error.h"
 #include "experiment/reference_body.h"
 #include "record/csv_table.h"
 #include "record/run_directory.h"
+#include "report/comparison_report.h"
 #include "support/box_mesh.h"
 #include "support/temporary_folder.h"
 
@@ -25,7 +28,7 @@ using testing::Not;
 constexpr double kNoise = 5e-5;
 constexpr int kMarkers = 4, kFrames = 120, kFitted = 80;
 
-// Difference of a marker in a frame, beside noise.
+// The difference of a marker in a frame, without noise.
 using Planted = std::function<Eigen::Vector3d(int frame, int marker)>;
 
 json Measure() {
@@ -33,8 +36,8 @@ json Measure() {
       {"frames", 1}, {"points", 1}, {"rms_m", 0.0}, {"largest_m", 0.0}, {"rms_over_sigma", 0.0}};
 }
 
-// A run of `lacuna fit` as it lies on the disk. The object rests for 30 frames, then swings; the
-// recordings repeat each other, their releases 0.05 s apart.
+// Writes the folder that `lacuna fit` would. The object rests for 30 frames, then swings; the
+// recordings repeat each other, and their releases are 0.05 s apart.
 CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::string>& names,
                   const Planted& planted) {
   RunDirectory directory(run);
@@ -102,7 +105,7 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
 
 Eigen::Vector3d Nothing(int, int) { return Eigen::Vector3d::Zero(); }
 
-// From frame 90 on, which is held out, marker 2 is predicted a millimetre too low.
+// From frame 90 to 109, which are held out, marker 2 is predicted a millimetre too low.
 Eigen::Vector3d LowMarker(int frame, int marker) {
   return {0, 0, marker == 2 && frame >= 90 && frame < 110 ? -1e-3 : 0};
 }
@@ -116,46 +119,47 @@ std::string Complaint(const std::filesystem::path& run) {
   return "";
 }
 
-TEST(Comparison, AnErrorOfNoiseAloneIsCalledThat) {
+TEST(Comparison, AnErrorThatIsOnlyNoiseIsReportedAsNoise) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a"}, Nothing);
   const Comparison comparison = CompareRun(folder / "run");
-  ASSERT_EQ(comparison.recordings.size(), 1u);
-  const ComparedRecording& recording = comparison.recordings[0];
+  ASSERT_EQ(comparison.record.recordings.size(), 1u);
+  const ComparedRecording& recording = comparison.record.recordings[0];
   ASSERT_EQ(recording.parts.size(), 2u);
   EXPECT_TRUE(recording.parts[0].fitted);
   EXPECT_FALSE(recording.parts[1].fitted);
-  EXPECT_EQ(recording.parts[0].points, kFitted * kMarkers - kFitted / 10);
+  EXPECT_EQ(recording.parts[0].error.points, kFitted * kMarkers - kFitted / 10);
   // 900 coordinates: 2.4 %.
-  for (const ComparedPart& part : recording.parts) EXPECT_NEAR(part.in_noise, 1, 0.1);
-  EXPECT_EQ(recording.parts[0].worst_span.first, -1);
+  for (const ComparedPart& part : recording.parts) EXPECT_NEAR(part.error.rms_over_sigma, 1, 0.1);
+  EXPECT_FALSE(recording.parts[0].worst_period);
   // Medians of 120 second differences over 12 rows.
-  EXPECT_NEAR(recording.white_noise, kNoise, 0.25 * kNoise);
-  ASSERT_GE(recording.rests.size(), 1u);
-  EXPECT_NEAR(recording.rest_deviation, kNoise, 0.2 * kNoise);
-  for (const ComparedPart& part : recording.parts) EXPECT_NEAR(part.in_floor, 1, 0.25);
-  const std::vector<std::string> words = ComparisonInWords(comparison);
-  EXPECT_THAT(words[0], HasSubstr("a, fitted, 0.000 s to 0.790 s"));
+  EXPECT_NEAR(recording.noise_floor.white, kNoise, 0.25 * kNoise);
+  ASSERT_GE(recording.noise_floor.rests.size(), 1u);
+  EXPECT_NEAR(recording.noise_floor.rest_deviation, kNoise, 0.2 * kNoise);
+  for (const ComparedPart& part : recording.parts) EXPECT_NEAR(part.error.rms_over_floor, 1, 0.25);
+  const std::vector<std::string> words = DescribeComparison(comparison.record);
+  EXPECT_THAT(words[0], HasSubstr("a, fitted frames, 0.000 s to 0.790 s"));
   EXPECT_THAT(words[0], HasSubstr("Nothing here contradicts the model."));
 }
 
-TEST(Comparison, AnErrorIsPlacedWhereAndWhenItIs) {
+TEST(Comparison, FindsWhereAndWhenAnErrorOccurs) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a"}, LowMarker);
   const Comparison comparison = CompareRun(folder / "run");
-  const ComparedPart& held_out = comparison.recordings[0].parts[1];
-  EXPECT_NEAR(comparison.recordings[0].parts[0].in_noise, 1, 0.1);
-  EXPECT_EQ(held_out.worst_marker, 2);
-  EXPECT_EQ(held_out.largest_marker, 2);
-  EXPECT_EQ(held_out.worst_span.first, 90);
-  EXPECT_EQ(held_out.worst_span.last, 109);
+  const ComparedPart& held_out = comparison.record.recordings[0].parts[1];
+  EXPECT_NEAR(comparison.record.recordings[0].parts[0].error.rms_over_sigma, 1, 0.1);
+  EXPECT_EQ(held_out.worst_point, 2);
+  EXPECT_EQ(held_out.error.largest_point, 2);
+  ASSERT_TRUE(held_out.worst_period);
+  EXPECT_EQ(held_out.worst_period->first_frame, 90);
+  EXPECT_EQ(held_out.worst_period->last_frame, 109);
   EXPECT_LT(held_out.in_time.p_value, 0.01);
   // A quarter of the points, half of the frames, a millimetre: √(1/8) mm.
-  EXPECT_NEAR(held_out.rms, 1e-3 * std::sqrt(0.128), 0.03e-3);
-  const std::string words = ComparisonInWords(comparison)[1];
-  EXPECT_THAT(words, HasSubstr("a, held out"));
+  EXPECT_NEAR(held_out.error.rms, 1e-3 * std::sqrt(0.128), 0.03e-3);
+  const std::string words = DescribeComparison(comparison.record)[1];
+  EXPECT_THAT(words, HasSubstr("a, held-out frames"));
   EXPECT_THAT(words, HasSubstr("The error is not noise"));
-  EXPECT_THAT(words, HasSubstr("Worst is marker 2"));
+  EXPECT_THAT(words, HasSubstr("Marker 2 has the largest rms error"));
   EXPECT_THAT(words, HasSubstr("0.900 s to 1.090 s"));
   EXPECT_THAT(words, HasSubstr("toward −z"));
 }
@@ -209,75 +213,79 @@ reference: {from: mesh, file: box.off, length_unit: m}
   tracks << "\n";
 }
 
-TEST(Comparison, MarkersHaveNamesAndDistancesWhileTheRecordingIsThere) {
+TEST(Comparison, MarkersHaveNamesAndDistancesIfTheRecordingIsAvailable) {
   const TemporaryFolder folder;
   const CsvTable misfit = WriteRun(folder / "run", {"a"}, LowMarker);
   const Comparison without = CompareRun(folder / "run");
-  EXPECT_THAT(without.notes, testing::ElementsAre(HasSubstr("experiment.yaml")));
-  EXPECT_EQ(without.recordings[0].markers[2], "2");
-  EXPECT_EQ(without.recordings[0].grip_distance.size(), 0);
+  EXPECT_THAT(without.record.notes, testing::ElementsAre(HasSubstr("experiment.yaml")));
+  EXPECT_EQ(without.record.recordings[0].point_names[2], "2");
+  EXPECT_EQ(without.record.recordings[0].grip_distance.size(), 0);
 
   WriteExperiment(folder, misfit);
   const Comparison with = CompareRun(folder / "run");
-  EXPECT_THAT(with.notes, testing::IsEmpty());
-  EXPECT_THAT(with.recordings[0].markers, testing::ElementsAre("root", "left", "right", "tip"));
-  ASSERT_EQ(with.recordings[0].grip_distance.size(), kMarkers);
+  EXPECT_THAT(with.record.notes, testing::IsEmpty());
+  EXPECT_THAT(with.record.recordings[0].point_names,
+              testing::ElementsAre("root", "left", "right", "tip"));
+  ASSERT_EQ(with.record.recordings[0].grip_distance.size(), kMarkers);
   for (int m = 0; m < kMarkers; ++m)
-    EXPECT_NEAR(with.recordings[0].grip_distance[m], 0.02 * m, 1e-9);
-  EXPECT_EQ(with.recordings[0].parts[0].against.back().quantity, "grip_distance_m");
-  EXPECT_THAT(ComparisonInWords(with)[1], HasSubstr("Worst is marker right"));
+    EXPECT_NEAR(with.record.recordings[0].grip_distance[m], 0.02 * m, 1e-9);
+  EXPECT_EQ(with.record.recordings[0].parts[0].trends.back().quantity, "grip_distance_m");
+  EXPECT_THAT(DescribeComparison(with.record)[1],
+              HasSubstr("Marker right has the largest rms error"));
 
-  // A recording that has changed is not the one the run was made from.
+  // A recording that has changed since the fit is not used.
   CsvTable changed = misfit;
   changed[5].values.array() += 0.001;
   WriteExperiment(folder, changed);
-  EXPECT_THAT(CompareRun(folder / "run").notes, testing::ElementsAre(HasSubstr("any more")));
+  EXPECT_THAT(CompareRun(folder / "run").record.notes,
+              testing::ElementsAre(HasSubstr("no longer")));
 }
 
-TEST(Comparison, AnErrorThatGoesWithSpeedIsToldSo) {
+TEST(Comparison, ReportsAnErrorThatGrowsWithSpeed) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a"}, [](int frame, int) {
     const double moving = std::max(0.0, 0.01 * frame - 0.3);
     return Eigen::Vector3d(0, 0, moving > 0 ? 1e-3 * std::cos(8 * moving) : 0);
   });
-  const ComparedPart fitted = CompareRun(folder / "run").recordings[0].parts[0];
-  const ErrorAgainst& speed = fitted.against[2];
+  const ComparedPart fitted = CompareRun(folder / "run").record.recordings[0].parts[0];
+  const ErrorTrend& speed = fitted.trends[2];
   ASSERT_EQ(speed.quantity, "speed_m_per_s");
   EXPECT_GT(speed.rank_correlation, 0.8);
-  for (const ErrorAgainst& other : fitted.against)
+  for (const ErrorTrend& other : fitted.trends)
     EXPECT_LE(other.rank_correlation, speed.rank_correlation) << other.quantity;
-  EXPECT_THAT(ComparisonInWords(CompareRun(folder / "run"))[0], HasSubstr("It rises with speed"));
+  EXPECT_THAT(DescribeComparison(CompareRun(folder / "run").record)[0],
+              HasSubstr("The error grows with speed"));
 }
 
-// 1 mm to one side, of every second marker: √(1/2) mm, but for noise and for frames in which the
-// last one was not seen.
-TEST(Comparison, AnErrorThatStaysIsToldFromOneThatChanges) {
+// Every second marker is displaced by 1 mm: √(1/2) mm rms, apart from noise and from the frames in
+// which the last marker was not observed.
+TEST(Comparison, DistinguishesASteadyErrorFromOneThatChanges) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a"}, [](int frame, int marker) {
     return Eigen::Vector3d(0, marker % 2 == 0 ? 1e-3 : 0, 4e-4 * std::sin(frame));
   });
   const Comparison comparison = CompareRun(folder / "run");
-  const ComparedPart& fitted = comparison.recordings[0].parts[0];
-  EXPECT_NEAR(fitted.steady, std::sqrt(0.5) * 1e-3, 2e-5);
-  EXPECT_NEAR(fitted.changing, std::sqrt(0.5) * 4e-4, 2e-5);
-  EXPECT_THAT(ComparisonInWords(comparison)[0], HasSubstr("is the same in all frames"));
+  const ComparedPart& fitted = comparison.record.recordings[0].parts[0];
+  EXPECT_NEAR(fitted.error.steady, std::sqrt(0.5) * 1e-3, 2e-5);
+  EXPECT_NEAR(fitted.error.changing, std::sqrt(0.5) * 4e-4, 2e-5);
+  EXPECT_THAT(DescribeComparison(comparison.record)[0], HasSubstr("is the same in all frames"));
   WriteRun(folder / "noise", {"a"}, Nothing);
-  EXPECT_THAT(ComparisonInWords(CompareRun(folder / "noise"))[0],
+  EXPECT_THAT(DescribeComparison(CompareRun(folder / "noise").record)[0],
               Not(HasSubstr("the same in all")));
 }
 
-TEST(Comparison, RepeatsAreComparedWithEachOther) {
+TEST(Comparison, ComparesRepeatsWithEachOther) {
   const TemporaryFolder folder;
   WriteRun(folder / "run", {"a", "b"}, Nothing);
   const Comparison comparison = CompareRun(folder / "run");
-  ASSERT_EQ(comparison.recordings.size(), 2u);
-  EXPECT_EQ(comparison.recordings[1].parts.size(), 1u);  // not fitted at all
-  ASSERT_EQ(comparison.pairs.size(), 1u);
-  EXPECT_NEAR(comparison.pairs[0].repeatability.delay, 0.05, 0.002);
-  EXPECT_NEAR(comparison.pairs[0].repeatability.distance, std::sqrt(6.0) * kNoise, 0.7 * kNoise);
+  ASSERT_EQ(comparison.record.recordings.size(), 2u);
+  EXPECT_EQ(comparison.record.recordings[1].parts.size(), 1u);  // not fitted at all
+  ASSERT_EQ(comparison.record.pairs.size(), 1u);
+  EXPECT_NEAR(comparison.record.pairs[0].delay, 0.05, 0.002);
+  EXPECT_NEAR(comparison.record.pairs[0].distance, std::sqrt(6.0) * kNoise, 0.7 * kNoise);
 }
 
-TEST(Comparison, WritesItsFilesAndLeavesTheRunAsItWas) {
+TEST(Comparison, WritesItsFilesAndLeavesTheRunUnchanged) {
   const TemporaryFolder folder;
   const std::filesystem::path run = folder / "run";
   WriteRun(run, {"a"}, LowMarker);
@@ -287,20 +295,33 @@ TEST(Comparison, WritesItsFilesAndLeavesTheRunAsItWas) {
   const json record = json::parse(FileContent(run / "comparison/comparison.json"));
   const json& held_out = record.at("recordings").at(0).at("parts").at(1);
   EXPECT_EQ(held_out.at("part"), "held out");
-  EXPECT_EQ(held_out.at("worst_span").at("first_frame"), 90);
-  EXPECT_GT(held_out.at("in_noise"), 3);
-  EXPECT_EQ(record.at("in_words").size(), 3u);
+  EXPECT_EQ(held_out.at("worst_period").at("first_frame"), 90);
+  EXPECT_GT(held_out.at("rms_over_sigma"), 3);
+  EXPECT_EQ(record.at("text").size(), 3u);
   const CsvTable by_frame = LoadCsv(run / "comparison/by_frame.csv");
   ASSERT_EQ(by_frame[0].values.size(), kFrames);
   EXPECT_EQ(by_frame[4].name, "points");
-  EXPECT_EQ(by_frame[4].values[0], kMarkers - 1);  // marker 3 is not seen in every tenth frame
+  EXPECT_EQ(by_frame[4].values[0], kMarkers - 1);  // every tenth frame does not show marker 3
   const CsvTable by_marker = LoadCsv(run / "comparison/by_marker.csv");
   EXPECT_EQ(by_marker[0].values.size(), 2 * kMarkers);
-  EXPECT_THAT(FileContent(run / "comparison/against.csv"), HasSubstr("\n0,1,speed_m_per_s,"));
-  CompareRun(run);  // once more: what it wrote is not in its way
+  EXPECT_THAT(FileContent(run / "comparison/by_quantity.csv"), HasSubstr("\n0,1,speed_m_per_s,"));
+  CompareRun(run);  // its own files do not disturb another comparison
 }
 
-TEST(Comparison, SaysWhatAFolderIsThatItCannotCompare) {
+TEST(Comparison, AStoredComparisonIsPrintedAsItWasWhenItWasMade) {
+  const TemporaryFolder folder;
+  const std::filesystem::path run = folder / "run";
+  WriteRun(run, {"a", "b"}, LowMarker);
+  const ComparisonRecord made = CompareRun(run).record;
+  SaveComparison(CompareRun(run), run);
+  std::filesystem::remove_all(run / "calibration");
+  const ComparisonRecord stored = ReadComparisonFile(run / "comparison/comparison.json");
+  EXPECT_EQ(DescribeComparison(stored), DescribeComparison(made));
+  EXPECT_EQ(ComparisonTable(stored), ComparisonTable(made));
+  EXPECT_EQ(stored.notes, made.notes);
+}
+
+TEST(Comparison, ExplainsWhyAFolderCannotBeCompared) {
   const TemporaryFolder folder;
   EXPECT_THAT(Complaint(folder / "nowhere"), HasSubstr("no such file or folder"));
   EXPECT_THAT(Complaint(folder.Path()), HasSubstr("is not a run"));

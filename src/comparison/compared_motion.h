@@ -1,0 +1,20 @@
+// What a comparison can say only by running the fitted model again.
+#ifndef LACUNA_COMPARISON_COMPARED_MOTION_H_
+#define LACUNA_COMPARISON_COMPARED_MOTION_H_
+
+#include <filesystem>
+
+#include "comparison/comparison.h"
+#include "core/progress.h"
+
+namespace lacuna {
+
+// Adds the trends of the error with strain, strain rate and height, and the unexplained force, and
+// writes fields for ParaView to <run>/comparison/<number of the recording>. Where the experiment or
+// a recording has changed since the fit, or a recording consists of scans, a note is added instead.
+// Throws InputError when files cannot be written, and Interrupted.
+void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_COMPARISON_COMPARED_MOTION_H_

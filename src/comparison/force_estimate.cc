@@ -1,0 +1,173 @@
+#include "comparison/force_estimate.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/amplitude_estimate.h"
+#include "calibration/calibration_problem.h"
+#include "comparison/force_linearisation.h"
+#include "comparison/force_measures.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kLargestWidth = 9.80665;  // m/s², of the amplitudes' prior: that of gravity
+constexpr int kShapes = SmoothForce::kShapes;
+constexpr int kFewestFrames = 6;  // after the start of the motion
+// The search has converged when the error along the new motion differs from the linear prediction
+// by less than this share of the prediction, or by less than this many σ. Smaller: more
+// predictions.
+constexpr double kAgreement = 0.1;
+constexpr double kAgreementOverSigma = 0.5;
+constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it
+constexpr int kMostPredictions = 8;
+// Share of the error. A search that has not converged is used only if it leaves less than this.
+constexpr double kWorthwhile = 0.5;
+// Candidates for the prior: how much the force varies over the object relative to its mean, and
+// over how many knots it stays correlated.
+constexpr double kVariations[] = {0.1, 1};
+constexpr double kPersistences[] = {0.7, 12};
+
+// L with L Lᵀ = exp(−|i − j| / persistence) between knots, times each mode's own variance.
+std::vector<Eigen::MatrixXd> PriorShapes(int knots) {
+  std::vector<Eigen::MatrixXd> shapes;
+  for (const double persistence : kPersistences) {
+    Eigen::MatrixXd correlation(knots, knots);
+    for (int i = 0; i < knots; ++i)
+      for (int j = 0; j < knots; ++j) correlation(i, j) = std::exp(-std::abs(i - j) / persistence);
+    const Eigen::MatrixXd in_time = correlation.llt().matrixL();
+    for (const double variation : kVariations) {
+      Eigen::MatrixXd shape = Eigen::MatrixXd::Zero(kShapes * knots, kShapes * knots);
+      for (int i = 0; i < knots; ++i)
+        for (int j = 0; j <= i; ++j)
+          for (int k = 0; k < kShapes; ++k)
+            shape(kShapes * i + k, kShapes * j + k) = in_time(i, j) * (k < 3 ? 1 : variation);
+      shapes.push_back(std::move(shape));
+    }
+  }
+  return shapes;
+}
+
+// The force that has been reached, and the motion with it.
+struct SearchState {
+  ReplayedMotion motion;
+  Eigen::VectorXd amplitudes;                 // of the field, column by column
+  std::optional<AmplitudeEstimate> estimate;  // that the amplitudes come from; none: no force yet
+};
+
+// Where one Gauss–Newton step leads according to the linear model.
+struct ForceStep {
+  AmplitudeEstimate estimate;
+  Eigen::VectorXd nuisance;
+  double rms_before = 0, expected_rms = 0;  // of the whitened residual
+};
+
+ForceStep LinearStep(const LinearisedForce& at, const SearchState& state,
+                     const Eigen::VectorXd& prior_deviations,
+                     const std::vector<Eigen::MatrixXd>& priors) {
+  // The residual without force and nuisances, because their priors have mean 0.
+  const Eigen::VectorXd without = at.residual - at.force_jacobian * state.amplitudes -
+                                  at.nuisance_jacobian * state.motion.nuisance;
+  ForceStep step;
+  step.rms_before = at.Rms(at.residual);
+  step.estimate = EstimateAmplitudes(FittedModel(without, at.nuisance_jacobian, prior_deviations),
+                                     at.force_jacobian, at.coordinates, kLargestWidth, priors);
+  const Eigen::VectorXd with = without + at.force_jacobian * step.estimate.mean;
+  Eigen::MatrixXd information = at.nuisance_jacobian.transpose() * at.nuisance_jacobian;
+  information.diagonal() += prior_deviations.cwiseAbs2().cwiseInverse();
+  step.nuisance = -information.ldlt().solve(at.nuisance_jacobian.transpose() * with);
+  step.expected_rms = at.Rms(with + at.nuisance_jacobian * step.nuisance);
+  return step;
+}
+
+// Goes as far along the step as the error of the nonlinear model decreases. False: no such part of
+// the step was found, and the state is unchanged.
+bool TakeStep(const RecordingModel& recording, const ForceLinearisation& linearisation,
+              const LinearisedForce& at, const ForceStep& step, SearchState* state,
+              SmoothForce* field, ForceFitSummary* fit) {
+  for (double share = 1; share >= kShortestStep && fit->predictions < kMostPredictions;
+       share /= 2) {
+    const Eigen::VectorXd amplitudes =
+        state->amplitudes + share * (step.estimate.mean - state->amplitudes);
+    field->amplitudes.reshaped() = amplitudes;
+    ReplayedMotion trial =
+        Replay(recording, state->motion.nuisance + share * (step.nuisance - state->motion.nuisance),
+               field->Effects());
+    ++fit->predictions;
+    if (!trial.summary.IsUsable()) continue;
+    const double reached = at.Rms(linearisation.WhitenedResidual(trial));
+    fit->converged =
+        share == 1 && std::abs(reached - step.expected_rms) <
+                          std::max(kAgreement * step.expected_rms, kAgreementOverSigma);
+    if (!fit->converged && reached >= step.rms_before) continue;
+    *state = {std::move(trial), amplitudes, step.estimate};
+    fit->rms_over_sigma_with = reached;
+    return true;
+  }
+  return false;
+}
+
+// From the motion without a force. Returns why the search had to stop; empty: it ended by itself.
+std::string Search(const RecordingModel& recording, const ForceLinearisation& linearisation,
+                   SearchState* state, SmoothForce* field, ForceFitSummary* fit) {
+  std::vector<Eigen::MatrixXd> priors = PriorShapes(field->KnotCount());
+  bool stuck = false;
+  for (int pass = 0; !fit->converged && !stuck && fit->predictions < kMostPredictions; ++pass) {
+    const ReducedResponse response = linearisation.Response(state->motion);
+    if (!response.IsUsable()) return response.message();
+    const LinearisedForce at = linearisation.Linearise(state->motion, response);
+    const ForceStep step = LinearStep(at, *state, linearisation.prior_deviations(), priors);
+    if (pass == 0) fit->rms_over_sigma_without = step.rms_before;
+    // The first pass may be far from the solution; from the second on the prior's shape is kept.
+    if (pass == 1) priors = {priors[step.estimate.shape]};
+    stuck = !TakeStep(recording, linearisation, at, step, state, field, fit);
+  }
+  return "";
+}
+
+UnexplainedForce Unusable(UnexplainedForce force, const std::string& why) {
+  force.record.message = why;
+  return force;
+}
+
+}  // namespace
+
+UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
+                                          const ReplayedMotion& motion,
+                                          const MeasurementErrors& errors) {
+  UnexplainedForce force;
+  const double start = motion.states.front().time, end = motion.states.back().time;
+  const std::vector<double>& times = recording.item().recording.times;
+  const int moving = static_cast<int>(
+      std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
+                    [&](int frame) { return times[frame] - motion.delay > start; }));
+  if (moving < kFewestFrames) return Unusable(force, "there are too few frames of the motion");
+  SmoothForce& field = force.field;
+  field = MakeSmoothForce(recording.model(), start, end, std::min(kMostForceKnots, moving));
+  const ForceLinearisation linearisation(recording, motion, field, errors);
+  SearchState state{motion, Eigen::VectorXd::Zero(field.amplitudes.size()), {}};
+  ForceFitSummary& fit = force.record.fit;
+  fit.knots = field.KnotCount();
+  fit.knot_spacing = field.spacing;
+  const std::string problem = Search(recording, linearisation, &state, &field, &fit);
+  if (!problem.empty()) return Unusable(force, problem);
+
+  const bool helps = fit.rms_over_sigma_with < kWorthwhile * fit.rms_over_sigma_without;
+  if (!state.estimate || (!fit.converged && !helps)) {
+    return Unusable(force, fit.rms_over_sigma_without > kFarOff
+                               ? "the model is so far off that no small force brings it closer"
+                               : "no small, smooth force brings the model closer to the markers");
+  }
+  field.amplitudes.reshaped() = state.amplitudes;
+  fit.noise_scale = state.estimate->noise;
+  fit.log_evidence = state.estimate->evidence;
+  MeasureForce(recording.model(), state.motion, state.estimate->covariance, &force);
+  force.record.usable = true;
+  return force;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,145 @@
+#include "comparison/force_linearisation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lacuna {
+namespace {
+
+constexpr int kShapes = SmoothForce::kShapes;
+// Entries of the force's Jacobian. More: finer in time for long recordings, and more memory.
+constexpr double kMostEntries = 25e6;
+
+int FrameStride(int frames, int markers, int knots) {
+  const int most =
+      std::max(2 * knots, static_cast<int>(kMostEntries / (3.0 * markers * kShapes * knots)));
+  return (frames + most - 1) / most;
+}
+
+}  // namespace
+
+double LinearisedForce::Rms(const Eigen::VectorXd& rows) const {
+  return std::sqrt(rows.squaredNorm() / coordinates);
+}
+
+ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
+                                       const ReplayedMotion& motion, const SmoothForce& field,
+                                       const MeasurementErrors& errors)
+    : recording_(recording), field_(field), errors_(errors), shapes_(field.Shapes()) {
+  prior_deviations_.resize(static_cast<Eigen::Index>(recording.nuisances().size()));
+  for (const auto& nuisance : recording.nuisances()) {
+    prior_deviations_[static_cast<Eigen::Index>(held_shape_.size())] =
+        nuisance.prior.prior_deviation;
+    const bool is_force = nuisance.direction.of == MisfitDirection::Of::kModel;
+    held_shape_.push_back(is_force ? shapes_.cols() : -1);
+    if (!is_force) continue;
+    shapes_.conservativeResize(Eigen::NoChange, shapes_.cols() + 1);
+    shapes_.rightCols(1) = nuisance.direction.perturbation.held_force;
+  }
+  const int markers = recording.PointCount();
+  const int frames = static_cast<int>(recording.item().frames.size());
+  const int stride = FrameStride(frames, markers, field.KnotCount());
+  for (int frame = 0; frame < frames; frame += stride) {
+    frames_.push_back(frame);
+    const auto at_markers = motion.deformation.begin() + frame * markers;
+    deformation_.insert(deformation_.end(), at_markers, at_markers + markers);
+  }
+}
+
+Eigen::Index ForceLinearisation::Rows() const {
+  return 3 * recording_.PointCount() * static_cast<Eigen::Index>(frames_.size());
+}
+
+const Eigen::Matrix3Xd& ForceLinearisation::Measured(int frame) const {
+  return recording_.item().recording.markers.positions[recording_.item().frames[frame]];
+}
+
+template <typename Visit>
+void ForceLinearisation::ForEachObserved(const Visit& visit) const {
+  Eigen::Index row = 0;
+  for (const int frame : frames_)
+    for (int m = 0; m < recording_.PointCount(); ++m, row += 3)
+      if (Measured(frame).col(m).allFinite()) visit(frame, m, row);
+}
+
+Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows) const {
+  std::vector<int> observed;
+  for (const int frame : frames_)
+    for (int m = 0; m < recording_.PointCount(); ++m)
+      observed.push_back(Measured(frame).col(m).allFinite());
+  return Whitened(rows, observed, recording_.PointCount(), errors_, deformation_);
+}
+
+ReducedResponse ForceLinearisation::Response(const ReplayedMotion& motion) const {
+  const PredictionOptions options = recording_.Options(motion.nuisance);
+  return ReducedResponse(recording_.model(), motion.states, shapes_,
+                         {.scheme = options.step.scheme, .time_step = options.time_step});
+}
+
+Eigen::VectorXd ForceLinearisation::WhitenedResidual(const ReplayedMotion& motion) const {
+  Eigen::VectorXd residual = Eigen::VectorXd::Zero(Rows());
+  ForEachObserved([&](int frame, int m, Eigen::Index row) {
+    residual.segment<3>(row) =
+        motion.predicted.col(frame).segment<3>(3 * m) - Measured(frame).col(m);
+  });
+  return Whiten(residual);
+}
+
+std::vector<Eigen::MatrixXd> ForceLinearisation::MarkerResponses(
+    const ReducedResponse& response, const std::vector<double>& times) const {
+  const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
+  const ForceHistories hat_functions = [&](double time) {
+    Eigen::MatrixXd amplitude = Eigen::MatrixXd::Zero(shapes_.cols(), forces + nuisances);
+    const SmoothForce::KnotWeight at = field_.At(time);
+    for (int j = 0; j < kShapes; ++j) {
+      amplitude(j, kShapes * at.knot + j) = 1 - at.next;
+      amplitude(j, kShapes * (at.knot + 1) + j) = at.next;
+    }
+    return amplitude;
+  };
+  Eigen::MatrixXd held = hat_functions(field_.start);
+  for (Eigen::Index k = 0; k < nuisances; ++k)
+    if (held_shape_[k] >= 0) held(held_shape_[k], forces + k) = 1;
+  std::vector<Eigen::MatrixXd> responses;
+  const Eigen::MatrixXd at_markers = recording_.Markers()->rows() * response.basis();
+  response.Respond(held, hat_functions, times,
+                   [&](int, const Eigen::MatrixXd& position, const Eigen::MatrixXd&) {
+                     responses.emplace_back(at_markers * position);
+                   });
+  return responses;
+}
+
+LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
+                                              const ReducedResponse& response) const {
+  const Eigen::Index forces = field_.amplitudes.size(), nuisances = prior_deviations_.size();
+  std::vector<double> times;
+  for (const int frame : frames_)
+    times.push_back(recording_.item().recording.times[recording_.item().frames[frame]] -
+                    motion.delay);
+  const std::vector<Eigen::MatrixXd> responses = MarkerResponses(response, times);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(Rows(), forces + nuisances);
+  LinearisedForce result;
+  ForEachObserved([&](int frame, int m, Eigen::Index row) {
+    const Eigen::Index index = row / (3 * recording_.PointCount());
+    result.coordinates += 3;
+    jacobian.middleRows<3>(row) =
+        motion.registration.linear() * responses[index].middleRows<3>(3 * m);
+    for (Eigen::Index k = 0; k < nuisances; ++k) {
+      const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
+      auto column = jacobian.col(forces + k).segment<3>(row);
+      if (direction.of == MisfitDirection::Of::kModel) continue;
+      if (direction.of != MisfitDirection::Of::kClock)
+        column = recording_.ByRegistration(direction, motion.registration,
+                                           motion.predicted.col(frame).segment<3>(3 * m));
+      else if (times[index] > field_.start)
+        column = -motion.velocity.col(frame).segment<3>(3 * m);
+    }
+  });
+  jacobian = Whiten(jacobian);
+  result.residual = WhitenedResidual(motion);
+  result.force_jacobian = jacobian.leftCols(forces);
+  result.nuisance_jacobian = jacobian.rightCols(nuisances);
+  return result;
+}
+
+}  // namespace lacuna

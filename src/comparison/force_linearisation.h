@@ -1,0 +1,67 @@
+// The residual of one recording of markers, and its derivatives with respect to a smooth force and
+// to the recording's nuisance parameters.
+#ifndef LACUNA_COMPARISON_FORCE_LINEARISATION_H_
+#define LACUNA_COMPARISON_FORCE_LINEARISATION_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "analysis/measurement_errors.h"
+#include "comparison/smooth_force.h"
+#include "fem/reduced_response.h"
+#include "prediction/predicted_motion.h"
+#include "prediction/replayed_motion.h"
+
+namespace lacuna {
+
+// Whitened residual, predicted minus measured, and its Jacobians. Rows are x, y, z of each marker
+// of each frame that is used, frames outermost; rows of a marker that was not observed are 0.
+struct LinearisedForce {
+  int coordinates = 0;  // that were observed
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd force_jacobian;     // columns: SmoothForce::amplitudes column by column
+  Eigen::MatrixXd nuisance_jacobian;  // columns: RecordingModel::nuisances()
+  double Rms(const Eigen::VectorXd& rows) const;
+};
+
+// The derivatives come from the tangent-linear model along a motion, projected on a small basis
+// (fem/reduced_response.h). Where a recording has very many frames, some are left out evenly.
+class ForceLinearisation {
+ public:
+  // The recording's model and the field must outlive this. `errors` whitens the residual; errors of
+  // the markers' places follow the deformation of `motion`, which must reach the last frame.
+  ForceLinearisation(const RecordingModel& recording, const ReplayedMotion& motion,
+                     const SmoothForce& field, const MeasurementErrors& errors);
+
+  // Standard deviations of the nuisance parameters' priors, whose means are 0.
+  const Eigen::VectorXd& prior_deviations() const { return prior_deviations_; }
+
+  // The response of a motion to small forces; may be unusable (ReducedResponse::IsUsable).
+  ReducedResponse Response(const ReplayedMotion& motion) const;
+  Eigen::VectorXd WhitenedResidual(const ReplayedMotion& motion) const;
+  LinearisedForce Linearise(const ReplayedMotion& motion, const ReducedResponse& response) const;
+
+ private:
+  Eigen::Index Rows() const;
+  const Eigen::Matrix3Xd& Measured(int frame) const;
+  Eigen::MatrixXd Whiten(const Eigen::MatrixXd& rows) const;
+  // Calls visit(frame, marker, first row) for each observed marker of the frames that are used.
+  template <typename Visit>
+  void ForEachObserved(const Visit& visit) const;
+  // Positions of the markers, in the model's frame, per unit of each amplitude and nuisance.
+  std::vector<Eigen::MatrixXd> MarkerResponses(const ReducedResponse& response,
+                                               const std::vector<double>& times) const;
+
+  const RecordingModel& recording_;
+  const SmoothForce& field_;
+  MeasurementErrors errors_;
+  Eigen::MatrixXd shapes_;  // 3n × k: of the field, then of the holding forces
+  Eigen::VectorXd prior_deviations_;
+  std::vector<Eigen::Index> held_shape_;  // of each nuisance its column in shapes_; −1: no force
+  std::vector<int> frames_;               // that are used, as columns of the motion
+  std::vector<Eigen::Matrix3d> deformation_;  // markers × used frames
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_COMPARISON_FORCE_LINEARISATION_H_

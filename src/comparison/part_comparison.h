@@ -1,0 +1,27 @@
+// The error of the fitted or of the held-out frames of one recording: how large it is, whether it
+// is noise, where and when it is largest, and with what it grows.
+#ifndef LACUNA_COMPARISON_PART_COMPARISON_H_
+#define LACUNA_COMPARISON_PART_COMPARISON_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "comparison/recorded_residuals.h"
+#include "record/comparison_record.h"
+
+namespace lacuna {
+
+// `recording` gives the noise that the fit assumed, the noise floor and the points' distances from
+// the grip (a trend is made of them where they are known). The statistics are those of
+// analysis/residual_statistics.h and analysis/whiteness.h.
+ComparedPart ComparePart(const RecordedResiduals& residuals, const FrameRange& range,
+                         const ComparedRecording& recording);
+
+// The error, m, as a function of a quantity: one entry for each frame, or for each point.
+// `quantity` names it with its unit.
+ErrorTrend TrendWith(const std::string& quantity, const Eigen::VectorXd& values,
+                     const Eigen::VectorXd& error);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_COMPARISON_PART_COMPARISON_H_

@@ -1,0 +1,20 @@
+// What only the recordings themselves know: the names of the markers and their distance from the
+// grip.
+#ifndef LACUNA_COMPARISON_RECORDING_DETAILS_H_
+#define LACUNA_COMPARISON_RECORDING_DETAILS_H_
+
+#include <filesystem>
+
+#include "calibration/calibration_record.h"
+#include "comparison/comparison.h"
+
+namespace lacuna {
+
+// Reads the experiment and the recordings of the run again. Where they are absent or have changed
+// since the fit, the details stay as they are and a note is added.
+void AddRecordingDetails(const std::filesystem::path& run, const CalibrationRecord& record,
+                         Comparison* comparison);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_COMPARISON_RECORDING_DETAILS_H_

@@ -1,0 +1,120 @@
+#include "comparison/run_comparison.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/residual_statistics.h"
+#include "calibration/calibration_run.h"
+#include "comparison/noise_floor.h"
+#include "comparison/part_comparison.h"
+#include "comparison/recording_details.h"
+#include "core/error.h"
+#include "record/csv_table.h"
+#include "record/run_directory.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLargestDelay = 0.1;  // s, between the clocks of two repeats beyond their release
+constexpr double kSameRate = 0.01;     // relative difference of two frame rates that count as equal
+
+double MeanTimeStep(const RecordedResiduals& residuals) {
+  const Eigen::Index frames = residuals.times.size();
+  return frames > 1 ? (residuals.times[frames - 1] - residuals.times[0]) / (frames - 1.0)
+                    : kUnknown;
+}
+
+// When the motion of each recording begins: at the release of its hold, or with its first frame. s
+std::vector<double> StartTimes(const json& configuration,
+                               const std::vector<RecordedResiduals>& residuals) {
+  std::vector<double> starts;
+  for (const RecordedResiduals& recording : residuals) {
+    double start = recording.times.size() > 0 ? recording.times[0] : 0;
+    const json& entries = configuration.value("recordings", json::array());
+    const size_t r = starts.size();
+    if (r < entries.size() && entries[r].contains("hold"))
+      start = entries[r].at("hold").value("release", start);
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+// Recordings that could be repeats of each other: the same frame rate and the same number of
+// markers. Patches of scans are not compared, as they are not measured along the surface.
+void ComparePairs(const json& configuration, Comparison* comparison) {
+  const std::vector<double> starts = StartTimes(configuration, comparison->residuals);
+  const std::vector<ComparedRecording>& recordings = comparison->record.recordings;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    for (size_t j = i + 1; j < recordings.size(); ++j) {
+      const RecordedResiduals &first = comparison->residuals[i], &second = comparison->residuals[j];
+      const bool same_rate =
+          std::abs(MeanTimeStep(first) / MeanTimeStep(second) - 1) < kSameRate;  // false for NaN
+      if (!same_rate || recordings[i].is_scan || recordings[j].is_scan) continue;
+      if (first.PointCount() != second.PointCount()) continue;
+      const Repeatability repeatability =
+          CompareRepeats(first.times, first.measured, second.times, second.measured,
+                         starts[j] - starts[i], kLargestDelay);
+      if (repeatability.frames > 0)
+        comparison->record.pairs.push_back({recordings[i].name, recordings[j].name,
+                                            repeatability.frames, repeatability.delay,
+                                            repeatability.distance});
+    }
+  }
+}
+
+ComparedRecording DescribeRecording(const FittedRecording& fitted, const CalibrationRecord& record,
+                                    int points) {
+  ComparedRecording recording;
+  recording.name = fitted.name;
+  recording.noise = record.noise;
+  if (fitted.scan) {
+    // The places of a patch's points differ along the surface, which is not noise. The floor of a
+    // patch therefore follows from the noise of its points.
+    recording.is_scan = true;
+    recording.noise = fitted.scan->patch_noise;
+    recording.noise_floor.floor = fitted.scan->patch_noise * fitted.noise / record.scan_noise;
+  }
+  for (int m = 0; m < points; ++m) recording.point_names.push_back(std::to_string(m));
+  return recording;
+}
+
+}  // namespace
+
+Comparison CompareRun(const std::filesystem::path& run) {
+  RefuseOtherRuns(run);
+  const std::filesystem::path stage = FinishedStage(run, "calibration");
+  const CalibrationRecord record = LoadCalibration(run);
+  const std::filesystem::path file = stage / "misfit.csv";
+  if (!std::filesystem::exists(file)) {
+    throw InputError({run.string()}, "holds a fit whose model could not be simulated" +
+                                         (record.message.empty() ? "" : ": " + record.message));
+  }
+  const CsvTable table = LoadCsv(file);
+  Comparison comparison;
+  comparison.record.noise = record.noise;
+  for (size_t r = 0; r < record.recordings.size(); ++r) {
+    RecordedResiduals residuals = ReadResiduals(table, static_cast<int>(r), file);
+    if (residuals.frames.empty())
+      throw InputError({file.string()}, "has no row of recording " + record.recordings[r].name);
+    comparison.record.recordings.push_back(
+        DescribeRecording(record.recordings[r], record, residuals.PointCount()));
+    comparison.residuals.push_back(std::move(residuals));
+  }
+  comparison.forces.resize(record.recordings.size());
+  AddRecordingDetails(run, record, &comparison);
+  for (size_t r = 0; r < comparison.residuals.size(); ++r) {
+    const RecordedResiduals& residuals = comparison.residuals[r];
+    ComparedRecording& recording = comparison.record.recordings[r];
+    if (!recording.is_scan) recording.noise_floor = MeasureNoiseFloor(residuals, recording.noise);
+    for (const FrameRange& range : FittedAndHeldOutRanges(residuals))
+      recording.parts.push_back(ComparePart(residuals, range, recording));
+  }
+  ComparePairs(LoadManifest(run / "manifest.json").configuration, &comparison);
+  return comparison;
+}
+
+}  // namespace lacuna

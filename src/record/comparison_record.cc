@@ -1,0 +1,268 @@
+#include "record/comparison_record.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "record/json_number.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSchemaVersion = 2;
+constexpr const char* kLongerThanData = "longer than the data";
+
+// A correlation time or length; JSON has no infinity.
+json ScaleToJson(double value) {
+  return std::isinf(value) ? json(kLongerThanData) : NumberToJson(value);
+}
+double ScaleFromJson(const json& value) {
+  return value == kLongerThanData ? std::numeric_limits<double>::infinity() : NumberFromJson(value);
+}
+
+void AddMeanDifference(const MeanDifference& difference, json* object) {
+  (*object)["mean_difference_m"] = NumbersToJson(difference.mean);
+  (*object)["agreement"] = NumberToJson(difference.agreement);
+}
+MeanDifference MeanDifferenceFromJson(const json& object) {
+  return {NumbersFromJson(object.at("mean_difference_m")), NumberFromJson(object.at("agreement"))};
+}
+
+void AddErrorSize(const ErrorSize& error, json* object) {
+  (*object)["points"] = error.points;
+  (*object)["rms_m"] = NumberToJson(error.rms);
+  (*object)["rms_over_sigma"] = NumberToJson(error.rms_over_sigma);
+  (*object)["rms_over_floor"] = NumberToJson(error.rms_over_floor);
+  (*object)["steady_m"] = NumberToJson(error.steady);
+  (*object)["changing_m"] = NumberToJson(error.changing);
+  (*object)["largest_m"] = NumberToJson(error.largest);
+  (*object)["largest_point"] = error.largest_point;
+  (*object)["largest_time_s"] = NumberToJson(error.largest_time);
+  AddMeanDifference(error.mean_difference, object);
+}
+ErrorSize ErrorSizeFromJson(const json& object) {
+  const auto number = [&](const char* key) { return NumberFromJson(object.at(key)); };
+  return {object.at("points"),      number("rms_m"),
+          number("rms_over_sigma"), number("rms_over_floor"),
+          number("steady_m"),       number("changing_m"),
+          number("largest_m"),      object.at("largest_point"),
+          number("largest_time_s"), MeanDifferenceFromJson(object)};
+}
+
+json TimeCorrelationToJson(const TimeCorrelation& in_time) {
+  return {{"lags", in_time.lags},
+          {"ljung_box_statistic", NumberToJson(in_time.statistic)},
+          {"lag_one_correlation", NumberToJson(in_time.lag_one)},
+          {"correlation_time_s", ScaleToJson(in_time.time)},
+          {"p_value", NumberToJson(in_time.p_value)}};
+}
+TimeCorrelation TimeCorrelationFromJson(const json& object) {
+  return {object.at("lags"), NumberFromJson(object.at("ljung_box_statistic")),
+          NumberFromJson(object.at("lag_one_correlation")),
+          ScaleFromJson(object.at("correlation_time_s")), NumberFromJson(object.at("p_value"))};
+}
+
+json SpaceCorrelationToJson(const SpaceCorrelation& in_space) {
+  json pairs = json::array();
+  for (const PointCorrelation& pair : in_space.pairs)
+    pairs.push_back({{"points", {pair.first, pair.second}},
+                     {"distance_m", NumberToJson(pair.distance)},
+                     {"correlation", NumberToJson(pair.correlation)}});
+  return {{"mean_correlation", NumberToJson(in_space.mean)},
+          {"correlation_length_m", ScaleToJson(in_space.length)},
+          {"p_value", NumberToJson(in_space.p_value)},
+          {"pairs", pairs}};
+}
+SpaceCorrelation SpaceCorrelationFromJson(const json& object) {
+  SpaceCorrelation in_space{NumberFromJson(object.at("mean_correlation")),
+                            ScaleFromJson(object.at("correlation_length_m")),
+                            NumberFromJson(object.at("p_value")),
+                            {}};
+  for (const json& pair : object.at("pairs"))
+    in_space.pairs.push_back({pair.at("points").at(0), pair.at("points").at(1),
+                              NumberFromJson(pair.at("distance_m")),
+                              NumberFromJson(pair.at("correlation"))});
+  return in_space;
+}
+
+json WorstPeriodToJson(const WorstPeriod& period) {
+  json object{{"first_frame", period.first_frame},
+              {"last_frame", period.last_frame},
+              {"frames", period.frames},
+              {"from_s", period.from},
+              {"to_s", period.to},
+              {"rms_m", NumberToJson(period.rms)}};
+  AddMeanDifference(period.mean_difference, &object);
+  return object;
+}
+WorstPeriod WorstPeriodFromJson(const json& object) {
+  return {
+      object.at("first_frame"),      object.at("last_frame"), object.at("frames"),
+      object.at("from_s"),           object.at("to_s"),       NumberFromJson(object.at("rms_m")),
+      MeanDifferenceFromJson(object)};
+}
+
+json TrendToJson(const ErrorTrend& trend) {
+  json bins = json::array();
+  for (const ErrorBin& bin : trend.bins)
+    bins.push_back({{"low", bin.low},
+                    {"high", bin.high},
+                    {"mean", bin.mean},
+                    {"count", bin.count},
+                    {"rms_m", bin.rms}});
+  return {{"quantity", trend.quantity},
+          {"rank_correlation", NumberToJson(trend.rank_correlation)},
+          {"bins", bins}};
+}
+ErrorTrend TrendFromJson(const json& object) {
+  ErrorTrend trend{object.at("quantity"), NumberFromJson(object.at("rank_correlation")), {}};
+  for (const json& bin : object.at("bins"))
+    trend.bins.push_back(
+        {bin.at("low"), bin.at("high"), bin.at("mean"), bin.at("count"), bin.at("rms_m")});
+  return trend;
+}
+
+json PartToJson(const ComparedPart& part) {
+  json object{{"part", part.fitted ? "fitted" : "held out"},
+              {"frames", part.frames},
+              {"from_s", part.from},
+              {"to_s", part.to},
+              {"point_rms_m", NumbersToJson(part.point_rms)},
+              {"worst_point", part.worst_point},
+              {"time_correlation", TimeCorrelationToJson(part.in_time)},
+              {"space_correlation", SpaceCorrelationToJson(part.in_space)},
+              {"worst_period", nullptr},
+              {"trends", json::array()}};
+  AddErrorSize(part.error, &object);
+  if (part.worst_period) object["worst_period"] = WorstPeriodToJson(*part.worst_period);
+  for (const ErrorTrend& trend : part.trends) object["trends"].push_back(TrendToJson(trend));
+  return object;
+}
+ComparedPart PartFromJson(const json& object) {
+  ComparedPart part;
+  part.fitted = object.at("part") == "fitted";
+  part.frames = object.at("frames");
+  part.from = object.at("from_s");
+  part.to = object.at("to_s");
+  part.error = ErrorSizeFromJson(object);
+  part.point_rms = NumbersFromJson(object.at("point_rms_m"));
+  part.worst_point = object.at("worst_point");
+  part.in_time = TimeCorrelationFromJson(object.at("time_correlation"));
+  part.in_space = SpaceCorrelationFromJson(object.at("space_correlation"));
+  if (const json& period = object.at("worst_period"); !period.is_null())
+    part.worst_period = WorstPeriodFromJson(period);
+  for (const json& trend : object.at("trends")) part.trends.push_back(TrendFromJson(trend));
+  return part;
+}
+
+json NoiseFloorToJson(const NoiseFloor& noise_floor) {
+  json rests = json::array();
+  for (const RestPeriod& rest : noise_floor.rests)
+    rests.push_back({{"from_s", rest.from},
+                     {"to_s", rest.to},
+                     {"deviation_m", NumberToJson(rest.deviation)},
+                     {"drift_m_per_s", NumberToJson(rest.drift)}});
+  return {{"floor_m", NumberToJson(noise_floor.floor)},
+          {"white_noise_m", NumberToJson(noise_floor.white)},
+          {"rest_deviation_m", NumberToJson(noise_floor.rest_deviation)},
+          {"rests", rests}};
+}
+NoiseFloor NoiseFloorFromJson(const json& object) {
+  NoiseFloor noise_floor{NumberFromJson(object.at("floor_m")),
+                         NumberFromJson(object.at("white_noise_m")),
+                         NumberFromJson(object.at("rest_deviation_m")),
+                         {}};
+  for (const json& rest : object.at("rests"))
+    noise_floor.rests.push_back({rest.at("from_s"), rest.at("to_s"),
+                                 NumberFromJson(rest.at("deviation_m")),
+                                 NumberFromJson(rest.at("drift_m_per_s"))});
+  return noise_floor;
+}
+
+json RecordingToJson(const ComparedRecording& recording) {
+  json parts = json::array();
+  for (const ComparedPart& part : recording.parts) parts.push_back(PartToJson(part));
+  const bool has_distances = recording.grip_distance.size() > 0;
+  return {
+      {"name", recording.name},
+      {"kind", recording.is_scan ? "scan" : "markers"},
+      {"noise_m", recording.noise},
+      {"point_names", recording.point_names},
+      {"grip_distance_m", has_distances ? NumbersToJson(recording.grip_distance) : json()},
+      {"noise_floor", NoiseFloorToJson(recording.noise_floor)},
+      {"parts", parts},
+      {"height_along", recording.height_by_gravity ? "against gravity" : "z"},
+      {"field_frames", recording.field_frames},
+      {"unexplained_force", recording.force ? UnexplainedForceToJson(*recording.force) : json()}};
+}
+ComparedRecording RecordingFromJson(const json& object) {
+  ComparedRecording recording;
+  recording.name = object.at("name");
+  recording.is_scan = object.at("kind") == "scan";
+  recording.noise = object.at("noise_m");
+  recording.point_names = object.at("point_names").get<std::vector<std::string>>();
+  if (const json& distances = object.at("grip_distance_m"); !distances.is_null())
+    recording.grip_distance = NumbersFromJson(distances);
+  recording.noise_floor = NoiseFloorFromJson(object.at("noise_floor"));
+  for (const json& part : object.at("parts")) recording.parts.push_back(PartFromJson(part));
+  recording.height_by_gravity = object.at("height_along") == "against gravity";
+  recording.field_frames = object.at("field_frames");
+  if (const json& force = object.at("unexplained_force"); !force.is_null())
+    recording.force = UnexplainedForceFromJson(force);
+  return recording;
+}
+
+}  // namespace
+
+double ComparedRecording::RmsOfNoise(double sigma) const {
+  return (is_scan ? 1 : std::sqrt(3.0)) * sigma;
+}
+
+void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::string>& text,
+                         const std::filesystem::path& file) {
+  json recordings = json::array(), pairs = json::array();
+  for (const ComparedRecording& recording : record.recordings)
+    recordings.push_back(RecordingToJson(recording));
+  for (const ComparedPair& pair : record.pairs)
+    pairs.push_back({{"recordings", {pair.first, pair.second}},
+                     {"frames", pair.frames},
+                     {"delay_s", NumberToJson(pair.delay)},
+                     {"distance_m", NumberToJson(pair.distance)}});
+  const json document{{"schema_version", kSchemaVersion},
+                      {"noise_m", record.noise},
+                      {"recordings", recordings},
+                      {"pairs", pairs},
+                      {"notes", record.notes},
+                      {"text", text}};
+  WriteFileAtomically(file, document.dump(2) + "\n");
+}
+
+ComparisonRecord ReadComparisonFile(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file.string()}, "no such file");
+  try {
+    const json document = json::parse(stream);
+    if (document.at("schema_version") != kSchemaVersion)
+      throw InputError({file.string()},
+                       "was written by another version of lacuna; run `lacuna compare` again");
+    ComparisonRecord record;
+    record.noise = document.at("noise_m");
+    for (const json& recording : document.at("recordings"))
+      record.recordings.push_back(RecordingFromJson(recording));
+    for (const json& pair : document.at("pairs"))
+      record.pairs.push_back({pair.at("recordings").at(0), pair.at("recordings").at(1),
+                              pair.at("frames"), NumberFromJson(pair.at("delay_s")),
+                              NumberFromJson(pair.at("distance_m"))});
+    record.notes = document.at("notes").get<std::vector<std::string>>();
+    return record;
+  } catch (const json::exception& problem) {
+    throw InputError({file.string()}, std::string("is no comparison: ") + problem.what());
+  }
+}
+
+}  // namespace lacuna

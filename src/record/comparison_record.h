@@ -1,0 +1,167 @@
+// Plain data of a comparison: where, when and by how much the predictions of a fitted model differ
+// from its recordings, as <run>/comparison/comparison.json holds it.
+//
+// Everything that report/comparison_report.h prints is here, so that a stored comparison can be
+// printed again without the model, its experiment or its recordings. An error is a length in m,
+// predicted minus measured, of markers or of the patches of a scanned surface ("points"). A point
+// is given by its index, a time in s on the recording's clock. NaN means that a value could not be
+// determined from the data.
+#ifndef LACUNA_RECORD_COMPARISON_RECORD_H_
+#define LACUNA_RECORD_COMPARISON_RECORD_H_
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "record/run_record.h"
+#include "record/unexplained_force_record.h"
+
+namespace lacuna {
+
+// An rms error of at least this many times that of the noise counts as more than noise. Larger:
+// fewer frames and recordings are reported as bad.
+inline constexpr double kBeyondNoise = 1.5;
+
+// The mean of error vectors, m, and how well their directions agree: |Σ e| / Σ |e|, 1 where all
+// point the same way, near 0 where they cancel.
+struct MeanDifference {
+  Eigen::Vector3d mean = Eigen::Vector3d::Constant(kNotMeasured);
+  double agreement = kNotMeasured;
+};
+
+// The size of the error over some frames. Lengths in m.
+struct ErrorSize {
+  int points = 0;  // observed, summed over the frames
+  double rms = kNotMeasured;
+  double rms_over_sigma = kNotMeasured;  // rms over what noise of the fit's σ alone would give
+  double rms_over_floor = kNotMeasured;  // the same with the recording's own noise floor for σ
+  // rms² = steady² + changing²: each point's mean error over the frames, and the deviation from it.
+  double steady = kNotMeasured, changing = kNotMeasured;
+  double largest = kNotMeasured;
+  int largest_point = -1;
+  double largest_time = kNotMeasured;  // s
+  MeanDifference mean_difference;
+};
+
+// Whether the error is white in time (Ljung & Box, Biometrika 65, 1978; analysis/whiteness.h).
+struct TimeCorrelation {
+  int lags = 0;                     // 0: there are too few frames, and all below is NaN
+  double statistic = kNotMeasured;  // Ljung–Box Q
+  double lag_one = kNotMeasured;    // correlation of neighbouring frames
+  double time = kNotMeasured;       // s, correlation time; infinite: longer than the data
+  double p_value = kNotMeasured;
+};
+
+struct PointCorrelation {
+  int first = 0, second = 0;
+  double distance = kNotMeasured;  // m
+  double correlation = kNotMeasured;
+};
+
+// Whether the errors of different points are independent (analysis/whiteness.h).
+struct SpaceCorrelation {
+  double mean = kNotMeasured;    // over all pairs of points
+  double length = kNotMeasured;  // m, correlation length; infinite: longer than the object
+  double p_value = kNotMeasured;
+  std::vector<PointCorrelation> pairs;  // left out for a scan, which has too many
+};
+
+// The longest period in which the error is above average and above noise.
+struct WorstPeriod {
+  int first_frame = 0, last_frame = 0;  // numbers of the recording's frames, both inclusive
+  int frames = 0;                       // from the first to the last
+  double from = 0, to = 0;              // s
+  double rms = kNotMeasured;            // m
+  MeanDifference mean_difference;
+};
+
+// One bin of an ErrorTrend.
+struct ErrorBin {
+  double low = 0, high = 0, mean = 0;  // of the quantity
+  int count = 0;                       // frames, or points where the quantity belongs to points
+  double rms = 0;                      // m
+};
+
+// The rms error of a frame (or of a point, for "grip_distance_m") as a function of one quantity.
+struct ErrorTrend {
+  std::string quantity;                    // with its unit: "speed_m_per_s"
+  double rank_correlation = kNotMeasured;  // Spearman's
+  std::vector<ErrorBin> bins;              // ascending, with about as many entries each
+};
+
+// The fitted frames of one recording, or its held-out frames.
+struct ComparedPart {
+  bool fitted = true;
+  int frames = 0;
+  double from = 0, to = 0;  // s, times of the first and last frame
+  ErrorSize error;
+  Eigen::VectorXd point_rms;  // m, of each point; NaN where it was never observed
+  int worst_point = -1;       // the one with the largest rms; −1: no point was observed
+  TimeCorrelation in_time;
+  SpaceCorrelation in_space;
+  std::optional<WorstPeriod> worst_period;
+  std::vector<ErrorTrend> trends;
+};
+
+// A period in which the object rests, and how its markers scatter there about a straight line.
+struct RestPeriod {
+  double from = 0, to = 0;          // s
+  double deviation = kNotMeasured;  // m, of a coordinate about the line
+  double drift = kNotMeasured;      // m/s, rms slope of the line
+};
+
+// Noise of a recording as the recording itself shows it, without a model. Lengths in m, standard
+// deviations of a coordinate (of a patch along its normal for a scan).
+struct NoiseFloor {
+  double floor = kNotMeasured;           // the larger of the next two
+  double white = kNotMeasured;           // white part, from second differences
+  double rest_deviation = kNotMeasured;  // median over the rest periods
+  std::vector<RestPeriod> rests;
+};
+
+struct ComparedRecording {
+  std::string name;
+  bool is_scan = false;                  // its points are patches, measured along their normal
+  double noise = 0;                      // m, σ of a component of a point, as assumed in the fit
+  std::vector<std::string> point_names;  // numbers where the recording is not available
+  Eigen::VectorXd grip_distance;  // m, of each point on the undeformed object; empty: unknown
+  NoiseFloor noise_floor;
+  std::vector<ComparedPart> parts;  // in the order of time: fitted frames, then held-out ones
+  // The following needs the model to be run again.
+  bool height_by_gravity = false;               // false: heights are along z
+  int field_frames = 0;                         // frames written for ParaView
+  std::optional<UnexplainedForceRecord> force;  // absent: not computed
+
+  // The rms length that noise of standard deviation σ per component would give: √3 σ for a marker,
+  // σ for a patch.
+  double RmsOfNoise(double sigma) const;
+};
+
+// Two recordings with the same frame rate, compared with each other as they were measured.
+struct ComparedPair {
+  std::string first, second;
+  int frames = 0;                  // of the first that the second covers
+  double delay = kNotMeasured;     // s, of the second; chosen so that the distance is smallest
+  double distance = kNotMeasured;  // m, rms, each marker's mean difference left out
+};
+
+struct ComparisonRecord {
+  double noise = 0;  // m, σ of a marker's coordinate that the fit assumed; 0: there are no markers
+  std::vector<ComparedRecording> recordings;
+  std::vector<ComparedPair> pairs;
+  std::vector<std::string> notes;  // what could not be computed, and why
+};
+
+// Writes the record as JSON (schema_version 2), atomically, together with its description in words.
+// Throws InputError when the file cannot be written.
+void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::string>& text,
+                         const std::filesystem::path& file);
+
+// Throws InputError when the file is absent, damaged or of another schema version.
+ComparisonRecord ReadComparisonFile(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_COMPARISON_RECORD_H_

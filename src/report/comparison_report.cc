@@ -1,0 +1,188 @@
+#include "report/comparison_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/text_layout.h"
+#include "report/error_trend_text.h"
+#include "report/quantity_text.h"
+#include "report/unexplained_force_report.h"
+
+namespace lacuna {
+namespace {
+
+// When a sentence is written.
+constexpr double kWholePart = 0.8;         // share of the frames: a longer period is the whole part
+constexpr double kSignificant = 0.01;      // p-values below it
+constexpr double kClearCorrelation = 0.2;  // of neighbouring frames
+constexpr double kSameDirection = 0.5;     // agreement of the errors' directions
+constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the measured one
+
+bool IsWhite(double p_value) { return p_value >= kSignificant; }
+
+std::string SizeText(const ComparedRecording& recording, const ErrorSize& error) {
+  const double noise_rms = recording.RmsOfNoise(recording.noise);
+  std::string text = fmt::format(
+      "the rms error is {}, {:.1f} times the {} that noise alone would give (σ = {} {}, as assumed "
+      "in the fit)",
+      Millimetres(error.rms), error.rms_over_sigma, Millimetres(noise_rms),
+      Millimetres(recording.noise),
+      recording.is_scan ? "for a patch along its normal" : "per coordinate");
+  if (!std::isnan(error.rms_over_floor))
+    text += fmt::format(" and {:.1f} times the noise that the recording itself shows ({})",
+                        error.rms_over_floor,
+                        Millimetres(recording.RmsOfNoise(recording.noise_floor.floor)));
+  text += fmt::format(". The largest error is {} ({} {}, at {:.3f} s).", Millimetres(error.largest),
+                      recording.is_scan ? "patch" : "marker",
+                      recording.point_names[error.largest_point], error.largest_time);
+  if (error.rms_over_sigma >= kBeyondNoise && error.steady > error.changing) {
+    text += fmt::format(
+        " Most of the error, {} rms, is the same in all frames; {}, a rotated measuring frame or a "
+        "steady load would cause this. The part that varies is {} rms.",
+        Millimetres(error.steady),
+        recording.is_scan ? "a different rest shape" : "misplaced markers",
+        Millimetres(error.changing));
+  }
+  return text;
+}
+
+std::string TimeText(const TimeCorrelation& in_time) {
+  const std::string probability = ProbabilityText(in_time.p_value);
+  if (IsWhite(in_time.p_value))
+    return fmt::format(" In time, the error is consistent with white noise ({}).", probability);
+  std::string text =
+      in_time.lag_one < kClearCorrelation
+          ? fmt::format(" In time, the error is not white noise ({}", probability)
+          : fmt::format(" The error is not noise: neighbouring frames are correlated ({:.2f}, {}",
+                        in_time.lag_one, probability);
+  if (std::isfinite(in_time.time)) text += fmt::format(", correlation time {:.3g} s", in_time.time);
+  return text + ").";
+}
+
+std::string SpaceText(const SpaceCorrelation& in_space, const char* points) {
+  if (std::isnan(in_space.p_value)) return "";
+  const std::string probability = ProbabilityText(in_space.p_value);
+  if (IsWhite(in_space.p_value))
+    return fmt::format(" The errors of different {} are independent ({}).", points, probability);
+  std::string text = fmt::format(" The errors of different {} are correlated (mean {:.2f}, {}",
+                                 points, in_space.mean, probability);
+  if (in_space.length > 0 && std::isfinite(in_space.length))
+    text += fmt::format(", correlation length {:.3g} mm", 1e3 * in_space.length);
+  if (std::isinf(in_space.length)) text += ", over the whole object";
+  return text + ").";
+}
+
+std::string NoiseText(const ComparedRecording& recording, const ComparedPart& part) {
+  if (std::isnan(part.in_time.p_value))
+    return " There are too few frames to distinguish noise from a trend.";
+  return TimeText(part.in_time) +
+         SpaceText(part.in_space, recording.is_scan ? "patches" : "markers");
+}
+
+std::string WorstText(const ComparedRecording& recording, const ComparedPart& part) {
+  std::string text = fmt::format(
+      " {} {} has the largest rms error, {}.", recording.is_scan ? "Patch" : "Marker",
+      recording.point_names[part.worst_point], Millimetres(part.point_rms[part.worst_point]));
+  if (!part.worst_period) return text + " No period is clearly worse than the others.";
+  const WorstPeriod& period = *part.worst_period;
+  if (period.frames > kWholePart * part.frames) {
+    text += " The error is large throughout";
+  } else {
+    text += fmt::format(" The longest bad period is {:.3f} s to {:.3f} s with {} rms", period.from,
+                        period.to, Millimetres(period.rms));
+  }
+  const MeanDifference& difference = period.mean_difference;
+  if (!(difference.agreement > kSameDirection)) return text + ", in no common direction.";
+  return text + fmt::format("; the prediction is displaced by {} on average, toward {}.",
+                            Millimetres(difference.mean.norm()), DirectionText(difference.mean));
+}
+
+std::string DescribePart(const ComparedRecording& recording, const ComparedPart& part) {
+  const std::string title = fmt::format("{}, {} frames, {:.3f} s to {:.3f} s: ", recording.name,
+                                        part.fitted ? "fitted" : "held-out", part.from, part.to);
+  if (part.error.points == 0)
+    return title + fmt::format("no {} was observed.", recording.is_scan ? "patch" : "marker");
+  const std::string text = title + SizeText(recording, part.error) + NoiseText(recording, part);
+  const bool is_noise = part.error.rms_over_sigma < kBeyondNoise && IsWhite(part.in_time.p_value) &&
+                        !(part.in_space.p_value < kSignificant);
+  if (is_noise) return text + " Nothing here contradicts the model.";
+  return text + WorstText(recording, part) + DescribeTrends(part.trends);
+}
+
+std::string DescribeNoise(const ComparedRecording& recording) {
+  const NoiseFloor& noise_floor = recording.noise_floor;
+  std::string text = fmt::format(
+      "{}, noise of the measurement: the white part has a standard deviation of {} per "
+      "coordinate.",
+      recording.name, Millimetres(noise_floor.white));
+  if (noise_floor.rests.empty()) {
+    text += " The object never rests long enough to show slower noise.";
+  } else {
+    double drift = 0;
+    for (const RestPeriod& rest : noise_floor.rests) drift = std::fmax(drift, rest.drift);
+    text += fmt::format(
+        " While the object rests ({} {}), coordinates scatter by {} about a straight line and "
+        "drift "
+        "by up to {} per second.",
+        noise_floor.rests.size(), noise_floor.rests.size() == 1 ? "period" : "periods",
+        Millimetres(noise_floor.rest_deviation), Millimetres(drift));
+  }
+  const double ratio = recording.noise / noise_floor.floor;
+  if (ratio > kFarFromFloor || ratio < 1 / kFarFromFloor) {
+    text += fmt::format(" The fit assumed {}, which is {:.2g} times as much.",
+                        Millimetres(recording.noise), ratio);
+  }
+  return text;
+}
+
+std::string DescribePair(const ComparedPair& pair) {
+  return fmt::format(
+      "{} and {}, as measured, differ by {} rms over {} frames if {} is taken {:.4f} s {}. If both "
+      "repeat the same experiment, no model can have an error below {} rms in both.",
+      pair.first, pair.second, Millimetres(pair.distance), pair.frames, pair.second,
+      std::abs(pair.delay), pair.delay < 0 ? "earlier" : "later",
+      Millimetres(pair.distance / std::sqrt(2.0)));
+}
+
+}  // namespace
+
+std::string ComparisonTable(const ComparisonRecord& record) {
+  const auto row = [](const std::string& name, const std::string& part, const std::string& frames,
+                      const std::string& rms, const std::string& over_sigma,
+                      const std::string& over_floor, const std::string& correlation,
+                      const std::string& worst) {
+    return "  " + PaddedRight(name, 15) + PaddedRight(part, 10) + PaddedLeft(frames, 6) +
+           PaddedLeft(rms, 12) + PaddedLeft(over_sigma, 9) + PaddedLeft(over_floor, 13) +
+           PaddedLeft(correlation, 15) + PaddedLeft(worst, 15) + "\n";
+  };
+  const auto number = [](double value, int decimals) {
+    return std::isnan(value) ? std::string("-") : fmt::format("{:.{}f}", value, decimals);
+  };
+  std::string table = row("recording", "frames", "count", "rms (mm)", "rms / σ", "rms / floor",
+                          "lag-1 corr.", "worst point");
+  for (const ComparedRecording& recording : record.recordings) {
+    for (const ComparedPart& part : recording.parts) {
+      table += row(recording.name, part.fitted ? "fitted" : "held out", std::to_string(part.frames),
+                   number(1e3 * part.error.rms, 3), number(part.error.rms_over_sigma, 1),
+                   number(part.error.rms_over_floor, 1), number(part.in_time.lag_one, 2),
+                   part.worst_point < 0 ? "-" : recording.point_names[part.worst_point]);
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> DescribeComparison(const ComparisonRecord& record) {
+  std::vector<std::string> paragraphs;
+  for (const ComparedRecording& recording : record.recordings) {
+    for (const ComparedPart& part : recording.parts)
+      paragraphs.push_back(DescribePart(recording, part));
+    if (!recording.is_scan) paragraphs.push_back(DescribeNoise(recording));
+    if (recording.force)
+      paragraphs.push_back(DescribeUnexplainedForce(*recording.force, recording.name));
+  }
+  for (const ComparedPair& pair : record.pairs) paragraphs.push_back(DescribePair(pair));
+  return paragraphs;
+}
+
+}  // namespace lacuna

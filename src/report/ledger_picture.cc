@@ -1,0 +1,108 @@
+#include "report/ledger_picture.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+#include <vtkNew.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/offscreen_window.h"
+#include "report/page_drawing.h"
+
+namespace lacuna {
+namespace {
+
+// Pixels.
+constexpr double kWidth = 1800, kMargin = 50;
+constexpr double kTitleSize = 42, kLabelSize = 38, kSmallSize = 32;
+constexpr double kTitleHeight = 110, kFooterHeight = 90;
+constexpr double kRowHeight = 110, kBarHeight = 64;
+constexpr double kGap = 24;  // between a bar and the text beside it
+constexpr double kLineWidth = 5, kDash = 16;
+
+const Eigen::Vector3d kBestColour{0.12, 0.44, 0.71}, kBarColour{0.62, 0.65, 0.69};
+const Eigen::Vector3d kNoiseColour{0.78, 0.22, 0.16}, kAxisColour{0.3, 0.3, 0.3};
+
+std::string ErrorText(double error) { return fmt::format("{:.3f} mm", 1e3 * error); }
+
+// Where the bars are on the page.
+struct BarArea {
+  double left = 0, right = 0;  // of errors 0 and `largest`
+  double bottom = 0, top = 0;
+  double largest = 1;  // m
+
+  double PlaceOf(double error) const { return left + (right - left) * error / largest; }
+};
+
+BarArea LayOutBars(const LedgerPicture& picture, double height) {
+  BarArea area;
+  double label_width = 0, value_width = 0;
+  area.largest = picture.noise;
+  for (const LedgerBar& bar : picture.models) {
+    area.largest = std::max(area.largest, bar.error);
+    label_width = std::max(label_width, TextWidth(bar.label, kLabelSize));
+    value_width = std::max(value_width, TextWidth(ErrorText(bar.error), kLabelSize));
+  }
+  if (area.largest == 0) area.largest = 1;
+  area.left = kMargin + label_width + kGap;
+  area.right = std::max(kWidth - kMargin - value_width - kGap, area.left + 1);
+  area.bottom = kFooterHeight;
+  area.top = height - kTitleHeight;
+  return area;
+}
+
+void DrawBars(const LedgerPicture& picture, const BarArea& area, vtkRenderer* page) {
+  const auto best =
+      std::min_element(picture.models.begin(), picture.models.end(),
+                       [](const LedgerBar& a, const LedgerBar& b) { return a.error < b.error; });
+  for (auto bar = picture.models.begin(); bar != picture.models.end(); ++bar) {
+    const double row = static_cast<double>(bar - picture.models.begin());
+    const double middle = area.top - (row + 0.5) * kRowHeight;
+    const double end = area.PlaceOf(bar->error);
+    DrawRectangle({area.left, middle - 0.5 * kBarHeight}, {end - area.left, kBarHeight},
+                  bar == best ? kBestColour : kBarColour, page);
+    DrawText(bar->label, area.left - kGap, middle, TextAnchor::kRight, kLabelSize, page);
+    // Beside the noise line where the bar ends just before it.
+    const double noise = area.PlaceOf(picture.noise);
+    const double text = noise > end && noise < end + 2 * kGap ? noise + kLineWidth : end;
+    DrawText(ErrorText(bar->error), text + kGap, middle, TextAnchor::kLeft, kLabelSize, page);
+  }
+  DrawRectangle({area.left - 2, area.bottom}, {4, area.top - area.bottom}, kAxisColour, page);
+}
+
+void DrawNoise(const LedgerPicture& picture, const BarArea& area, vtkRenderer* page) {
+  if (!(picture.noise > 0)) return;
+  const double x = area.PlaceOf(picture.noise);
+  for (double y = area.bottom - kDash; y < area.top; y += 2 * kDash)
+    DrawRectangle({x - 0.5 * kLineWidth, y}, {kLineWidth, std::min(kDash, area.top - y)},
+                  kNoiseColour, page);
+  const std::string text = fmt::format("{}: {}", picture.noise_label, ErrorText(picture.noise));
+  const double left = std::min(x, kWidth - kMargin - TextWidth(text, kSmallSize));
+  DrawText(text, left, area.bottom - kDash - 0.8 * kSmallSize, TextAnchor::kLeft, kSmallSize, page);
+}
+
+}  // namespace
+
+PictureResult RenderLedgerPng(const std::filesystem::path& file, const LedgerPicture& picture) {
+  CHECK(!picture.models.empty()) << "there is no model to draw";
+  for (const LedgerBar& bar : picture.models)
+    CHECK(std::isfinite(bar.error) && bar.error >= 0) << bar.label;
+  const double height =
+      kTitleHeight + kRowHeight * static_cast<double>(picture.models.size()) + kFooterHeight;
+  OffscreenWindow window(static_cast<int>(kWidth), static_cast<int>(height));
+  if (!window.IsUsable()) return NoRenderer();
+  const BarArea area = LayOutBars(picture, height);
+  vtkNew<vtkRenderer> page;
+  page->SetBackground(1, 1, 1);
+  DrawText(picture.title, 0.5 * kWidth, height - 0.5 * kTitleHeight, TextAnchor::kCentre,
+           kTitleSize, page);
+  DrawNoise(picture, area, page);  // first, so that the bars do not cover the line
+  DrawBars(picture, area, page);
+  window.Add(page);
+  window.WritePng(file);
+  return {PictureResult::Status::kWritten, ""};
+}
+
+}  // namespace lacuna

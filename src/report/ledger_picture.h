@@ -1,0 +1,37 @@
+// A picture of a search for missing physics: the error of each model that was fitted, and the noise
+// of the measurement, which no model can undercut.
+//
+// Each model is a horizontal bar with its label and its error; the noise is a dashed vertical line.
+// The model with the smallest error is blue, the others are grey. Drawn without a screen.
+#ifndef LACUNA_REPORT_LEDGER_PICTURE_H_
+#define LACUNA_REPORT_LEDGER_PICTURE_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/panel_picture.h"
+
+namespace lacuna {
+
+struct LedgerBar {
+  std::string label;  // "with viscoelastic_branch"
+  double error = 0;   // m, rms
+};
+
+struct LedgerPicture {
+  std::string title;                                 // says which error the bars show
+  std::vector<LedgerBar> models;                     // from top to bottom
+  double noise = 0;                                  // m, rms; 0: no line
+  std::string noise_label = "noise of the markers";  // beside the line
+};
+
+// Writes a PNG that is 1800 pixels wide, with letters that are still readable at half that width;
+// its height follows from the number of models. kNoRenderer when the machine offers no OpenGL
+// through EGL. Throws InputError when the file cannot be written. No model, and an error that is
+// negative or not finite, are mistakes of the program (CHECK).
+PictureResult RenderLedgerPng(const std::filesystem::path& file, const LedgerPicture& picture);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_REPORT_LEDGER_PICTURE_H_

@@ -1,0 +1,23 @@
+// Lengths, directions and probabilities as they are written in sentences.
+#ifndef LACUNA_REPORT_QUANTITY_TEXT_H_
+#define LACUNA_REPORT_QUANTITY_TEXT_H_
+
+#include <Eigen/Core>
+#include <string>
+
+namespace lacuna {
+
+// A length in m, as "0.870 mm", with two significant digits below 0.1 mm; NaN is "an unknown
+// length".
+std::string Millimetres(double length);
+
+// "p = 0.03", or "p ≤ 0.001".
+std::string ProbabilityText(double p_value);
+
+// The axis nearest to a direction, as "+x". More than 30 degrees away from it, the second axis too:
+// "−z and +x", the larger component first.
+std::string DirectionText(const Eigen::Vector3d& vector);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_REPORT_QUANTITY_TEXT_H_

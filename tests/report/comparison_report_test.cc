@@ -1,0 +1,96 @@
+#include "report/comparison_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "report/quantity_text.h"
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// A recording with one held-out part, whose error is correlated in time.
+ComparisonRecord Example() {
+  ComparedPart part;
+  part.fitted = false;
+  part.frames = 100;
+  part.to = 1;
+  part.error.points = 400;
+  part.error.rms = 8.7e-4;
+  part.error.rms_over_sigma = 5;
+  part.error.rms_over_floor = 4.9;
+  part.error.steady = 1e-4;
+  part.error.changing = 8.6e-4;
+  part.error.largest = 2e-3;
+  part.error.largest_point = 1;
+  part.error.largest_time = 0.5;
+  part.point_rms = Eigen::Vector2d(5e-4, 1.1e-3);
+  part.worst_point = 1;
+  part.in_time = {10, 300, 0.9, 0.02, 0.001};
+  part.in_space = {0.5, 0.03, 0.001, {}};
+  part.trends = {
+      {"speed_m_per_s", 0.6, {{0, 0.004, 0.002, 50, 1e-4}, {0.004, 0.2, 0.08, 50, 4e-4}}}};
+  ComparedRecording recording;
+  recording.name = "swing";
+  recording.noise = 1e-4;
+  recording.point_names = {"root", "tip"};
+  recording.noise_floor.floor = recording.noise_floor.white = 1.02e-4;
+  recording.parts = {part};
+  ComparisonRecord record;
+  record.recordings = {recording};
+  return record;
+}
+
+TEST(ComparisonReport, SaysHowLargeTheErrorIsAndThatItIsNotNoise) {
+  const std::string text = DescribeComparison(Example()).at(0);
+  EXPECT_THAT(text,
+              HasSubstr("swing, held-out frames, 0.000 s to 1.000 s: the rms error is 0.870 mm"));
+  EXPECT_THAT(text, HasSubstr("5.0 times the 0.173 mm that noise alone would give"));
+  EXPECT_THAT(text, HasSubstr("The largest error is 2.000 mm (marker tip, at 0.500 s)."));
+  EXPECT_THAT(text, HasSubstr("The error is not noise"));
+  EXPECT_THAT(text, HasSubstr("correlation length 30 mm"));
+  EXPECT_THAT(text,
+              HasSubstr("grows with speed (rank correlation 0.60), from 0.100 mm at 2 mm/s to "
+                        "0.400 mm at 80 mm/s."));
+  EXPECT_THAT(text, Not(HasSubstr("the same in all frames")));
+}
+
+TEST(ComparisonReport, TheTableHasOneLineForEachPart) {
+  const std::string table = ComparisonTable(Example());
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
+  EXPECT_THAT(table, HasSubstr("held out"));
+  EXPECT_THAT(table, HasSubstr("0.870"));
+}
+
+TEST(ComparisonReport, NamesTheLikelyCauseOfAForceAgainstTheVelocity) {
+  ComparisonRecord record = Example();
+  UnexplainedForceRecord force;
+  force.usable = true;
+  force.fit.is_significant = true;
+  force.fit.converged = true;
+  force.net.rms = {0, 0, 0.02};
+  force.net.weight = 0.5;
+  force.work = {0.3, -1.2e-3, 1e-4, -4e-3};
+  force.correlations = {{"velocity", -0.9}};
+  record.recordings[0].force = force;
+  const std::string text = DescribeComparison(record).back();
+  EXPECT_THAT(text, HasSubstr("it removes energy from the motion"));
+  EXPECT_THAT(text, HasSubstr("as if the model lacks damping"));
+  record.recordings[0].force->fit.is_significant = false;
+  EXPECT_THAT(DescribeComparison(record).back(), HasSubstr("is not significant"));
+}
+
+TEST(QuantityText, NamesTheNearestAxisAndTheSecondOneIfItMatters) {
+  EXPECT_EQ(DirectionText({0.1, 0, -1}), "−z");
+  EXPECT_EQ(DirectionText({0.7, 0, -0.8}), "−z and +x");
+  EXPECT_EQ(Millimetres(8.7e-4), "0.870 mm");
+  EXPECT_EQ(Millimetres(5e-5), "0.05 mm");
+}
+
+}  // namespace
+}  // namespace lacuna
