@@ -152,7 +152,7 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
   EXPECT_EQ(other.effects.front()->Parameters(), moduli);
   ASSERT_EQ(other.fitted.size(), 1u);
   EXPECT_EQ(other.fitted[0].prior.name, "young_modulus");
-  EXPECT_EQ(other.fitted[0].places[0].first, other.effects.front());
+  EXPECT_EQ(other.fitted[0].places[0].effect, 0u) << "the material";
 
   ScoredEffect contact;
   contact.candidate.type = "plane_contact";
