@@ -13,9 +13,11 @@
 
 #include "app/commands.h"
 #include "app/effect_examples.h"
+#include "app/explain_nuisance.h"
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "core/text_layout.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
 #include "effects/vector_parameters.h"
@@ -213,6 +215,7 @@ Snippet SnippetOf(const CatalogueEntry& entry) {
 }  // namespace
 
 int Explain(const std::string& type) {
+  if (const NuisanceCard* nuisance = FindNuisance(type)) return ExplainNuisance(*nuisance);
   const CatalogueEntry& entry = RequireEntry(type);
   const EffectCard& card = *entry.card;
   fmt::print("{}  ({})\n", card.title, card.type);

@@ -1,16 +1,15 @@
-// Which physical effect a fitted model lacks.
+// Diagnoses which physical effect a fitted model lacks.
 //
-// 1. Every effect of the catalogue, and every nuisance that may pass for one, is tried on the
-//    fitted trajectory to first order, all in one tangent-linear run, and scored by the evidence
-//    for it (diagnosis/effect_ranking.h); what has no derivative, in a pilot run of its own
-//    (diagnosis/pilot_hypotheses.h).
-// 2. The best effects are added to the model one at a time and fitted with it. What counts is the
-//    evidence of all frames, those that were not fitted among them, with noise that is no smaller
-//    and no less correlated than what the best of them leaves.
-// 3. A control runs the scoring on that remainder, shuffled so that no effect is in it: an effect
-//    must do better than what the control finds.
-// 4. The verdict says what this allows to say, no more.
-// docs/diagnosis.md explains the method and its limits.
+// 1. Every effect of the catalogue, and every nuisance that may imitate one, is ranked by its
+//    first-order evidence along the fitted trajectory (effect_ranking.h).
+// 2. The best effects are added to the model, one at a time, and fitted with it (refits.h). What
+//    counts is the evidence of all frames, including the held-out ones, with a noise that is at
+//    least as large and as correlated as the residual of the best refit.
+// 3. A control applies the ranking to residuals that contain no effect: an effect needs more
+// evidence
+//    than the control finds.
+// 4. The verdict states what these results support (verdict.h).
+// docs/diagnosis.md explains the method and its limits, thresholds.h all its thresholds.
 #ifndef LACUNA_DIAGNOSIS_DIAGNOSIS_H_
 #define LACUNA_DIAGNOSIS_DIAGNOSIS_H_
 
@@ -26,14 +25,15 @@
 namespace lacuna {
 
 struct DiagnosisOptions {
-  int refits = 3;  // of the best scored effects; more: slower, a wrong ranking is forgiven
-  std::vector<std::string> without;  // effects that are not to be considered
+  int refits = 3;  // number of effects to refit; more: slower, a wrong ranking is corrected
+  std::vector<std::string> without;  // types of effects that are not considered
 };
 
-// Of the study fitted to `fitted` (CalibrationProblem::parameters). Where the study leaves its step
-// open, and what is not known of the step's error could lend an effect its evidence, the study is
-// fitted and diagnosed with shorter steps. `kept`: where fits are kept, so that one that is stopped
-// goes on there. Throws Interrupted.
+// Diagnoses the study of `problem` with its `fitted` parameters, in the order of
+// CalibrationProblem::parameters. If the study leaves the time step open, and the uncertainty in
+// the error of the step could explain the evidence for an effect, the study is fitted and diagnosed
+// again with a shorter step. `kept`: where fits are kept, so that an interrupted diagnosis
+// continues there; null: they are not kept. Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr);
 

@@ -9,34 +9,32 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/grip_nuisances.h"
+#include "diagnosis/grip_motions.h"
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
 
-// First order cannot tell effects apart whose derivatives are this parallel.
-constexpr double kLookAlike = 0.95;
-// A nuisance is taken for granted with odds of e⁵, and where no effect explains as much.
-constexpr double kAdopted = 5;
-constexpr int kMostAdopted = 3;
 std::vector<int> Range(Eigen::Index first, Eigen::Index count) {
   std::vector<int> range(static_cast<size_t>(count));
   std::iota(range.begin(), range.end(), static_cast<int>(first));
   return range;
 }
 
-// Columns of all hypotheses, one after another.
+// The columns of all hypotheses.
 struct Hypotheses {
-  Eigen::MatrixXd by;
+  Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
 
-  std::vector<int> Add(const Eigen::MatrixXd& columns, const std::vector<LinearPrior>& more) {
-    const Eigen::Index first = by.cols();
-    if (by.rows() == 0) by.resize(columns.rows(), 0);
-    by.conservativeResize(Eigen::NoChange, first + columns.cols());
-    by.rightCols(columns.cols()) = columns;
-    priors.insert(priors.end(), more.begin(), more.end());
-    return Range(first, columns.cols());
+  // Appends columns and returns their indices.
+  std::vector<int> Add(const Eigen::MatrixXd& more, const std::vector<LinearPrior>& more_priors) {
+    const Eigen::Index first = columns.cols();
+    if (columns.rows() == 0) columns.resize(more.rows(), 0);
+    columns.conservativeResize(Eigen::NoChange, first + more.cols());
+    columns.rightCols(more.cols()) = more;
+    priors.insert(priors.end(), more_priors.begin(), more_priors.end());
+    return Range(first, more.cols());
   }
 };
 
@@ -55,47 +53,49 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
   return directions;
 }
 
-// All hypotheses along one trajectory, as columns: the model's own parameters, the effects in their
-// variants, the nuisances.
+// The columns of all hypotheses along one trajectory: the parameters of the model, the effects in
+// their variants, the nuisances.
 class HypothesisRanking {
  public:
   HypothesisRanking(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                     const std::vector<std::string>& without);
 
-  // Weighs them all. What is certain of the nuisances is taken into the model, and then all are
-  // weighed again.
-  void Weigh();
-  EffectRanking Result();
+  // Scores everything, adopts the nuisances that are certain, and moves the result out.
+  EffectRanking Rank() &&;
 
  private:
   // One effect.
   struct Entry {
-    std::vector<size_t> variants = {};  // of candidates_
-    size_t best = 0;                    // of them
+    std::vector<size_t> variants = {};  // indices of candidates_
+    size_t best = 0;                    // index of the best of them
   };
 
-  void AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots);
-  void AddNuisance(NuisanceCandidate candidate, bool adopted);
-  // The residual after a fit of these columns.
-  Eigen::VectorXd LeftBy(const std::vector<int>& chosen) const;
-  void ScoreDiscretisation();
+  void AddEffects(const Eigen::MatrixXd& columns, PilotHypotheses pilots);
+  void AddNuisance(NuisanceCandidate candidate);
+  // The residual, m, after a fit of these columns to white noise.
+  Eigen::VectorXd ResidualAfter(const std::vector<int>& chosen) const;
+  void ScoreNuisancesOfEveryModel();
+  void ScoreEffectsAndNuisances();
   void ScoreEffects(const LinearFit& before);
-  double BestEvidence() const;  // of an effect; 0: none has more
+  double BestEvidence() const;  // of an effect; 0 if none has evidence
   bool IsBetterThanNeighbours(size_t candidate) const;
-  // The best nuisance that is not in the model; −1: there is none.
+  // Returns the index of the best nuisance outside the model; −1: there is none.
   int ScoreNuisances(const LinearFit& before);
-  // The entries, with all that is known of them.
   std::vector<ScoredEffect> ScoredEntries() const;
   ScoredVariant Variant(size_t candidate) const;
+  std::vector<TriedVariant> Tried() const;
+  double EffectPenalty(const Entry& entry) const {
+    return SelectionPenalty(entry.variants.size()) + SelectionPenalty(entries_.size());
+  }
 
   const Eigen::VectorXd values_;
-  const Eigen::Index known_;  // the problem's parameters
+  const Eigen::Index known_;  // number of the problem's parameters
   std::vector<CandidateEffect> candidates_;
   LinearisedMisfit misfit_;
   Hypotheses hypotheses_;
-  std::vector<int> parameters_, base_;  // columns: of the problem's parameters; of the model
-  Eigen::Index always_ = 0;             // columns of nuisances that every model has
-  std::vector<std::vector<int>> of_candidate_, of_nuisance_;
+  std::vector<int> parameters_, base_;  // columns of the problem's parameters, and of the model
+  Eigen::Index always_ = 0;             // number of columns of nuisances that every model has
+  std::vector<std::vector<int>> of_candidate_, of_nuisance_;  // columns
   EffectRanking ranking_;
   std::optional<WeighedColumns> weighed_;
   std::vector<Score> scores_;   // of candidates_
@@ -109,10 +109,10 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
   candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
                                 without, study.candidates});
-  const GripNuisances grips(problem);
+  const GripMotions grips = MakeGripMotions(problem);
   std::vector<MisfitDirection> directions = DirectionsOf(candidates_);
   const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());
-  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
   misfit_ = problem.Linearise(values, true, directions);
   CHECK(misfit_.usable) << "the fitted model could be predicted before: " << misfit_.message;
 
@@ -120,72 +120,74 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
       hypotheses_.Add(misfit_.by.leftCols(known_), PriorsAbout(problem.parameters(), values));
   AddEffects(misfit_.by.middleCols(known_, of_effects),
              RunPilots(problem, values, misfit_, without));
-  // What a finer discretisation would do is nobody's merit; nor is what the object's dimensions do,
-  // of which bending stiffness goes with the cube.
-  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit_))
-    AddNuisance(std::move(nuisance), true);
-  const Eigen::MatrixXd by_grips = misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects);
-  if (auto jitter = grips.Jitter(problem, misfit_, by_grips)) AddNuisance(*std::move(jitter), true);
+  const Eigen::MatrixXd grip_columns =
+      misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects);
+  for (NuisanceCandidate& nuisance :
+       ModelNuisances({problem, values, misfit_, grips, grip_columns}))
+    AddNuisance(std::move(nuisance));
   always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
 
-  // What no effect explains is taken for noise.
-  const Eigen::VectorXd left = LeftBy(Range(0, hypotheses_.by.cols()));
-  ranking_.noise = LevelOf(left, misfit_, hypotheses_.by.cols(), problem.LeastNoiseVariance());
-  for (NuisanceCandidate& nuisance : grips.Candidates(by_grips))
-    AddNuisance(std::move(nuisance), false);
-  for (NuisanceCandidate& nuisance : MeasurementNuisances(
-           problem, misfit_,
-           WhitenedRows(LeftBy(base_), misfit_, ranking_.noise.correlation_time, false)))
-    AddNuisance(std::move(nuisance), false);
-  weighed_ =
-      WeighColumns(misfit_, hypotheses_.by, hypotheses_.priors, ranking_.noise.correlation_time);
+  // The noise is what remains when every hypothesis explains as much as it can.
+  ranking_.noise = LevelOf(ResidualAfter(Range(0, hypotheses_.columns.cols())), misfit_,
+                           hypotheses_.columns.cols(), problem.LeastNoiseVariance());
+  for (NuisanceCandidate& nuisance : GripNuisances(grips, grip_columns))
+    AddNuisance(std::move(nuisance));
+  const Eigen::VectorXd whitened =
+      WhitenedRows(ResidualAfter(base_), misfit_, ranking_.noise.correlation_time, false);
+  for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit_, whitened))
+    AddNuisance(std::move(nuisance));
+  weighed_ = WeighColumns(misfit_, hypotheses_.columns, hypotheses_.priors,
+                          ranking_.noise.correlation_time);
 }
 
-void HypothesisRanking::AddEffects(const Eigen::MatrixXd& by, PilotHypotheses pilots) {
+void HypothesisRanking::AddEffects(const Eigen::MatrixXd& columns, PilotHypotheses pilots) {
   Eigen::Index column = 0;
   for (const CandidateEffect& candidate : candidates_) {
     const Eigen::Index width = static_cast<Eigen::Index>(candidate.amplitude.size());
-    of_candidate_.push_back(hypotheses_.Add(by.middleCols(column, width), PriorsOf(candidate)));
+    of_candidate_.push_back(
+        hypotheses_.Add(columns.middleCols(column, width), PriorsOf(candidate)));
     column += width;
   }
   for (PilotHypothesis& pilot : pilots.tried) {
-    of_candidate_.push_back(hypotheses_.Add(pilot.by, PriorsOf(pilot.candidate)));
+    of_candidate_.push_back(hypotheses_.Add(pilot.change, PriorsOf(pilot.candidate)));
     candidates_.push_back(std::move(pilot.candidate));
   }
   ranking_.untried = std::move(pilots.untried);
 }
 
-void HypothesisRanking::AddNuisance(NuisanceCandidate candidate, bool adopted) {
-  of_nuisance_.push_back(hypotheses_.Add(candidate.by, candidate.priors));
+void HypothesisRanking::AddNuisance(NuisanceCandidate candidate) {
+  const bool adopted = candidate.card.is_always_in_model;
+  of_nuisance_.push_back(hypotheses_.Add(candidate.columns, candidate.priors));
   ranking_.nuisances.push_back({.candidate = std::move(candidate), .adopted = adopted});
   if (adopted) base_ = Joined(base_, of_nuisance_.back());
 }
 
-Eigen::VectorXd HypothesisRanking::LeftBy(const std::vector<int>& chosen) const {
+Eigen::VectorXd HypothesisRanking::ResidualAfter(const std::vector<int>& chosen) const {
   const LinearFit fit =
       LinearGaussianModel(WhitenedRows(misfit_.residual, misfit_, 0, false),
-                          WhitenedRows(hypotheses_.by, misfit_, 0, false), hypotheses_.priors)
+                          WhitenedRows(hypotheses_.columns, misfit_, 0, false), hypotheses_.priors)
           .Fit(chosen, 1);
-  return misfit_.residual + hypotheses_.by(Eigen::all, chosen) * fit.change;
+  return misfit_.residual + hypotheses_.columns(Eigen::all, chosen) * fit.change;
 }
 
-void HypothesisRanking::Weigh() {
-  ScoreDiscretisation();
+void HypothesisRanking::ScoreEffectsAndNuisances() {
+  const RankingThresholds& thresholds = kThresholds.ranking;
   for (int adopted = 0;; ++adopted) {
     const LinearFit before = weighed_->all.Fit(base_, ranking_.noise.variance);
     ScoreEffects(before);
     const int best = ScoreNuisances(before);
     const double rival = BestEvidence();
-    if (best < 0 || adopted == kMostAdopted) break;
+    if (best < 0 || adopted == thresholds.most_adopted_nuisances) break;
     ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
-    if (nuisance.evidence < rival + kAdopted) break;
-    if (adopted == 0) ranking_.instead = ScoredEntries();
+    if (nuisance.evidence < rival + thresholds.nuisance_lead) break;
+    if (adopted == 0) ranking_.without_adopted = ScoredEntries();
     nuisance.adopted = true;
     base_ = Joined(base_, of_nuisance_[static_cast<size_t>(best)]);
   }
 }
 
-void HypothesisRanking::ScoreDiscretisation() {
+// Each by itself, beside the parameters alone.
+void HypothesisRanking::ScoreNuisancesOfEveryModel() {
   const double variance = ranking_.noise.variance;
   const LinearFit without = weighed_->all.Fit(parameters_, variance);
   for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
@@ -216,8 +218,7 @@ void HypothesisRanking::ScoreEffects(const LinearFit& before) {
     if (scores_[c].evidence > scores_[same->best].evidence) same->best = c;
   }
   for (const Entry& entry : entries_)
-    for (const size_t c : entry.variants)
-      scores_[c].evidence -= Price(entry.variants.size()) + Price(entries_.size());
+    for (const size_t c : entry.variants) scores_[c].evidence -= EffectPenalty(entry);
   std::stable_sort(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
     return scores_[a.best].evidence > scores_[b.best].evidence;
   });
@@ -245,8 +246,9 @@ int HypothesisRanking::ScoreNuisances(const LinearFit& before) {
     if (nuisance.adopted) continue;
     const LinearFit with =
         weighed_->all.Fit(Joined(base_, of_nuisance_[k]), ranking_.noise.variance);
-    nuisance.evidence = with.log_evidence - before.log_evidence - nuisance.candidate.price -
-                        Price(ranking_.nuisances.size());
+    nuisance.evidence = with.log_evidence - before.log_evidence -
+                        nuisance.candidate.selection_penalty -
+                        SelectionPenalty(ranking_.nuisances.size());
     nuisance.explained = std::clamp(1 - with.misfit / before.misfit, 0.0, 1.0);
     if (best < 0 || nuisance.evidence > ranking_.nuisances[static_cast<size_t>(best)].evidence)
       best = static_cast<int>(k);
@@ -272,7 +274,8 @@ std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
     for (const Entry& other : entries_)
       if (&other != &entry &&
           weighed_->all.Collinearity(base_, of_candidate_[entry.best], of_candidate_[other.best],
-                                     ranking_.noise.variance) > kLookAlike)
+                                     ranking_.noise.variance) >
+              kThresholds.ranking.look_alike_correlation)
         scored.look_alikes.push_back(candidates_[other.best].type);
     for (const size_t c : entry.variants)
       if (c != entry.best && IsBetterThanNeighbours(c)) scored.elsewhere.push_back(Variant(c));
@@ -284,30 +287,37 @@ std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
   return effects;
 }
 
-EffectRanking HypothesisRanking::Result() {
+std::vector<TriedVariant> HypothesisRanking::Tried() const {
+  std::vector<TriedVariant> tried;
+  for (const Entry& entry : entries_)
+    for (const size_t c : entry.variants)
+      tried.push_back({candidates_[c].type, hypotheses_.columns(Eigen::all, of_candidate_[c]),
+                       PriorsOf(candidates_[c]), EffectPenalty(entry), false});
+  for (const ScoredNuisance& nuisance : ranking_.nuisances) {
+    const NuisanceCandidate& candidate = nuisance.candidate;
+    if (!nuisance.adopted)
+      tried.push_back({candidate.card.name, candidate.columns, candidate.priors,
+                       candidate.selection_penalty + SelectionPenalty(ranking_.nuisances.size()),
+                       true});
+  }
+  return tried;
+}
+
+EffectRanking HypothesisRanking::Rank() && {
+  ScoreNuisancesOfEveryModel();
+  ScoreEffectsAndNuisances();
   const double variance = ranking_.noise.variance;
   ranking_.variants = static_cast<int>(candidates_.size());
   const std::vector<int> adopted(base_.begin() + known_, base_.end());
-  ranking_.adopted.by = hypotheses_.by(Eigen::all, adopted);
+  ranking_.adopted.columns = hypotheses_.columns(Eigen::all, adopted);
   ranking_.adopted.always = always_;
   for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
   std::vector<int> best_fit = base_;
   if (BestEvidence() > 0) best_fit = Joined(base_, of_candidate_[entries_[0].best]);
   ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
-                     Price(candidates_.size());
+                     SelectionPenalty(candidates_.size());
   ranking_.effects = ScoredEntries();
-  for (const Entry& entry : entries_)
-    for (const size_t c : entry.variants)
-      ranking_.tried.push_back({candidates_[c].type, hypotheses_.by(Eigen::all, of_candidate_[c]),
-                                PriorsOf(candidates_[c]),
-                                Price(entry.variants.size()) + Price(entries_.size()), false});
-  for (size_t k = 0; k < ranking_.nuisances.size(); ++k) {
-    const ScoredNuisance& nuisance = ranking_.nuisances[k];
-    if (!nuisance.adopted)
-      ranking_.tried.push_back({nuisance.candidate.name, nuisance.candidate.by,
-                                nuisance.candidate.priors,
-                                nuisance.candidate.price + Price(ranking_.nuisances.size()), true});
-  }
+  ranking_.tried = Tried();
   misfit_.by.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);
@@ -315,16 +325,18 @@ EffectRanking HypothesisRanking::Result() {
 
 }  // namespace
 
-double Price(size_t rivals) { return std::log(static_cast<double>(std::max<size_t>(rivals, 1))); }
+double SelectionPenalty(size_t rivals) {
+  return std::log(static_cast<double>(std::max<size_t>(rivals, 1)));
+}
 
 AdoptedNuisances AdoptedNuisances::Always() const {
-  return {by.leftCols(always), {priors.begin(), priors.begin() + always}, always};
+  return {columns.leftCols(always), {priors.begin(), priors.begin() + always}, always};
 }
 
 AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const {
   AdoptedNuisances with = *this;
-  with.by.conservativeResize(Eigen::NoChange, by.cols() + nuisance.by.cols());
-  with.by.rightCols(nuisance.by.cols()) = nuisance.by;
+  with.columns.conservativeResize(Eigen::NoChange, columns.cols() + nuisance.columns.cols());
+  with.columns.rightCols(nuisance.columns.cols()) = nuisance.columns;
   with.priors.insert(with.priors.end(), nuisance.priors.begin(), nuisance.priors.end());
   return with;
 }
@@ -332,9 +344,7 @@ AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without) {
   progress->Begin("score", 0);
-  HypothesisRanking hypotheses(problem, values, without);
-  hypotheses.Weigh();
-  EffectRanking ranking = hypotheses.Result();
+  EffectRanking ranking = HypothesisRanking(problem, values, without).Rank();
   progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));
   return ranking;
 }

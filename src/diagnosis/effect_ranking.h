@@ -1,5 +1,14 @@
-// Every effect that a fitted model may lack, and every nuisance that may look like one, tried along
-// its trajectory to first order.
+// Ranks every effect that a fitted model may lack, beside every nuisance that may imitate one, by
+// first-order evidence along the fitted trajectory.
+//
+// One tangent-linear simulation gives the changes of the residual by the model's parameters, the
+// sizes of all effects in all their variants, and the motions of the grips. Effects without a
+// derivative are simulated by themselves (pilot_hypotheses.h), and so are the nuisances of the
+// mesh, the time step and the shape (nuisance_catalogue.h). All of them become columns of one
+// linear Gaussian model (hypothesis_score.h).
+//
+// A nuisance whose evidence exceeds that of the best effect by RankingThresholds::nuisance_lead is
+// adopted: it becomes part of the model, and the rest is scored again.
 #ifndef LACUNA_DIAGNOSIS_EFFECT_RANKING_H_
 #define LACUNA_DIAGNOSIS_EFFECT_RANKING_H_
 
@@ -18,29 +27,27 @@
 
 namespace lacuna {
 
-// Of having tried so many rivals, as a logarithm of odds.
-double Price(size_t rivals);
+// ln n: the evidence that the best of n rivals must give up for having been selected. 0 for none.
+double SelectionPenalty(size_t rivals);
 
 struct EffectRanking {
-  std::vector<ScoredEffect> effects;  // by evidence, the best first
-  // All variants of all effects, and the nuisances that are not in the model.
+  std::vector<ScoredEffect> effects;  // the most evidence first
+  // All variants of all effects, and the nuisances that are not part of the model.
   std::vector<TriedVariant> tried;
-  // Where nuisances were adopted beyond those that every model has: the effects as they stand
-  // without, by evidence.
-  std::vector<ScoredEffect> instead;
+  // The effects as they are ranked without the adopted nuisances (those of every model excepted);
+  // empty if none was adopted.
+  std::vector<ScoredEffect> without_adopted;
   std::vector<UntriedEffect> untried;
-  std::vector<ScoredNuisance> nuisances;  // discretisation, grips, measurement
+  std::vector<ScoredNuisance> nuisances;  // in the order of the catalogue
   AdoptedNuisances adopted;
   NoiseLevel noise;
-  LinearisedMisfit misfit;  // at the fitted values, without columns of hypotheses
-  // The evidence that one in twenty controls finds: what the best hypothesis leaves, its frames
-  // moved along and its signs drawn anew, so that no effect is in it.
-  double control = 0;
-  int variants = 0;  // scored in all
+  LinearisedMisfit misfit;  // at the fitted values, without columns
+  double control = 0;       // evidence that chance gives to the best effect (ControlEvidence)
+  int variants = 0;         // number of variants scored
 };
 
-// Of the study fitted to `values` (CalibrationProblem::parameters), of the whole catalogue but the
-// types in `without`. Throws Interrupted.
+// Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
+// with the fitted `values` of CalibrationProblem::parameters. Throws Interrupted.
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without = {});
 

@@ -7,22 +7,16 @@
 
 #include "calibration/recording_misfit.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
 
-// Of the steps that then take the held-out frames in: the most, by how much those that lead nowhere
-// are shortened, and the log evidence to be won below which none is made.
+// SettledHypothesis() makes at most so many Gauss–Newton steps, shortens a step that does not help
+// by this factor, and stops when the next step would gain less log evidence than this.
 constexpr int kSettlingSteps = 5;
-constexpr double kShorter = 0.3;
-constexpr double kSettled = 0.5;
-// σ: what a refit leaves that has found its way. One that leaves 1.8 may end 1.1 from elsewhere.
-constexpr double kArrived = 1.2;
-// Parts: of what first order promises, that a refit keeps; of what is more than noise, that one
-// explains that first order promised too much; of the noise, within which it is known.
-constexpr double kKept = 0.5, kFoundItsWay = 0.85, kMoreThanEstimated = 0.2;
-// Held-out misses of models that differ by noise are nearer than this.
-constexpr double kMissesMore = 1.1;
+constexpr double kStepReduction = 0.3;
+constexpr double kSettledGain = 0.5;
 
 std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
   for (LinearPrior& prior : priors) {
@@ -70,31 +64,33 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 
 namespace {
 
-// Compared with what `same` was compared with; with the derivatives that it has there, or, given
-// `near`, that it had there.
+// The model at `values`, with the residuals between the same points as in `correspondences`. Given
+// `near`, its Jacobian is used instead of a new one.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted, const LinearisedMisfit& same,
+                              const AdoptedNuisances& adopted,
+                              const LinearisedMisfit& correspondences,
                               const FittedHypothesis* near = nullptr) {
   FittedHypothesis hypothesis;
-  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &same);
+  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences);
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
-  Eigen::MatrixXd& by = hypothesis.misfit.by;
+  const Eigen::MatrixXd& nuisances = adopted.columns;
+  Eigen::MatrixXd& columns = hypothesis.misfit.by;
   if (near != nullptr) {
-    by = near->misfit.by;
+    columns = near->misfit.by;
   } else {
-    by.conservativeResize(Eigen::NoChange, hypothesis.parameters + adopted.by.cols());
-    by.rightCols(adopted.by.cols()) = adopted.by;
+    columns.conservativeResize(Eigen::NoChange, hypothesis.parameters + nuisances.cols());
+    columns.rightCols(nuisances.cols()) = nuisances;
   }
   hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
-  hypothesis.left = hypothesis.misfit.residual;
-  if (adopted.by.cols() > 0) {
+  hypothesis.residual = hypothesis.misfit.residual;
+  if (nuisances.cols() > 0) {
     const LinearFit fit =
-        LinearGaussianModel(WhitenedRows(hypothesis.left, same, 0, false),
-                            WhitenedRows(adopted.by, same, 0, false), adopted.priors)
+        LinearGaussianModel(WhitenedRows(hypothesis.residual, correspondences, 0, false),
+                            WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
             .FitAll(1);
-    hypothesis.left += adopted.by * fit.change;
+    hypothesis.residual += nuisances * fit.change;
   }
   return hypothesis;
 }
@@ -109,7 +105,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
   const Eigen::VectorXd residual =
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
-  // What was adopted is linear, hence at its best; the parameters are where they are.
+  // The amounts of adopted nuisances are at their best; the parameters stay where they are.
   const LinearFit adopted =
       LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
                           {own, hypothesis.priors.end()})
@@ -121,7 +117,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
     if (std::isfinite(prior.deviation))
       prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
   }
-  // The determinant is that of the linear model, whatever its residual.
+  // With a residual of zero, the log evidence is the determinant term alone.
   const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
                                                 WithoutMeans(hypothesis.priors))
                                 .FitAll(noise.variance);
@@ -143,12 +139,13 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   Eigen::Index width = misfit.by.cols();
-  for (const TriedVariant& variant : tried) width += variant.by.cols();
+  for (const TriedVariant& variant : tried) width += variant.columns.cols();
   Eigen::MatrixXd columns(misfit.by.rows(), width);
   columns.leftCols(misfit.by.cols()) = misfit.by;
   std::vector<LinearPrior> priors = hypothesis.priors;
   for (const TriedVariant& variant : tried) {
-    columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.by.cols()) = variant.by;
+    columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.columns.cols()) =
+        variant.columns;
     priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
   }
   const LinearGaussianModel model(
@@ -163,7 +160,8 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
     std::vector<int> with = chosen;
     for (size_t k = 0; k < variant.priors.size(); ++k) with.push_back(column++);
     if (variant.type == type) continue;
-    const double evidence = model.Fit(with, noise.variance).log_evidence - before - variant.price;
+    const double evidence =
+        model.Fit(with, noise.variance).log_evidence - before - variant.selection_penalty;
     if (variant.is_nuisance) {
       best.of_nuisance = std::max(best.of_nuisance, evidence);
     } else if (evidence > best.evidence) {
@@ -174,13 +172,13 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
   return best;
 }
 
-FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVariant& effect,
+FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without) {
-  const PredictionStudy study = WithEffect(present.problem.StudyAt(present.values), effect);
-  const CalibrationProblem with(study, present.problem.body()->mesh);
+  const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
+  const CalibrationProblem with(study, baseline.problem.body()->mesh);
   const EffectRanking ranking =
-      RankEffects(with, refit.calibration.parameters, present.progress, without);
+      RankEffects(with, refit.calibration.parameters, baseline.progress, without);
   FurtherEvidence best;
   const auto other = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),
@@ -196,7 +194,7 @@ FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVa
 
 namespace {
 
-// To first order, at the parameters that are best for all frames.
+// The best parameters for all frames, to first order.
 LinearFit BestNear(const FittedHypothesis& hypothesis) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
@@ -204,22 +202,23 @@ LinearFit BestNear(const FittedHypothesis& hypothesis) {
       .FitAll(1);
 }
 
-// The hypothesis at the parameters that are best for all frames, sought from `values`, where it is
-// `hypothesis`: the held-out ones move them little, and the derivatives less.
+// The hypothesis at the best parameters for all frames, by Gauss–Newton steps from `values`, where
+// it is `hypothesis`. The held-out frames move the parameters little, so the Jacobian is kept.
 FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
-                                   const AdoptedNuisances& adopted, const LinearisedMisfit& same,
+                                   const AdoptedNuisances& adopted,
+                                   const LinearisedMisfit& correspondences,
                                    FittedHypothesis hypothesis) {
   const NoiseLevel white;
   double evidence = EvidenceOf(hypothesis, white).log_evidence;
-  double part = 1;  // of the step that first order proposes
+  double share = 1;  // of the step
   for (int step = 0; step < kSettlingSteps; ++step) {
     const LinearFit best = BestNear(hypothesis);
-    if (best.log_evidence - evidence < kSettled) break;
-    const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, part * best.change);
-    FittedHypothesis next = HypothesisAt(problem, moved, adopted, same, &hypothesis);
+    if (best.log_evidence - evidence < kSettledGain) break;
+    const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, share * best.change);
+    FittedHypothesis next = HypothesisAt(problem, moved, adopted, correspondences, &hypothesis);
     const double gain = next.misfit.usable ? EvidenceOf(next, white).log_evidence - evidence : -1.0;
     if (!(gain > 0)) {
-      part *= kShorter;
+      share *= kStepReduction;
       continue;
     }
     values = moved;
@@ -229,45 +228,57 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
   return hypothesis;
 }
 
+bool IsBetter(const Calibration& a, const Calibration& b) {
+  return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
+}
+
+Calibration FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
+                        RefitFrom from) {
+  const Eigen::Index own = extended.OwnCount();
+  Eigen::VectorXd start;
+  if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
+  if (start.size() == 0) start = extended.Start();
+  Calibration calibration = extended.CalibrateFrom(start, stage);
+  const bool converged =
+      !calibration.estimates.empty() && calibration.rms <= kThresholds.refit.converged_rms;
+  // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
+  // with the effect held at a size has given another one already.
+  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return calibration;
+  const Calibration afresh = extended.CalibrateAfresh();
+  if (afresh.parameters.size() != own) return calibration;
+  start.head(own) = afresh.parameters;
+  Calibration other = extended.CalibrateFrom(start, stage + " from there");
+  return IsBetter(other, calibration) ? other : calibration;
+}
+
 }  // namespace
 
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
-                double promised) {
-  const double more_than_noise = without.misfit - noise;
-  const bool found_its_way = more_than_noise > kMoreThanEstimated * noise &&
-                             without.misfit - refit.misfit >= kFoundItsWay * more_than_noise;
-  return refit.log_evidence - without.log_evidence < kKept * promised && !found_its_way;
+                double predicted) {
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const double excess = without.misfit - noise;
+  const bool explains_excess =
+      excess > thresholds.noise_uncertainty * noise &&
+      without.misfit - refit.misfit >= thresholds.explained_excess * excess;
+  return refit.log_evidence - without.log_evidence < thresholds.kept_share * predicted &&
+         !explains_excess;
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
-  return with.has_held_out && with.without_nuisances > kMissesMore * without.without_nuisances;
+  return with.has_held_out &&
+         with.without_nuisances > kThresholds.refit.held_out_growth * without.without_nuisances;
 }
 
-EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
+EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
-  const LinearisedMisfit& misfit = present.misfit;
-  const ExtendedProblem extended(present, effect, adopted);
+  const LinearisedMisfit& misfit = baseline.misfit;
+  const ExtendedProblem extended(baseline, effect, adopted);
   const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
-  const std::string stage = effect != nullptr ? "refit " + effect->candidate.type : "refit";
   EffectRefit refit;
-  Eigen::VectorXd start;
-  if (from == RefitFrom::kItsSize) start = extended.StartAtItsSize(stage + " at a size");
-  if (start.size() == 0) start = extended.Start();
-  refit.calibration = extended.CalibrateFrom(start, stage);
-  const bool arrived = !refit.calibration.estimates.empty() && refit.calibration.rms <= kArrived;
-  // The start at its size has been fitted afresh already.
-  if (effect != nullptr && is_far_off && !arrived && from == RefitFrom::kFirstOrder) {
-    // The model without the effect was fitted to what it cannot do: begin where that did.
-    const Calibration afresh = extended.CalibrateAfresh();
-    if (afresh.parameters.size() == own) {
-      start.head(own) = afresh.parameters;
-      const Calibration other = extended.CalibrateFrom(start, stage + " from there");
-      if (!other.estimates.empty() &&
-          (refit.calibration.estimates.empty() || other.rms < refit.calibration.rms))
-        refit.calibration = other;
-    }
-  }
+  refit.calibration =
+      FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
+                  effect != nullptr && is_far_off, from);
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
@@ -284,9 +295,9 @@ EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
     }
     refit.message = refit.hypothesis.misfit.message;
     if (refit.hypothesis.misfit.usable) {
-      refit.errors.without_nuisances = HeldOutInNoise(
-          WhitenedRows(refit.hypothesis.misfit.residual + adopted.by * amounts, misfit, 0, false),
-          misfit);
+      const Eigen::VectorXd residual = refit.hypothesis.misfit.residual + adopted.columns * amounts;
+      refit.errors.without_nuisances =
+          HeldOutInNoise(WhitenedRows(residual, misfit, 0, false), misfit);
       refit.at_fit = refit.hypothesis;
       refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
                                            std::move(refit.hypothesis));

@@ -1,4 +1,8 @@
-// A fitted model with one more effect, fitted again: what first order has said, put to the test.
+// Fits a model with one more effect, which tests what first order has predicted for it.
+//
+// The evidence of a refitted model is that of its linear Gaussian approximation about the refitted
+// parameters (analysis/linear_evidence.h). Noise is white during a fit and correlated, as
+// estimated, in the final comparison.
 #ifndef LACUNA_DIAGNOSIS_EFFECT_REFIT_H_
 #define LACUNA_DIAGNOSIS_EFFECT_REFIT_H_
 
@@ -16,87 +20,83 @@ namespace lacuna {
 // The errors of a model with these parameter values, over all recordings.
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
 
-// A model about its best parameters, and what it leaves of the measurements there.
+// A fitted model, linearised about its parameters.
 struct FittedHypothesis {
-  LinearisedMisfit misfit;          // columns: the problem's parameters, then what was adopted
+  LinearisedMisfit misfit;          // columns: the problem's parameters, then the adopted nuisances
   std::vector<LinearPrior> priors;  // of the columns
-  Eigen::Index parameters = 0;      // how many of the columns are the problem's
-  Eigen::VectorXd left;             // what it leaves with the best amounts of what was adopted, m
+  Eigen::Index parameters = 0;      // number of columns that are the problem's parameters
+  Eigen::VectorXd residual;         // m, with the best amounts of the adopted nuisances
 };
 
-// ln p of all frames of the fitted recordings, up to what all hypotheses share, with the parameters
-// where they are (linear_evidence.h has them at their best to first order: that would reward a fit
-// that has not converged).
+// The log evidence of all frames of the fitted recordings, up to a constant that all hypotheses
+// share, at the parameters as they are. (The evidence of linear_evidence.h assumes their best
+// values to first order, and would reward a fit that has not converged.)
 struct HypothesisEvidence {
   double log_evidence = 0;
-  double misfit = 0;  // ‖whitened left‖²
+  double misfit = 0;  // ‖whitened residual‖², adopted nuisances at their best amounts
 };
-// `fitted_only`: of the frames that were fitted.
+// `fitted_only`: the evidence of the frames that were fitted.
 HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
                               bool fitted_only = false);
 
 struct EffectRefit {
-  std::string message;  // why it is not usable; empty: it is
+  std::string message;  // why the refit is not usable; empty: it is usable
   Calibration calibration;
-  Eigen::VectorXd effect;                // parameters of the effect there, in the order of its card
-  std::vector<ParameterEstimate> sizes;  // of those that make its size; none of a pilot
-  std::vector<NamedEstimate> others;     // of the others that were fitted: its place, its time
+  Eigen::VectorXd effect;                // all parameters of the effect, in the order of its card
+  std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
+  std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
   ModelErrors errors;
-  // At the parameters that are best for the fitted frames, and for all.
-  FittedHypothesis at_fit, hypothesis;
+  FittedHypothesis at_fit;      // at the best parameters for the fitted frames
+  FittedHypothesis hypothesis;  // at the best parameters for all frames
 };
 
-// ln p of all frames, and of the held-out ones alone once the fitted ones are known. That weighs
-// how well a model predicts by how well it claims to: a parameter that the fitted frames leave open
-// costs no more than it must.
+// The log evidence of all frames, and that of the held-out frames given the fitted ones:
+// ln p(held-out | fitted) = ln p(all) − ln p(fitted). It measures how well a model predicts by the
+// width that it claims for its predictions.
 struct RefitEvidence {
   double all = 0, held_out = 0;
-  double misfit = 0;  // as HypothesisEvidence, of all frames
+  double misfit = 0;  // as in HypothesisEvidence, of all frames
 };
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
-// The best of the effects that a refit leaves evidence for, to first order: with the changes that
-// they make at the model without the refitted one, less the price of trying them all. And what it
-// leaves for the best of the nuisances.
+// The largest evidence, to first order, of another effect and of a nuisance beside the refitted
+// effect, each less its selection penalty.
 struct FurtherEvidence {
-  std::string type;
-  double evidence = 0;  // 0 and no type: none
+  std::string type;     // of the other effect; empty: none has evidence
+  double evidence = 0;  // of that effect
   double of_nuisance = 0;
 };
-// Of all but `type`, the refitted one.
+// With the columns of the ranking at the baseline model. `type`: the refitted effect.
 FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const std::vector<TriedVariant>& tried, const std::string& type,
                                   const NoiseLevel& noise);
 
-// The same along the refitted model's own motion, with its own mesh and step: what a diagnosis of
-// it would find, at the price of its ranking. Leaves the study's effects at the present values.
-// Throws Interrupted.
-FurtherEvidence FurtherEvidenceAlong(const PresentModel& present, const ScoredVariant& effect,
+// With a new ranking along the motion of the refitted model. Throws Interrupted.
+FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
                                      const std::vector<std::string>& without);
 
-// Where a refit begins: where first order expects the best parameters; or with the effect at the
-// size that it expects, and everything else fitted to that.
-enum class RefitFrom { kFirstOrder, kItsSize };
-
-// It has found less than half of the evidence that first order promises: a minimum on the way, or a
-// promise that is none. The latter where it explains most of what is more than `noise`, the misfit
-// that is expected of noise; but the noise is estimated, and what it has left over by a model that
-// is about as good says nothing.
+// Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
+// evidence although more could be explained. `noise` is the squared residual expected of noise; a
+// refit that explains most of what exceeds it has found its minimum, and first order predicted too
+// much. As the noise is estimated, this exception needs a clear excess.
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
-                double promised);
+                double predicted);
 
-// What follows the fitted frames with an effect, and misses the held-out ones by more than without
-// it, has its parameters in the wrong place.
+// Whether the held-out error with the effect is clearly larger than without it, which shows that
+// the effect follows the fitted frames with wrong parameters.
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without);
 
-// From where first order expects the best parameters, or from the present ones where that is
-// nearer, or part of the way where neither predicts as well as the model without the effect. Null
-// `effect`: the model as it is, with what was adopted, so that it is compared at its best too.
-// Leaves the study's effects at the present values. `is_far_off`: so is the model as it is, and a
-// refit from there that leaves more than noise is made again from where the model with the effect
-// ends when it is fitted afresh. Throws Interrupted.
-EffectRefit Refit(const PresentModel& present, const ScoredVariant* effect,
+// Where a refit starts: at the parameters that first order predicts, or with the effect held near
+// its predicted size and the others fitted to that.
+enum class RefitFrom { kFirstOrder, kFixedSize };
+
+// Fits the baseline with the effect and the adopted nuisances. Null `effect`: with the nuisances
+// alone, so that the baseline is compared at its best too. `is_far_off` says that the baseline is
+// far from the measurements: a refit that has not converged is then repeated from the result of an
+// independent fit of the model with the effect. A failed fit gives a message. Refits of one
+// baseline may run in several threads. Throws Interrupted.
+EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off,
                   RefitFrom from = RefitFrom::kFirstOrder);
 

@@ -60,7 +60,7 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
       Written(*study.effects.front(), experiment));
   for (size_t k = 1; k < study.effects.size(); ++k)
     text += fmt::format("  - {}\n", Written(*study.effects[k], experiment));
-  std::vector<std::string> candidates;  // that are none yet
+  std::vector<std::string> candidates;  // still to be tried
   for (const OwnLaw& law : study.candidates)
     if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
   if (!study.candidates.empty())
@@ -80,17 +80,19 @@ std::string WhyUnseen(const ScoredEffect& effect) {
   const CandidateAmount& first = amounts.front();
   const double detectable = effect.score.detectable.minCoeff();
   if (!std::isfinite(detectable)) {
-    return fmt::format("{} does nothing in these recordings that the fitted parameters cannot do",
-                       type);
+    return fmt::format(
+        "{} changes nothing in these recordings that the fitted parameters cannot compensate for",
+        type);
   }
   if (effect.candidate.IsPilot()) {
     return fmt::format(
-        "what {} ({}) changes would have to be {:.2g} times as large to show in these recordings",
+        "the change by {} ({}) would have to be {:.2g} times as large to be detectable in these "
+        "recordings",
         type, effect.candidate.variant, detectable);
   }
   return fmt::format(
-      "{} would have to be larger than is plausible to show in these recordings: {} of {:.2g} {}, "
-      "against {:.2g} {} at most",
+      "{} would have to be larger than is plausible to be detectable in these recordings: {} of "
+      "{:.2g} {}, while {:.2g} {} is plausible at most",
       type, first.name, detectable, first.unit, first.plausible, first.unit);
 }
 

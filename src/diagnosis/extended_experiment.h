@@ -1,4 +1,4 @@
-// The experiment of a fitted run with one more effect in its model, or with another elasticity law.
+// Writes the experiment of a fitted run whose model has one more effect, or another elasticity law.
 #ifndef LACUNA_DIAGNOSIS_EXTENDED_EXPERIMENT_H_
 #define LACUNA_DIAGNOSIS_EXTENDED_EXPERIMENT_H_
 
@@ -10,17 +10,16 @@
 
 namespace lacuna {
 
-// Writes <name>+<effect>.yaml, of an experiment called so, beside the run's folder: it uses the
-// run's experiment, starts from the fitted values, has the effect at its expected size and all of
-// its parameters fitted (an elasticity law: the moduli that were fitted before), and puts its
-// results into <name>+<effect>.
-// Returns the file. Throws InputError when an effect of the model has a value that YAML cannot say.
+// Writes <name>+<effect>.yaml beside the folder `run` and returns its path. The experiment of that
+// name uses the run's experiment, starts from the fitted values, contains the effect at its
+// predicted size, fits all parameters of the effect, and saves its results in <name>+<effect>. An
+// elasticity law replaces the law of the run; the moduli that were fitted before are fitted. Throws
+// InputError if an effect of the model cannot be written as YAML.
 std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
                                               const std::filesystem::path& run,
                                               const ScoredEffect& effect);
 
-// Why no fit could tell the effect in these recordings, its plausible sizes being too small for
-// them; empty: it could.
+// Explains why these recordings cannot show the effect at any plausible size. Empty if they can.
 std::string WhyUnseen(const ScoredEffect& effect);
 
 }  // namespace lacuna

@@ -9,22 +9,22 @@
 #include "calibration/linear_misfit.h"
 #include "core/hash.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
 
-// A rival need not be at its very best to be told from one that fits.
+// A refit has to be good enough for a comparison, not converged to the last digit.
 constexpr int kIterations = 25;
-constexpr double kTolerance = 1;  // of the cost, whose unit is one standard deviation
-// A refit begins this part of the way to what first order expects: the first that predicts better
-// than the model without the effect. Moduli that fall below a part of themselves are not believed.
-constexpr double kPartsOfTheWay[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
-constexpr double kSoundPart = 0.2;
-// Or at these parts of the size that first order expects, one after another, with everything but
-// the effect fitted to each; the effect is held by a prior of this part of what is typical.
-constexpr double kSizesHeld[] = {0.1, 0.3, 1};
-constexpr double kHeld = 1e-3;
-constexpr int kIterationsHeld = 8;  // such a fit is only where the next begins
+constexpr double kTolerance = 1;  // of the cost, in units of one standard deviation
+// Start() tries these shares of the step that first order predicts, until one gives a smaller
+// residual than the model without the effect.
+constexpr double kStepShares[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
+// StartAtFixedSize() holds the effect at these shares of its predicted size, one after another, by
+// a prior with this share of the typical value.
+constexpr double kSizeShares[] = {0.1, 0.3, 1};
+constexpr double kHoldDeviation = 1e-3;
+constexpr int kHoldIterations = 8;  // the result only is the start of the next fit
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
@@ -43,7 +43,7 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
   return kept;
 }
 
-// Where a parameter that makes the effect's size has no effect; of other parameters, nothing.
+// The null value of a parameter that makes the effect's size; nothing for another parameter.
 std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& parameter) {
   const int index = parameter.places.front().index;
   const std::vector<int>& amplitude = scored.candidate.amplitude;
@@ -51,8 +51,8 @@ std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& 
   return scored.candidate.effect->Card().parameters[index].null_value;
 }
 
-PredictionStudy Extended(const PresentModel& present, const ScoredVariant* effect) {
-  const PredictionStudy study = present.problem.StudyAt(present.values);
+PredictionStudy Extended(const BaselineModel& baseline, const ScoredVariant* effect) {
+  const PredictionStudy study = baseline.problem.StudyAt(baseline.values);
   return effect != nullptr ? WithEffect(study, *effect) : study;
 }
 
@@ -63,18 +63,19 @@ void Append(const Eigen::MatrixXd& numbers, std::string* bytes) {
 
 }  // namespace
 
-ExtendedProblem::ExtendedProblem(const PresentModel& present, const ScoredVariant* effect,
+ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVariant* effect,
                                  const AdoptedNuisances& adopted)
-    : present_(present),
+    : baseline_(baseline),
       effect_(effect),
-      study_(Extended(present, effect)),
-      with_(study_, present.problem.body()->mesh),
-      shared_(static_cast<Eigen::Index>(present.problem.study().fitted.size())),
+      study_(Extended(baseline, effect)),
+      with_(study_, baseline.problem.body()->mesh),
+      shared_(static_cast<Eigen::Index>(baseline.problem.study().fitted.size())),
       added_(static_cast<Eigen::Index>(study_.fitted.size()) - shared_),
       own_(static_cast<Eigen::Index>(with_.parameters().size())),
-      left_(FittedRows(WhitenedRows(present.misfit.residual, present.misfit, 0, true),
-                       present.misfit)),
-      nuisance_(FittedRows(WhitenedRows(adopted.by, present.misfit, 0, true), present.misfit)),
+      residual_(FittedRows(WhitenedRows(baseline.misfit.residual, baseline.misfit, 0, true),
+                           baseline.misfit)),
+      nuisance_columns_(
+          FittedRows(WhitenedRows(adopted.columns, baseline.misfit, 0, true), baseline.misfit)),
       parameters_(with_.parameters()) {
   for (const LinearPrior& prior : adopted.priors) {
     CalibratedParameter amount;
@@ -105,19 +106,21 @@ std::vector<NamedEstimate> ExtendedProblem::OthersIn(const Calibration& calibrat
 }
 
 Eigen::VectorXd ExtendedProblem::Start() const {
-  const Eigen::VectorXd& values = present_.values;
-  const Eigen::VectorXd present = PartWay(1, values);
-  if (effect_ == nullptr) return present;
-  Eigen::VectorXd expected = effect_->fitted;
+  const Eigen::VectorXd& values = baseline_.values;
+  const Eigen::VectorXd unchanged = PartWay(1, values);
+  if (effect_ == nullptr) return unchanged;
+  const double least_share = kThresholds.refit.least_modulus_share;
+  Eigen::VectorXd expected = effect_->expected_values;
   for (Eigen::Index k = 0; k < shared_; ++k)
-    if (parameters_[k].log_scale && !(expected[k] > kSoundPart * values[k])) expected = values;
-  const double without = (left_ + nuisance_ * present.tail(present.size() - own_)).norm();
-  Eigen::VectorXd start = present;
-  double least = Missed(start);
-  for (const double part : kPartsOfTheWay) {
-    const Eigen::VectorXd at = PartWay(part, expected);
-    if (const double there = Missed(at); there < least) {
-      least = there;
+    if (parameters_[k].log_scale && !(expected[k] > least_share * values[k])) expected = values;
+  const double without =
+      (residual_ + nuisance_columns_ * unchanged.tail(unchanged.size() - own_)).norm();
+  Eigen::VectorXd start = unchanged;
+  double least = ResidualNorm(start);
+  for (const double share : kStepShares) {
+    const Eigen::VectorXd at = PartWay(share, expected);
+    if (const double norm = ResidualNorm(at); norm < least) {
+      least = norm;
       start = at;
     }
     if (least < without || effect_->candidate.IsPilot()) break;
@@ -125,13 +128,13 @@ Eigen::VectorXd ExtendedProblem::Start() const {
   return start;
 }
 
-Eigen::VectorXd ExtendedProblem::StartAtItsSize(const std::string& stage) const {
+Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) const {
   Eigen::VectorXd start;
   double least = kInfinity;
-  for (const double part : kSizesHeld) {
-    const Eigen::VectorXd of_part = PartWay(part, present_.values);
-    Eigen::VectorXd at = start.size() > 0 ? start : of_part;
-    at.segment(shared_, added_) = of_part.segment(shared_, added_);
+  for (const double share : kSizeShares) {
+    const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
+    Eigen::VectorXd at = start.size() > 0 ? start : part_way;
+    at.segment(shared_, added_) = part_way.segment(shared_, added_);
     const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true);
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
@@ -149,14 +152,14 @@ std::vector<CalibratedParameter> ExtendedProblem::ParametersFrom(const Eigen::Ve
     const Eigen::Index own = static_cast<Eigen::Index>(k) - shared_;
     if (!holds_effect || own < 0 || own >= added_) continue;
     parameter.prior_mean = parameter.start;
-    parameter.prior_deviation = kHeld * parameter.typical;
+    parameter.prior_deviation = kHoldDeviation * parameter.typical;
   }
   return parameters;
 }
 
 std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& parameters,
-                                   const std::string& what) const {
-  std::string all = what;
+                                   const std::string& purpose) const {
+  std::string all = purpose;
   if (effect_ != nullptr) {
     all += effect_->candidate.type + effect_->candidate.variant;
     Append(effect_->candidate.effect->Parameters(), &all);
@@ -164,19 +167,19 @@ std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& param
   for (const CalibratedParameter& parameter : parameters)
     Append(Eigen::Vector3d(parameter.start, parameter.prior_mean, parameter.prior_deviation), &all);
   Append(Eigen::VectorXd::Constant(1, study_.time_step), &all);
-  Append(left_, &all);
-  Append(nuisance_, &all);
+  Append(residual_, &all);
+  Append(nuisance_columns_, &all);
   return HashBytes(all);
 }
 
-Calibration ExtendedProblem::Kept(const std::string& what,
+Calibration ExtendedProblem::Kept(const std::string& purpose,
                                   const std::vector<CalibratedParameter>& parameters,
                                   const std::function<Calibration()>& fit) const {
-  if (present_.kept == nullptr) return fit();
-  const std::string key = KeyOf(parameters, what);
-  if (const Calibration* kept = present_.kept->Find(key)) return *kept;
+  if (baseline_.kept == nullptr) return fit();
+  const std::string key = KeyOf(parameters, purpose);
+  if (const Calibration* kept = baseline_.kept->Find(key)) return *kept;
   const Calibration calibration = fit();
-  present_.kept->Keep(key, calibration);
+  baseline_.kept->Keep(key, calibration);
   return calibration;
 }
 
@@ -187,55 +190,54 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     const Prediction prediction = Predict(at, with_jacobian, &memory);
-    present_.progress->Report(
+    baseline_.progress->Report(
         ++evaluations, prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
     return prediction;
   };
-  present_.progress->Begin(stage, 0);
+  baseline_.progress->Begin(stage, 0);
   const Calibration calibration = Kept("fit", parameters, [&] {
     return Calibrate(parameters, predict,
-                     {.max_iterations = holds_effect ? kIterationsHeld : kIterations,
+                     {.max_iterations = holds_effect ? kHoldIterations : kIterations,
                       .cost_tolerance = kTolerance});
   });
-  present_.progress->End(calibration.usable ? "" : calibration.message);
+  baseline_.progress->End(calibration.usable ? "" : calibration.message);
   return calibration;
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
   return Kept("afresh", with_.parameters(),
-              [&] { return FitFrom(with_, with_.Start(), present_.progress); });
+              [&] { return FitFrom(with_, with_.Start(), baseline_.progress); });
 }
 
-// Adopted nuisances change the misfit as they did at the model without the effect.
 Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
                                     CalibrationProblem::FitMemory* memory) const {
   CalibrationProblem::FitMemory of_one;
   CalibrationProblem::FitMemory& known = memory != nullptr ? *memory : of_one;
-  known.correspondences.clear();  // sought anew in each prediction
+  known.correspondences.clear();  // each prediction finds its own
   Prediction prediction = with_.Predict(at.head(own_), with_jacobian, kInfinity, &known);
   if (!prediction.usable) return prediction;
-  prediction.residual += nuisance_ * at.tail(at.size() - own_);
+  prediction.residual += nuisance_columns_ * at.tail(at.size() - own_);
   if (with_jacobian) {
     prediction.jacobian.conservativeResize(Eigen::NoChange, at.size());
-    prediction.jacobian.rightCols(at.size() - own_) = nuisance_;
+    prediction.jacobian.rightCols(at.size() - own_) = nuisance_columns_;
   }
   return prediction;
 }
 
-double ExtendedProblem::Missed(const Eigen::VectorXd& at) const {
+double ExtendedProblem::ResidualNorm(const Eigen::VectorXd& at) const {
   const Prediction prediction = Predict(at, /*with_jacobian=*/false);
   return prediction.usable ? prediction.residual.norm() : kInfinity;
 }
 
-Eigen::VectorXd ExtendedProblem::PartWay(double part, const Eigen::VectorXd& towards) const {
-  const Eigen::VectorXd of_problem = present_.values + part * (towards - present_.values);
+Eigen::VectorXd ExtendedProblem::PartWay(double share, const Eigen::VectorXd& target) const {
+  const Eigen::VectorXd moved = baseline_.values + share * (target - baseline_.values);
   Eigen::VectorXd at(static_cast<Eigen::Index>(parameters_.size()));
   for (Eigen::Index k = 0; k < at.size(); ++k) at[k] = parameters_[k].start;
-  at.head(shared_) = of_problem.head(shared_);
-  at.segment(shared_ + added_, own_ - shared_ - added_) = of_problem.tail(own_ - shared_ - added_);
+  at.head(shared_) = moved.head(shared_);
+  at.segment(shared_ + added_, own_ - shared_ - added_) = moved.tail(own_ - shared_ - added_);
   for (Eigen::Index k = shared_; k < shared_ + added_; ++k)
     if (const std::optional<double> null = NullOf(*effect_, study_.fitted[k]))
-      at[k] = *null + part * (at[k] - *null);
+      at[k] = *null + share * (at[k] - *null);
   for (Eigen::Index k = 0; k < at.size(); ++k)
     at[k] = std::clamp(at[k], parameters_[k].min, parameters_[k].max);
   return at;

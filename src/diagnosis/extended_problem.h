@@ -14,13 +14,14 @@
 
 namespace lacuna {
 
-// The model that effects are tried on.
-struct PresentModel {
+// The fitted model without any additional effect, with which effects are compared. References must
+// outlive it.
+struct BaselineModel {
   const CalibrationProblem& problem;
-  const Eigen::VectorXd& values;   // of its parameters
-  const LinearisedMisfit& misfit;  // there
+  const Eigen::VectorXd& values;   // the fitted values of problem.parameters()
+  const LinearisedMisfit& misfit;  // at `values`
   Progress* progress;
-  RefitStore* kept = nullptr;  // where fits are kept, and found again
+  RefitStore* kept = nullptr;  // finished fits are read from here and added to it; null: not kept
 };
 
 struct NamedEstimate {
@@ -28,61 +29,68 @@ struct NamedEstimate {
   ParameterEstimate estimate;
 };
 
-// Its parameters are the present model's, the effect's, those of recordings; then the amounts of
-// the nuisances that were adopted, which change the misfit as they did at the present model.
+// The baseline model with an effect and the adopted nuisances. The order of its parameters is:
+// those of the baseline study, those of the effect, the nuisance parameters of the recordings, and
+// the amounts of the adopted nuisances, which change the residual by the same columns as at the
+// baseline.
 class ExtendedProblem {
  public:
-  // Null `effect`: the model as it is. What is given must outlive it.
-  ExtendedProblem(const PresentModel& present, const ScoredVariant* effect,
+  // Null `effect`: the baseline with the adopted nuisances. The arguments must outlive the problem.
+  ExtendedProblem(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted);
 
-  // The problem that has the effect, without the amounts of nuisances.
+  // The model with the effect, without the amounts of the adopted nuisances.
   const CalibrationProblem& problem() const { return with_; }
-  // The parameters of the effect that the problem has more, in the order of its card, at these
-  // values of the problem's parameters.
+  // The parameters of the effect, in the order of its card, at these values of the problem's
+  // parameters.
   Eigen::VectorXd OwnParameters(const Eigen::VectorXd& values) const;
-  Eigen::Index OwnCount() const { return own_; }  // of the parameters, without the amounts
-  // Of a calibration's estimates, those of what makes the effect's size, and its others.
+  // Number of parameters without the amounts of the adopted nuisances.
+  Eigen::Index OwnCount() const { return own_; }
+  // The estimates of the parameters that make the effect's size, and of its other fitted
+  // parameters.
   std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const;
   std::vector<NamedEstimate> OthersIn(const Calibration& calibration) const;
 
-  // Where a fit is to begin: where first order expects the best parameters, or part of the way
-  // there, or at the present ones.
+  // The start of a fit: the values that first order predicts to be the best, or a part of the way
+  // to them, or the baseline's own values, whichever gives the smallest residual first.
   Eigen::VectorXd Start() const;
-  // With the effect held at a size, everything else where it is best: what a size asks of the other
-  // parameters is no straight line. Empty: nothing could be fitted. Throws Interrupted.
-  Eigen::VectorXd StartAtItsSize(const std::string& stage) const;
+  // The best start with the effect held near a given share of its predicted size and the other
+  // parameters fitted: their dependence on the size is not linear. Empty: no fit succeeded. Throws
+  // Interrupted.
+  Eigen::VectorXd StartAtFixedSize(const std::string& stage) const;
 
-  // Throws Interrupted.
+  // Fits all parameters. `holds_effect`: the effect stays near its start, by a narrow prior. Throws
+  // Interrupted.
   Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                             bool holds_effect = false) const;
-  // The model with the effect fitted from its study's own start, nuisances apart.
+  // Fits the model with the effect, but without adopted nuisances, from the study's own start.
   Calibration CalibrateAfresh() const;
 
  private:
   std::vector<CalibratedParameter> ParametersFrom(const Eigen::VectorXd& start,
                                                   bool holds_effect) const;
-  // A fit that begins so, or what was kept of it. `what`: which of those that begin so.
-  Calibration Kept(const std::string& what, const std::vector<CalibratedParameter>& parameters,
+  // The kept result of this fit, or else that of `fit`, which is then kept. `purpose` distinguishes
+  // fits with the same start.
+  Calibration Kept(const std::string& purpose, const std::vector<CalibratedParameter>& parameters,
                    const std::function<Calibration()>& fit) const;
   std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
-                    const std::string& what) const;
+                    const std::string& purpose) const;
   Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian,
                      CalibrationProblem::FitMemory* memory = nullptr) const;
-  double Missed(const Eigen::VectorXd& at) const;
-  // From the present parameters towards others, and the effect from nothing towards the size that
-  // it begins with.
-  Eigen::VectorXd PartWay(double part, const Eigen::VectorXd& towards) const;
+  double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
+  // The baseline's values moved by a share of the way to `target`, and the effect by the same share
+  // of the way from its null value to its start.
+  Eigen::VectorXd PartWay(double share, const Eigen::VectorXd& target) const;
 
-  const PresentModel& present_;
+  const BaselineModel& baseline_;
   const ScoredVariant* effect_;
   PredictionStudy study_;
   CalibrationProblem with_;
-  // How many of the parameters are the model's, then the effect's, and, with those of recordings,
-  // all of with_'s.
+  // Number of the baseline study's parameters, of those of the effect, and of all parameters of
+  // with_, including those of the recordings.
   Eigen::Index shared_, added_, own_;
-  Eigen::VectorXd left_;      // whitened misfit of the present model, fitted frames
-  Eigen::MatrixXd nuisance_;  // and how what was adopted changes it, per unit
+  Eigen::VectorXd residual_;          // whitened, of the baseline in the fitted frames
+  Eigen::MatrixXd nuisance_columns_;  // its changes by the adopted nuisances, per unit amount
   std::vector<CalibratedParameter> parameters_;
 };
 

@@ -5,14 +5,17 @@
 #include <cstdint>
 #include <limits>
 
+#include "diagnosis/thresholds.h"
 #include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kSeen = 1e-8;  // of a column's square: less is the rounding of projecting it out
+// What remains of a column's square after a projection, relative to it, is rounding below this.
+constexpr double kRounding = 1e-8;
 
-// Expected error of the held-out frames after a fit of the fitted ones.
+// Expected rms of the held-out frames, over σ, after a fit of the `chosen` columns to the fitted
+// ones.
 double ExpectedHeldOut(const WeighedColumns& weighed, const std::vector<int>& chosen,
                        double variance, const LinearisedMisfit& misfit) {
   const LinearFit fit = weighed.fitted.Fit(chosen, variance);
@@ -49,7 +52,7 @@ Score ScoreOf(const WeighedColumns& weighed, const std::vector<int>& base, const
   score.size = after.change.tail(count);
   score.deviation = after.deviation.tail(count);
   score.explained = before.misfit > 0 ? std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0) : 0;
-  score.held_out_in_noise = ExpectedHeldOut(weighed, with, variance, misfit);
+  score.held_out_rms_over_sigma = ExpectedHeldOut(weighed, with, variance, misfit);
   const Eigen::MatrixXd remaining = weighed.all.Remaining(base, own, own, variance);
   double raw = 0, visible = 0;
   score.detectable.setConstant(count, std::numeric_limits<double>::infinity());
@@ -58,36 +61,49 @@ Score ScoreOf(const WeighedColumns& weighed, const std::vector<int>& base, const
     const double square = weighed.all.Square(own[k]);
     raw += unit * square;
     visible += unit * remaining(k, k);
-    if (remaining(k, k) > kSeen * square && remaining(k, k) > 0)
-      score.detectable[k] = kStandsOut * std::sqrt(variance / remaining(k, k));
+    if (remaining(k, k) > kRounding * square && remaining(k, k) > 0)
+      score.detectable[k] =
+          kThresholds.ranking.detectable_deviations * std::sqrt(variance / remaining(k, k));
   }
   if (raw > 0) score.absorbed = std::clamp(1 - visible / raw, 0.0, 1.0);
   return score;
 }
 
+namespace {
+
+// The residual with the frames of each recording shifted in time, cyclically, and a random sign for
+// each series.
+Eigen::VectorXd ShuffledResidual(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit,
+                                 uint64_t draw) {
+  Eigen::VectorXd shuffled = residual;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
+    const Eigen::Index series = part.layout.series;
+    const Eigen::Index shift = static_cast<Eigen::Index>(RandomBits({draw, part.recording, 1}) %
+                                                         static_cast<uint64_t>(frames));
+    for (Eigen::Index s = 0; s < series; ++s) {
+      const double sign =
+          RandomBits({draw, part.recording, 2, static_cast<uint64_t>(s)}) % 2 == 0 ? 1 : -1;
+      for (Eigen::Index f = 0; f < frames; ++f)
+        shuffled[part.first_row + f * series + s] =
+            sign * residual[part.first_row + (f + shift) % frames * series + s];
+    }
+  }
+  return shuffled;
+}
+
+}  // namespace
+
 double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& misfit,
                        const std::vector<int>& best, const std::vector<int>& base,
                        const std::vector<std::vector<int>>& effects, double variance) {
-  constexpr int kDraws = 20;
-  const Eigen::VectorXd left =
+  const Eigen::VectorXd residual =
       weighed.residual + weighed.columns(Eigen::all, best) * weighed.all.Fit(best, variance).change;
+  constexpr int kDraws = kThresholds.ranking.control_draws;
   std::vector<double> largest;
   for (uint64_t draw = 0; draw < kDraws; ++draw) {
-    Eigen::VectorXd shuffled = left;
-    for (const LinearisedMisfit::Part& part : misfit.parts) {
-      const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
-      const Eigen::Index series = part.layout.series;
-      const Eigen::Index shift = static_cast<Eigen::Index>(RandomBits({draw, part.recording, 1}) %
-                                                           static_cast<uint64_t>(frames));
-      for (Eigen::Index s = 0; s < series; ++s) {
-        const double sign =
-            RandomBits({draw, part.recording, 2, static_cast<uint64_t>(s)}) % 2 == 0 ? 1 : -1;
-        for (Eigen::Index f = 0; f < frames; ++f)
-          shuffled[part.first_row + f * series + s] =
-              sign * left[part.first_row + (f + shift) % frames * series + s];
-      }
-    }
-    const LinearGaussianModel control = weighed.all.WithResidual(shuffled, weighed.columns);
+    const LinearGaussianModel control =
+        weighed.all.WithResidual(ShuffledResidual(residual, misfit, draw), weighed.columns);
     const double before = control.Fit(base, variance).log_evidence;
     double most = 0;
     for (const std::vector<int>& effect : effects)
@@ -95,7 +111,7 @@ double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& mi
     largest.push_back(most);
   }
   std::sort(largest.begin(), largest.end());
-  return largest[kDraws - 2];
+  return largest[kDraws - 1 - kThresholds.ranking.control_exceptions];
 }
 
 }  // namespace lacuna

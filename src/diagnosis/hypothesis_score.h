@@ -1,5 +1,9 @@
-// Hypotheses about one misfit, each a few columns of what it can change there, scored by how well
-// they explain it to first order, and what they would explain by chance.
+// Scores hypotheses about one misfit to first order.
+//
+// A hypothesis is a set of columns C that changes the whitened residual r to r + C a. Its evidence
+// is the difference of the log evidence of the linear Gaussian models with and without C
+// (analysis/linear_evidence.h), each at the best values of its parameters. Sets of columns are
+// given as indices into WeighedColumns::columns. All functions are pure.
 #ifndef LACUNA_DIAGNOSIS_HYPOTHESIS_SCORE_H_
 #define LACUNA_DIAGNOSIS_HYPOTHESIS_SCORE_H_
 
@@ -11,41 +15,45 @@
 
 namespace lacuna {
 
-// Standard deviations by which an effect must stand out to be noticed among some dozens in four
-// cases of five: what "detectable" means.
-inline constexpr double kStandsOut = 5;
-
-// What first order says about one hypothesis.
 struct Score {
-  double evidence = 0;        // ln of the odds against the model as it is, less the price of trying
+  double evidence = 0;        // ln of the odds against the model, less the selection penalty
   Eigen::VectorXd size;       // of the candidate's amounts, in their units
-  Eigen::VectorXd deviation;  // of it
-  Eigen::VectorXd detectable;  // the smallest sizes that would have been noticed; may be infinite
-  double explained = 0;        // share of the squared misfit, of all frames, that goes
-  // Share of what the effect does to the misfit that the fitted parameters can do as well: 1, it
-  // cannot be seen at all.
+  Eigen::VectorXd deviation;  // standard deviations of the size
+  // The smallest sizes that would have been noticed (RankingThresholds::detectable_deviations);
+  // infinite where the residual does not depend on the size.
+  Eigen::VectorXd detectable;
+  double explained = 0;  // share of the squared residual, of all frames, that the effect explains
+  // Share of the effect's change that the fitted parameters can compensate for; 1: it is invisible.
   double absorbed = 1;
-  double held_out_in_noise = 0;  // expected error of the held-out frames, in σ; of all without any
+  // Expected rms of the held-out frames (of all frames if none are held out), over σ, after a fit
+  // with the effect.
+  double held_out_rms_over_sigma = 0;
 };
 
-// A misfit and the columns of all hypotheses about it, whitened; seen by all frames and by the
-// fitted ones.
+// The residual and the columns of all hypotheses, whitened with the noise: once for all frames, and
+// once for the frames that were fitted.
 struct WeighedColumns {
   LinearGaussianModel all, fitted;
   Eigen::VectorXd residual;  // of all frames
-  Eigen::MatrixXd columns;
+  Eigen::MatrixXd columns;   // of all frames
 };
+
+// `columns` and `priors` have the same order; `correlation_time` is that of the noise, s.
 WeighedColumns WeighColumns(const LinearisedMisfit& misfit, const Eigen::MatrixXd& columns,
                             const std::vector<LinearPrior>& priors, double correlation_time);
 
+// The indices of a, then those of b.
 std::vector<int> Joined(std::vector<int> a, const std::vector<int>& b);
 
-// Of the columns `own` beside those of the model, `base`; `before`: the model's own fit.
+// The score of the columns `own` beside the columns `base` of the model, whose own fit is `before`.
+// `variance`: of the whitened noise. The evidence contains no selection penalty yet.
 Score ScoreOf(const WeighedColumns& weighed, const std::vector<int>& base, const LinearFit& before,
               const std::vector<int>& own, double variance, const LinearisedMisfit& misfit);
 
-// The largest evidence that all effects find in nineteen of twenty residuals that no effect has
-// made: what `best` leaves, its frames moved along and its signs drawn anew.
+// The evidence that the best of `effects` reaches by chance: the value that all but
+// RankingThresholds::control_exceptions of the control draws stay below. A control is the residual
+// after a fit of the columns `best`, its frames shifted in time and its series given random signs,
+// so that no effect is in it.
 double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& misfit,
                        const std::vector<int>& best, const std::vector<int>& base,
                        const std::vector<std::vector<int>>& effects, double variance);

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 
 namespace lacuna {
 namespace {
-
-// How far beyond the plausible range a fit may go, in parts of that range.
-constexpr double kMargin = 0.1;
 
 void ReplaceMaterial(const std::shared_ptr<const Effect>& law, PredictionStudy* study) {
   const std::shared_ptr<const Effect> before = study->effects.front();
@@ -26,7 +24,7 @@ void ReplaceMaterial(const std::shared_ptr<const Effect>& law, PredictionStudy* 
   }
 }
 
-// The values that a fit of the effect starts from.
+// The start of a fit of the effect.
 Eigen::VectorXd StartOf(const ScoredVariant& scored) {
   const CandidateEffect& candidate = scored.candidate;
   Eigen::VectorXd values = candidate.effect->Parameters();
@@ -34,7 +32,7 @@ Eigen::VectorXd StartOf(const ScoredVariant& scored) {
     const int index = candidate.amplitude[k];
     const ParameterCard& parameter = candidate.effect->Card().parameters[index];
     const double size = scored.score.size[static_cast<Eigen::Index>(k)];
-    // Within what is plausible, and not at the null value, where other parameters have no meaning.
+    // Not at the null value, where the other parameters have no influence.
     double start = std::clamp(size, parameter.plausible_min, parameter.plausible_max);
     if (start == parameter.null_value) start += 0.01 * PlausibleScale(parameter);
     values[index] = start;
@@ -42,26 +40,27 @@ Eigen::VectorXd StartOf(const ScoredVariant& scored) {
   return values;
 }
 
-// Where another effect is what is missing, a fit would make this one do its work at any size.
+// Limits a parameter to its plausible range with a margin.
 void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
   const double range = plausible.plausible_max - plausible.plausible_min;
   if (plausible.dimension.SameAs(kAngle)) {
-    // No direction is the last one: a range that ended there would shut off its neighbours.
+    // Angles are periodic, so a range of fixed ends would exclude some neighbouring directions.
     prior->min = std::max(prior->min, prior->start - range);
     prior->max = std::min(prior->max, prior->start + range);
     return;
   }
-  const double margin = kMargin * range;
-  // A pilot's place is taken from the recording, wherever that is.
-  const double low = std::min(prior->start, plausible.log_scale && plausible.plausible_min > 0
-                                                ? 0.5 * plausible.plausible_min
-                                                : plausible.plausible_min - margin);
+  const double margin = kThresholds.refit.range_margin * range;
+  // The place of a pilot comes from the recording and may lie outside of the plausible range.
+  const double low =
+      std::min(prior->start, plausible.log_scale && plausible.plausible_min > 0
+                                 ? kThresholds.refit.log_range_share * plausible.plausible_min
+                                 : plausible.plausible_min - margin);
   const double high = std::max(prior->start, plausible.plausible_max + margin);
   prior->min = std::max(prior->min, low);
   prior->max = std::min(prior->max, high);
 }
 
-// Anywhere in a range: the mean and the deviation of an even distribution.
+// Gives a parameter the mean and the standard deviation of a uniform distribution over a range.
 void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior) {
   prior->min = std::min(range.min, prior->start);
   prior->max = std::max(range.max, prior->start);
@@ -107,7 +106,7 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
       with.fitted.push_back(parameter);
       continue;
     }
-    // A modulus that the effect shares with the material moves with it.
+    // A modulus that the effect shares with the material keeps the same value as the material's.
     for (ModelParameter& known : with.fitted)
       if (known.places.front() == parameter.places.front()) known.places = parameter.places;
   }

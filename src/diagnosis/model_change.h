@@ -1,5 +1,7 @@
-// A prediction study whose model is changed as a hypothesis says: by one more effect, or by another
-// elasticity law in place of its own.
+// Prediction studies whose model contains one more effect, or another elasticity law.
+//
+// Both functions return a new study and leave the given one as it is. The parameters of the result
+// are those of the given study, in their order, followed by the added ones.
 #ifndef LACUNA_DIAGNOSIS_MODEL_CHANGE_H_
 #define LACUNA_DIAGNOSIS_MODEL_CHANGE_H_
 
@@ -9,12 +11,14 @@
 
 namespace lacuna {
 
-// With a candidate's own effect, none of its parameters fitted. An elasticity law takes over the
-// moduli, those that are fitted too, from the one whose place it takes.
+// The study with the candidate's own effect, none of whose parameters is fitted. An elasticity law
+// replaces the law of the model and takes over its moduli, including those that are fitted.
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate);
 
-// With the effect at the size that first order expects (a pilot: at its pilot setting), all of its
-// parameters fitted, within what its card calls plausible. Shares no effect with `scored`.
+// The study with the effect at the size that first order predicts (a pilot: at its pilot setting).
+// All of its parameters are fitted, within a margin of the plausible range of its card, so that a
+// wrong effect cannot imitate another one at an implausible size. The effect is a copy, not shared
+// with `scored`.
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored);
 
 }  // namespace lacuna

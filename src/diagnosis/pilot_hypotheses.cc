@@ -8,20 +8,14 @@
 
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
+#include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "effects/plane_contact.h"
 
 namespace lacuna {
 namespace {
 
-// m: measured points stand off the body's edges, which sink into the plane.
-constexpr double kOffsetDeviation = 2e-3;
-constexpr size_t kMostPlanes = 3;
-constexpr double kFriction = 0.5;  // coefficient of the pilot that rubs
-// A plane that gives way by a tenth of what an element does is stiff enough.
-constexpr double kStiffer = 10;
-
-// NaN: the law has none.
+// NaN: the law has no such parameter.
 double ParameterOf(const Effect& effect, const std::string& name) {
   const int index = ParameterIndex(effect.Card(), name);
   return index < 0 ? std::nan("") : effect.Parameters()[index];
@@ -30,8 +24,9 @@ double ParameterOf(const Effect& effect, const std::string& name) {
 double ContactStiffness(const Body& body, const Effect& material) {
   const ParameterCard& card = PlaneContactCard().parameters.front();
   const double size = std::cbrt(body.weight.sum() / body.ElementCount());
-  return std::clamp(kStiffer * ParameterOf(material, "young_modulus") / size, card.plausible_min,
-                    card.plausible_max);
+  return std::clamp(
+      kThresholds.pilots.stiffness_ratio * ParameterOf(material, "young_modulus") / size,
+      card.plausible_min, card.plausible_max);
 }
 
 CandidateEffect Contact(const ProposedPlane& plane, double stiffness, double friction) {
@@ -45,12 +40,12 @@ CandidateEffect Contact(const ProposedPlane& plane, double stiffness, double fri
                                        .offset = plane.offset,
                                        .stiffness = stiffness,
                                        .friction = friction});
-  candidate.refined["offset"] = kOffsetDeviation;
+  candidate.refined["offset"] = kThresholds.pilots.plane_offset;
   if (friction > 0) candidate.refined["friction"] = friction;
   return candidate;
 }
 
-// The other laws that have all of the material's moduli.
+// The other elasticity laws whose parameters the material has all.
 std::vector<CandidateEffect> OtherLaws(const Effect& material) {
   std::vector<CandidateEffect> laws;
   for (const CatalogueEntry& entry : Catalogue()) {
@@ -87,14 +82,14 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
   const std::string& contact = PlaneContactCard().type;
   if (is_wanted(contact)) {
     std::vector<ProposedPlane> planes = ProposePlanes(problem, values, misfit);
-    planes.resize(std::min(planes.size(), kMostPlanes));
+    planes.resize(std::min(planes.size(), kThresholds.pilots.most_planes));
     const double stiffness = ContactStiffness(*problem.body(), material);
     for (const ProposedPlane& plane : planes) candidates.push_back(Contact(plane, stiffness, 0));
     if (planes.empty())
       pilots.untried.push_back(
-          {contact, "the model crosses no plane that what was measured stays behind"});
+          {contact, "the predicted body crosses no plane that the measured one stays behind"});
     else
-      candidates.push_back(Contact(planes.front(), stiffness, kFriction));
+      candidates.push_back(Contact(planes.front(), stiffness, kThresholds.pilots.friction));
   }
 
   std::map<std::string, std::string> failed;

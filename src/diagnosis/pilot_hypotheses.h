@@ -1,7 +1,10 @@
-// Hypotheses that have no derivative where they vanish: contact, which switches on, and another
-// elasticity law in place of the model's. Each is put into the model at a plausible finite setting,
-// its pilot, and the recordings are predicted once; the difference that it makes is the hypothesis'
-// column, with an amount that is 1 at the pilot.
+// Hypotheses that have no derivative at their null value: contact, which switches on, and another
+// elasticity law in place of the model's.
+//
+// Each is put into the model at a plausible finite setting, the pilot setting, and the recordings
+// are predicted once. With the residuals r of the model and r_pilot of that prediction, the column
+// of the hypothesis is r_pilot − r (m); its amount is 0 without the effect and 1 at the pilot
+// setting.
 #ifndef LACUNA_DIAGNOSIS_PILOT_HYPOTHESES_H_
 #define LACUNA_DIAGNOSIS_PILOT_HYPOTHESES_H_
 
@@ -17,7 +20,7 @@ namespace lacuna {
 
 struct PilotHypothesis {
   CandidateEffect candidate;
-  Eigen::VectorXd by;  // rows of the LinearisedMisfit: pilot run − present run, m
+  Eigen::VectorXd change;  // of the rows of the LinearisedMisfit, m
 };
 
 struct PilotHypotheses {
@@ -25,10 +28,11 @@ struct PilotHypotheses {
   std::vector<UntriedEffect> untried;
 };
 
-// Contact with the planes that the model crosses and the object does not (plane_proposals.h), the
-// deepest crossed also with friction; each elasticity law of the catalogue that the model does not
-// have, with its moduli. All but the types in `without`. `misfit`: of the model at `values`, at
-// which it is left.
+// Tries contact with the planes that the predicted body crosses and the measured one does not
+// (plane_proposals.h), also with friction on the most deeply crossed one, and each other elasticity
+// law of the catalogue that can take over the moduli of the model. Types in `without` are left out.
+// `misfit` belongs to the model at `values`. A pilot that cannot be simulated is reported in
+// `untried`. Throws Interrupted.
 PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           const LinearisedMisfit& misfit, const std::vector<std::string>& without);
 

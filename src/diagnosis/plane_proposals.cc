@@ -6,17 +6,18 @@
 #include <cmath>
 #include <limits>
 
+#include "diagnosis/thresholds.h"
 #include "effects/gravity.h"
 #include "fem/prediction.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kSameWay = 0.98;  // cosine of directions that are tried once
 constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
-// Predicted minus measured, of one recording: 3 × (points·frames), frames outermost; NaN where a
-// point was not seen. What is the same in all frames is the points' own.
+// Predicted minus measured positions of one recording: 3 × (points·frames), frames outermost; NaN
+// where a point was not observed. The error of a point that is the same in all frames is removed,
+// as it belongs to the point's place on the object.
 Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& part) {
   const Eigen::Index frames = static_cast<Eigen::Index>(part.observed.size());
   const Eigen::Index points = part.observed.front().count.size();
@@ -48,30 +49,32 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
   return displacements;
 }
 
-// The farthest that the model and the object come in some directions.
+// How far the predicted body and the object reach in some directions.
 struct Reach {
-  Eigen::MatrixXd way;  // 3 × directions, unit
+  Eigen::MatrixXd directions;  // 3 × n, unit
   Eigen::VectorXd model, object;
 
-  explicit Reach(Eigen::MatrixXd directions)
-      : way(std::move(directions)),
-        model(Eigen::VectorXd::Constant(way.cols(), kNowhere)),
+  explicit Reach(Eigen::MatrixXd unit_directions)
+      : directions(std::move(unit_directions)),
+        model(Eigen::VectorXd::Constant(directions.cols(), kNowhere)),
         object(model) {}
   void Add(const Eigen::Vector3d& predicted, const Eigen::Vector3d& displacement) {
-    model = model.cwiseMax(way.transpose() * predicted);
-    object = object.cwiseMax(way.transpose() * (predicted - displacement));
+    model = model.cwiseMax(directions.transpose() * predicted);
+    object = object.cwiseMax(directions.transpose() * (predicted - displacement));
   }
 };
 
-Eigen::MatrixXd Ways(const PredictionStudy& study, const Eigen::Vector3d& largest_misfit) {
-  std::vector<Eigen::Vector3d> ways;
-  const auto add = [&](const Eigen::Vector3d& way) {
-    const double length = way.norm();
+Eigen::MatrixXd DirectionsToTry(const PredictionStudy& study,
+                                const Eigen::Vector3d& largest_misfit) {
+  std::vector<Eigen::Vector3d> directions;
+  const auto add = [&](const Eigen::Vector3d& direction) {
+    const double length = direction.norm();
     if (length == 0) return;
-    const bool known = std::any_of(ways.begin(), ways.end(), [&](const Eigen::Vector3d& other) {
-      return other.dot(way) > kSameWay * length;
-    });
-    if (!known) ways.emplace_back(way / length);
+    const bool known =
+        std::any_of(directions.begin(), directions.end(), [&](const Eigen::Vector3d& other) {
+          return other.dot(direction) > kThresholds.pilots.same_direction_cosine * length;
+        });
+    if (!known) directions.emplace_back(direction / length);
   };
   for (const double sign : {1.0, -1.0})
     for (int axis = 0; axis < 3; ++axis) add(sign * Eigen::Vector3d::Unit(axis));
@@ -80,12 +83,13 @@ Eigen::MatrixXd Ways(const PredictionStudy& study, const Eigen::Vector3d& larges
     add(-*gravity);
   }
   add(largest_misfit);
-  Eigen::MatrixXd all(3, static_cast<Eigen::Index>(ways.size()));
-  for (size_t k = 0; k < ways.size(); ++k) all.col(static_cast<Eigen::Index>(k)) = ways[k];
+  Eigen::MatrixXd all(3, static_cast<Eigen::Index>(directions.size()));
+  for (size_t k = 0; k < directions.size(); ++k)
+    all.col(static_cast<Eigen::Index>(k)) = directions[k];
   return all;
 }
 
-// For each node, the measured points by their distance at rest, nearest first.
+// For each node the measured points, the nearest at rest first.
 std::vector<std::vector<int>> PointsNear(const std::vector<int>& nodes,
                                          const Eigen::Matrix3Xd& rest,
                                          const Eigen::Matrix3Xd& places) {
@@ -143,12 +147,12 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
       if (displacement.norm() > largest.norm()) largest = displacement;
   }
 
-  // The largest of so many errors is about √(2 ln count) σ: a crossing by less is noise.
-  const double clear =
+  // The expected maximum of that many Gaussian errors.
+  const double significant =
       noise * std::sqrt(2 * std::log(static_cast<double>(misfit.residual.size()) + 1));
 
-  // The measured points alone tell where nothing is crossed.
-  Reach of_points(Ways(problem.study(), largest));
+  // A direction in which not even the measured points cross needs no simulation.
+  Reach of_points(DirectionsToTry(problem.study(), largest));
   for (size_t p = 0; p < misfit.parts.size(); ++p) {
     Eigen::Index column = 0;
     for (const Observed& seen : misfit.parts[p].observed)
@@ -158,20 +162,22 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
                         displacements[p].col(column));
   }
   std::vector<int> crossed;
-  for (Eigen::Index k = 0; k < of_points.way.cols(); ++k)
-    if (of_points.model[k] - of_points.object[k] > clear) crossed.push_back(static_cast<int>(k));
+  for (Eigen::Index k = 0; k < of_points.directions.cols(); ++k)
+    if (of_points.model[k] - of_points.object[k] > significant)
+      crossed.push_back(static_cast<int>(k));
   std::vector<ProposedPlane> planes;
   if (crossed.empty()) return planes;
 
-  Reach of_body(of_points.way(Eigen::all, crossed));
+  Reach of_body(of_points.directions(Eigen::all, crossed));
   for (size_t p = 0; p < misfit.parts.size(); ++p) {
     const size_t recording = misfit.parts[p].recording;
     AddBody(problem.ModelAt(recording, values), problem.NuisanceOf(recording, values),
             displacements[p], &of_body);
   }
-  for (Eigen::Index k = 0; k < of_body.way.cols(); ++k) {
+  for (Eigen::Index k = 0; k < of_body.directions.cols(); ++k) {
     const double crossing = of_body.model[k] - of_body.object[k];
-    if (crossing > clear) planes.push_back({-of_body.way.col(k), -of_body.object[k], crossing});
+    if (crossing > significant)
+      planes.push_back({-of_body.directions.col(k), -of_body.object[k], crossing});
   }
   std::stable_sort(planes.begin(), planes.end(),
                    [](const auto& a, const auto& b) { return a.crossing > b.crossing; });

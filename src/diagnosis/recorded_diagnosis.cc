@@ -46,7 +46,8 @@ RecordedEffect EffectOf(const RankedEffect& effect) {
     recorded.separating_experiment = candidate.effect->Card().separating_experiment;
   recorded.look_alikes = effect.scored.look_alikes;
   const Score& score = effect.scored.score;
-  recorded.first_order = {score.evidence, score.explained, score.absorbed, score.held_out_in_noise};
+  recorded.first_order = {score.evidence, score.explained, score.absorbed,
+                          score.held_out_rms_over_sigma};
   recorded.sizes = SizesOf(effect);
   if (effect.refitted) recorded.refit = RefitOf(effect);
   return recorded;
@@ -65,9 +66,10 @@ DiagnosisRecord RecordOf(const Diagnosis& diagnosis) {
   record.best_rms_over_sigma = diagnosis.best_rms_over_sigma;
   record.errors = diagnosis.errors;
   for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-    record.nuisances.push_back({nuisance.candidate.name, nuisance.candidate.what,
-                                nuisance.candidate.advice, nuisance.evidence, nuisance.explained,
-                                nuisance.refitted, nuisance.adopted, nuisance.doubt});
+    record.nuisances.push_back({nuisance.candidate.card.name, nuisance.candidate.what,
+                                nuisance.candidate.card.advice, nuisance.evidence,
+                                nuisance.explained, nuisance.refitted, nuisance.adopted,
+                                nuisance.doubt});
   for (const RankedEffect& effect : diagnosis.ranking) record.ranking.push_back(EffectOf(effect));
   record.untried = diagnosis.untried;
   for (const RankedEffect& effect : diagnosis.alternatives.effects)

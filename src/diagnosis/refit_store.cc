@@ -50,7 +50,7 @@ RefitStore::RefitStore(std::filesystem::path file, json origin)
     for (const auto& [key, fit] : there.at("fits").items()) fits_[key] = FromJson(fit);
     content_ = there;
   } catch (const json::exception&) {
-    fits_.clear();  // it was changed by another hand
+    fits_.clear();  // the file is damaged
   }
 }
 
@@ -66,7 +66,7 @@ void RefitStore::Keep(const std::string& key, const Calibration& calibration) {
 }
 
 void RefitStore::Drop() {
-  std::error_code ignored;  // what stays behind is of the same fit, or not read
+  std::error_code ignored;  // a file that remains is harmless: its origin is checked
   std::filesystem::remove(file_, ignored);
 }
 

@@ -1,4 +1,8 @@
-// The fits of a diagnosis under way, kept one by one: one that was stopped goes on where it was.
+// Keeps the fits of a diagnosis that is under way in a file, so that a diagnosis that was stopped
+// continues where it was.
+//
+// The file refits.json holds {"schema_version", "of": origin, "fits": {key: fit}}. Each fit is
+// written as soon as it is finished. The store is not meant for use by several threads.
 #ifndef LACUNA_DIAGNOSIS_REFIT_STORE_H_
 #define LACUNA_DIAGNOSIS_REFIT_STORE_H_
 
@@ -11,18 +15,19 @@
 
 namespace lacuna {
 
-// Of each fit what a refit makes use of: whether it is usable and why not, its parameters, their
-// estimates, the rms misfit that it leaves.
+// Of a calibration only the parts that a refit uses are kept: whether it is usable, its message,
+// parameters, estimates and rms.
 class RefitStore {
  public:
-  // Goes on with what `file` has where that is of the same origin; else with nothing.
+  // Reads `file` if it has the same origin (the fit and the options of the diagnosis). Otherwise,
+  // and if the file is missing or damaged, the store starts empty.
   RefitStore(std::filesystem::path file, nlohmann::json origin);
 
-  // Null: there is none. `key`: a hash of all that decides it.
+  // Null: no such fit was kept. `key`: a hash of everything that determines the fit.
   const Calibration* Find(const std::string& key) const;
-  // Writes the file anew. Throws InputError when it cannot be written.
+  // Adds a fit and rewrites the file. Throws InputError if it cannot be written.
   void Keep(const std::string& key, const Calibration& calibration);
-  // All is told elsewhere: the file goes.
+  // Removes the file, once the result of the diagnosis has been saved.
   void Drop();
 
  private:

@@ -1,4 +1,7 @@
-// Effects and nuisances with the evidence that first order gives them.
+// Effects and nuisances with the evidence that they have to first order, as plain values.
+//
+// Evidence is the natural logarithm of the odds against the model without the hypothesis. Columns
+// have the rows of a LinearisedMisfit, in m per unit of the amount that they belong to.
 #ifndef LACUNA_DIAGNOSIS_SCORED_EFFECT_H_
 #define LACUNA_DIAGNOSIS_SCORED_EFFECT_H_
 
@@ -10,54 +13,54 @@
 #include "analysis/linear_evidence.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/hypothesis_score.h"
-#include "diagnosis/nuisance_candidates.h"
+#include "diagnosis/nuisance.h"
 
 namespace lacuna {
 
-// An effect in one of its variants.
+// One variant of an effect: at one place, in one direction or with one time scale.
 struct ScoredVariant {
   CandidateEffect candidate;
   Score score;
-  Eigen::VectorXd fitted;  // what the problem's parameters would become with it
+  Eigen::VectorXd expected_values;  // of the problem's parameters, with the effect in the model
 };
 
-// An effect in the best of its variants.
+// An effect in the variant with the most evidence.
 struct ScoredEffect : ScoredVariant {
   std::vector<std::string> parameters, units;  // of score.size
-  std::vector<std::string> look_alikes;        // effects that first order cannot tell from this one
-  // Other variants that are better than their neighbours along their line, the best first: softer
-  // here may look like stiffer there.
+  std::vector<std::string> look_alikes;  // effects that first order cannot distinguish from it
+  // Further variants with more evidence than their neighbours in place, direction or time, the best
+  // first: a bar that is softer at one end may look like one that is stiffer at the other.
   std::vector<ScoredVariant> elsewhere;
 };
 
 struct ScoredNuisance {
   NuisanceCandidate candidate;
   double evidence = 0;                  // to first order
-  std::optional<double> refitted = {};  // once the model with it has been fitted again
-  double explained = 0;
-  bool adopted = false;  // it is so certain that the model is taken with it from here on
-  // Evidence that what is unknown of its change (NuisanceCandidate::unknown) could lend to an
-  // effect.
+  std::optional<double> refitted = {};  // evidence after a refit of the model with the nuisance
+  double explained = 0;                 // share of the squared residual that it explains
+  bool adopted = false;                 // part of the model
+  // Evidence that the unknown part of the nuisance (NuisanceCandidate::unknown) could contribute to
+  // an effect that happens to lie along it.
   double doubt = 0;
 };
 
-// Columns of nuisances that are part of the model, in rows of a LinearisedMisfit.
+// The nuisances that are part of the model.
 struct AdoptedNuisances {
-  Eigen::MatrixXd by;
+  Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
-  Eigen::Index always = 0;  // the first columns, which every model has
+  Eigen::Index always = 0;  // the first columns belong to nuisances that every model has
 
-  AdoptedNuisances Always() const;
+  AdoptedNuisances Always() const;  // only those
   AdoptedNuisances And(const NuisanceCandidate& nuisance) const;
-  bool HasMore() const { return by.cols() > always; }
+  bool HasMore() const { return columns.cols() > always; }
 };
 
-// What a variant of an effect, or a nuisance, would change, in rows of a LinearisedMisfit.
+// A variant of an effect, or a nuisance, as the ranking tried it.
 struct TriedVariant {
   std::string type;
-  Eigen::MatrixXd by;
+  Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
-  double price = 0;  // of having tried its rivals too
+  double selection_penalty = 0;  // SelectionPenalty of its rivals, which its evidence is reduced by
   bool is_nuisance = false;
 };
 

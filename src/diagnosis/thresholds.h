@@ -7,7 +7,132 @@
 #ifndef LACUNA_DIAGNOSIS_THRESHOLDS_H_
 #define LACUNA_DIAGNOSIS_THRESHOLDS_H_
 
+#include <cstddef>
+
 namespace lacuna {
+
+// The first-order ranking of effects and nuisances (effect_ranking.h, hypothesis_score.h).
+struct RankingThresholds {
+  // The size of an effect is detectable if it exceeds so many of its standard deviations. Among
+  // some dozens of effects, 5 find the right one in four cases of five.
+  // Higher: small effects count as undetectable. Lower: sizes count that chance also produces.
+  double detectable_deviations = 5;
+  // Canonical correlation of two effects' columns above which first order cannot tell them apart.
+  // Higher: a similar effect may be overlooked. Lower: more refits, more ambiguous verdicts.
+  double look_alike_correlation = 0.95;
+  // A nuisance enters the model if its evidence exceeds that of the best effect by this much.
+  // Higher: effects are scored in the presence of an obvious nuisance. Lower: a nuisance may hide
+  // the effect that is missing.
+  double nuisance_lead = 5;
+  // The largest number of nuisances that enter the model in this way.
+  // Higher: slower, and more freedom for nuisances to imitate an effect.
+  int most_adopted_nuisances = 3;
+  // Number of shuffled residuals that are ranked as a control, and how many of them may find more
+  // evidence than the control value. With 20 and 1 the value is a 95 % quantile.
+  // More draws: slower, a smoother quantile. More exceptions: a lower bar for effects.
+  int control_draws = 20, control_exceptions = 1;
+};
+
+// Which hypotheses are refitted, and how a refit is judged (refits.h, effect_refit.h).
+struct RefitThresholds {
+  // An effect with less evidence is neither refitted nor looked at again.
+  // Higher: faster, an effect that first order underrates is missed. Lower: pointless refits.
+  double least_evidence = 3;
+  // First order errs by some tens of per cent of the evidence, so effects beyond the number that
+  // the user asks for are refitted too: those within `close_behind` of the best one, and those with
+  // this share of the evidence of the last one that was asked for.
+  // A larger `close_behind`, a smaller share: slower, a wrong ranking is corrected more often.
+  double close_behind = 5;
+  double share_of_last = 0.8;
+  // The largest number of refitted effects, unless the user asks for more.
+  int most_effects = 6;
+  // A refit also starts from other variants (places, times) with this share of the evidence of the
+  // best variant. Lower: slower, fewer local minima.
+  double variant_share = 0.8;
+  // A nuisance with this share of the best effect's evidence, both to first order, is refitted, so
+  // that both are judged by a refit. At most so many are.
+  // A lower share, more nuisances: slower, a nuisance is ruled out more reliably.
+  double rival_nuisance_share = 0.5;
+  size_t most_rival_nuisances = 3;
+  // An effect is tried in place of the adopted nuisances if first order gives it this share of
+  // their evidence. Lower: slower, fewer effects hidden by a nuisance.
+  double alternative_share = 0.5;
+  // The residuals of the best refits are ranked again, along the refitted motion: of so many at
+  // most, and no farther behind the best than this evidence.
+  // Higher: slower, and a second missing effect is recognised also behind a weaker first one.
+  int most_second_rankings = 3;
+  double second_ranking_lead = 10;
+  // A model that is far from the measurements is also ranked over this share of the fitted time,
+  // before its motion loses the phase of the measured one.
+  // Higher: the motion may have lost the phase already. Lower: less data.
+  double early_share = 0.25;
+  // A time step whose error could explain the evidence is halved so many times at most.
+  int most_halvings = 3;
+
+  // A refit that leaves a larger rms over σ is repeated from another start if the model was far
+  // off. Higher: a refit may stay in a local minimum. Lower: every refit is made twice.
+  double converged_rms = 1.2;
+  // A refit is likely to have ended in a local minimum if it gains less than this share of the
+  // evidence that first order predicts ...
+  // Higher: more repeated refits. Lower: local minima are accepted.
+  double kept_share = 0.5;
+  // ... unless it explains this share of the squared residual in excess of the noise ...
+  double explained_excess = 0.85;
+  // ... where that excess is more than this share of the noise, which is only estimated.
+  double noise_uncertainty = 0.2;
+  // It is also likely if the rms of the held-out frames grows by more than this factor.
+  // Higher: a misplaced refit is accepted. Lower: noise alone repeats a refit.
+  double held_out_growth = 1.1;
+  // A first-order step that would reduce a modulus below this share of itself is not followed.
+  double least_modulus_share = 0.2;
+  // A fitted parameter may leave its plausible range by this share of the range; one on a
+  // logarithmic scale may fall to the second share of the lower end.
+  // Larger: a wrong effect can imitate another one at an implausible size.
+  double range_margin = 0.1, log_range_share = 0.5;
+};
+
+// Priors of the nuisances: standard deviations of their amounts. Higher values let a nuisance
+// explain more, so that effects need more evidence; lower values let effects explain errors of the
+// experiment.
+struct NuisanceThresholds {
+  // Dimensions of the object, relative: 0.05 mm of 17 mm.
+  double shape = 0.003;
+  // A misplaced grip, frame or registration, m, and a misoriented one, rad.
+  double shift = 1e-3, rotation = 0.02;
+  // The time of a single frame, as a share of the frame spacing.
+  double frame_time = 0.1;
+  // The extrapolation to infinitely fine elements: the correction beyond the finer mesh, relative
+  // to the change of that mesh, is uncertain by itself and by no less than this.
+  double mesh_limit = 0.4;
+  // The part of the last refinement's change that the fitted parameters cannot compensate for is
+  // known to this share, in any direction. Calibrated on bars of 160 to 190 quadratic elements,
+  // where refining twelvefold left 2 to 5 σ of an error of 70 to 95 σ in other directions.
+  double mesh_unknown = 0.4;
+  // The extrapolation to infinitely short time steps, relative to its change; and the share to
+  // which the departure from the assumed order is known. Calibrated on bars with a second-order
+  // scheme: 1/16 of the step was off the limit by 0.1 of that departure in eight bars, and by 0.6
+  // in two that vibrate in modes which no step resolves.
+  double step_limit = 0.05, step_unknown = 0.7;
+  // Nuisances of single frames are left out of recordings with more frames: each frame is too small
+  // a part of the data, and the columns would need too much memory.
+  size_t most_single_frames = 400;
+};
+
+// Contact planes and other pilot simulations (pilot_hypotheses.h, plane_proposals.h).
+struct PilotThresholds {
+  // The largest number of planes that are tried. Higher: slower, one simulation each.
+  size_t most_planes = 3;
+  // Standard deviation of a plane's offset, m: measured points stand off the edges of the body,
+  // which penetrate the plane. Higher: contact needs more evidence.
+  double plane_offset = 2e-3;
+  // Coefficient of friction of the pilot with friction.
+  double friction = 0.5;
+  // A plane is so many times as stiff as one element: it is then hard compared with the body, and
+  // does not limit the time step. Higher: more iterations per step.
+  double stiffness_ratio = 10;
+  // Directions whose cosine is larger are tried once.
+  double same_direction_cosine = 0.98;
+};
 
 // When an error counts as noise, and when a nuisance explains it (verdict.h).
 struct AdequacyThresholds {
@@ -81,6 +206,10 @@ struct NamingThresholds {
 };
 
 struct DiagnosisThresholds {
+  RankingThresholds ranking;
+  RefitThresholds refit;
+  NuisanceThresholds nuisances;
+  PilotThresholds pilots;
   AdequacyThresholds adequacy;
   NamingThresholds naming;
 };

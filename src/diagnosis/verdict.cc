@@ -68,13 +68,13 @@ double ExplainedExcess(double before, double after) {
 bool PredictsHeldOutFrames(const Diagnosis& diagnosis) {
   const ScoredNuisance* best = nullptr;
   for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-    if (!nuisance.candidate.is_always_taken &&
+    if (!nuisance.candidate.card.is_always_in_model &&
         (nuisance.adopted || nuisance.evidence > kNaming.least_evidence) &&
         (best == nullptr || nuisance.evidence > best->evidence))
       best = &nuisance;
   return !diagnosis.errors.has_held_out ||
          diagnosis.errors.without_nuisances <= kAdequacy.held_out_noise ||
-         (best != nullptr && best->candidate.is_of_single_frames);
+         (best != nullptr && best->candidate.card.acts_on_single_frames);
 }
 
 // The largest evidence that an uncertain discretisation could account for, and the nuisance that it
@@ -101,7 +101,7 @@ double EvidenceNeeded(const Diagnosis& diagnosis) {
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
     // Mesh, step and dimensions are simulated and have bounded priors: no linearisation omits
     // anything.
-    if (nuisance.adopted && !nuisance.candidate.is_always_taken)
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
       of_nuisances += std::max(0.0, nuisance.evidence);
   }
   return std::max(
@@ -119,7 +119,7 @@ double LeadNeeded(const Diagnosis& diagnosis, double evidence) {
 // Whether a nuisance explains enough to be a cause of the misfit.
 bool IsCause(const ScoredNuisance& nuisance, bool at_noise) {
   const bool has_evidence = nuisance.evidence > kNaming.least_evidence;
-  if (nuisance.candidate.is_always_taken)
+  if (nuisance.candidate.card.is_always_in_model)
     return has_evidence && !at_noise && nuisance.explained > kAdequacy.discretisation_share;
   return nuisance.adopted || has_evidence;
 }
@@ -143,7 +143,7 @@ NuisanceCauses FindNuisanceCauses(const Diagnosis& diagnosis) {
       continue;
     }
     causes.most_explained = std::max(causes.most_explained, nuisance.explained);
-    causes.names.push_back(nuisance.candidate.name);
+    causes.names.push_back(nuisance.candidate.card.name);
     causes.explaining.emplace_back(NuisanceExplains{index, nuisance.explained});
   }
   return causes;
@@ -259,14 +259,14 @@ std::vector<SuggestedStep> AddRivalNuisances(const Diagnosis& diagnosis, const R
   for (size_t k = 0; k < diagnosis.nuisances.size(); ++k) {
     const ScoredNuisance& nuisance = diagnosis.nuisances[k];
     const int index = static_cast<int>(k);
-    const double part = nuisance.candidate.name == "grip_compliance" ? kNaming.grip_share : 1;
+    const double part = nuisance.candidate.card.outgrows_first_order ? kNaming.grip_share : 1;
     const double evidence = nuisance.refitted.value_or(nuisance.evidence);
     if (DiscretisationUncertainty(nuisance.doubt) > best.evidence) {
-      conclusion->effects.push_back(nuisance.candidate.name);
+      conclusion->effects.push_back(nuisance.candidate.card.name);
       refinements.emplace_back(RefineDiscretisation{index, /*fit_again=*/true});
     } else if (!nuisance.adopted &&
                evidence > std::min(best.evidence - lead, part * best.evidence)) {
-      conclusion->effects.push_back(nuisance.candidate.name);
+      conclusion->effects.push_back(nuisance.candidate.card.name);
       checks.emplace_back(CheckNuisance{index});
       if (evidence > best.evidence)
         conclusion->reasons.emplace_back(NuisanceHasMoreEvidence{index, evidence});
@@ -359,7 +359,7 @@ void DecideAgainstNuisances(Diagnosis* diagnosis) {
   conclusion.next_steps = {SeparateLookAlikes{TypeOf(best)}};
   for (size_t k = 0; k < diagnosis->nuisances.size(); ++k) {
     const ScoredNuisance& nuisance = diagnosis->nuisances[k];
-    if (nuisance.adopted && !nuisance.candidate.is_always_taken)
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
       conclusion.next_steps.emplace_back(CheckNuisance{static_cast<int>(k)});
   }
   static_cast<Conclusion&>(*diagnosis) = std::move(conclusion);

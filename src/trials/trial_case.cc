@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "diagnosis/candidates.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "scan/random_bits.h"
@@ -97,6 +98,12 @@ bool TrialCase::Hides(const std::string& type) const {
                      [&](const HiddenEffect& effect) { return effect.type == type; });
 }
 
+NuisanceTrial TrialCase::Disturbance() const {
+  for (const NuisanceTrial& control : NuisanceControls())
+    if (control.control == nuisance) return control;
+  return {};
+}
+
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance) {
   TrialCase trial;
@@ -113,8 +120,11 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
                 draws.Between(0.016, 0.022)};
   for (int axis = 0; axis < 3; ++axis)
     trial.true_size[axis] = trial.size[axis] * (1 + 0.002 * draws.Between(-1, 1));
-  const double edge = draws.Between(1e-3, 2e-3) * draws.Sign();
-  if (nuisance == "grip") trial.clamp_error = edge;
+  const NuisanceTrial wrong = trial.Disturbance();
+  // Drawn in any case, so that the further draws of a seed do not depend on the nuisance.
+  const double edge =
+      draws.Between(wrong.least_clamp_error, wrong.largest_clamp_error) * draws.Sign();
+  if (wrong.largest_clamp_error > 0) trial.clamp_error = edge;
   // The force deflects the end of the bar by about a sixth of its length.
   const double inertia = trial.size[1] * std::pow(trial.size[2], 3) / 12;
   const double force =

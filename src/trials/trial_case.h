@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/nuisance.h"
 #include "fem/effect.h"
 
 namespace lacuna {
@@ -43,8 +44,8 @@ struct TrialCase {
   uint64_t seed = 0;
   int recordings = 1;
   bool is_scanned = false;  // true: depth cameras; false: markers
-  // The measurement error of a hard control: "grip" (the clamp ends 1 to 2 mm away from its place
-  // in the model), "bad_frame", "coarse_mesh" or "time_jitter"; empty: none.
+  // The nuisance of a hard control, by the name that its card has for that
+  // (NuisanceTrial::control); empty: none.
   std::string nuisance;
   std::vector<HiddenEffect> hidden;
 
@@ -60,6 +61,8 @@ struct TrialCase {
   double noise_correlation_time = 0;         // s
 
   bool Hides(const std::string& type) const;
+  // What is wrong with the experiment of a hard control; by default nothing.
+  NuisanceTrial Disturbance() const;
 };
 
 // Draws all that depends on the seed, without hidden effects.

@@ -43,13 +43,16 @@ void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3X
   }
 }
 
-// Moves one frame by a random rigid motion, as a failed registration would.
+// Moves one frame of a hard control with such a nuisance by a random rigid motion, as a failed
+// registration would.
 void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
+  const NuisanceTrial wrong = trial.Disturbance();
+  if (wrong.frame_shift == 0 && wrong.frame_rotation == 0) return;
   const size_t bad = 20 + RandomBits({trial.seed, 60}) % (frames->size() - 25);
   Eigen::Vector3d shift, rotation;
   for (int axis = 0; axis < 3; ++axis) {
-    shift[axis] = 8e-4 * Gauss(trial, 61, axis, recording);
-    rotation[axis] = 0.01 * Gauss(trial, 62, axis, recording);
+    shift[axis] = wrong.frame_shift * Gauss(trial, 61, axis, recording);
+    rotation[axis] = wrong.frame_rotation * Gauss(trial, 62, axis, recording);
   }
   for (auto place : (*frames)[bad].colwise())
     place += shift + rotation.cross(Eigen::Vector3d(place));
@@ -99,7 +102,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motio
   for (const Eigen::Matrix3Xd& position : motion.positions)
     frames.push_back(PointsAt(at, mesh, position));
   AddNoise(trial, recording, &frames);
-  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  SpoilFrame(trial, recording, &frames);
   std::vector<double> times;
   for (size_t f = 0; f < frames.size(); ++f)
     times.push_back(kTrialSpacing * static_cast<double>(f));
@@ -118,7 +121,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motio
 void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
                 const std::filesystem::path& folder) {
   std::vector<Eigen::Matrix3Xd> frames = motion.positions;
-  if (trial.nuisance == "bad_frame") SpoilFrame(trial, recording, &frames);
+  SpoilFrame(trial, recording, &frames);
   std::vector<TriMesh> surfaces;
   std::vector<double> times;
   for (size_t f = 0; f < frames.size(); ++f) {

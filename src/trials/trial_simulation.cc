@@ -21,10 +21,10 @@
 namespace lacuna {
 namespace {
 
-constexpr double kRelease = 0.1037;                                              // s
-constexpr double kFitUntil = 0.451;                                              // s
-constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7, kCoarseVolume = 4e-6;  // m³, tetrahedra
-constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;                         // s
+constexpr double kRelease = 0.1037;                        // s
+constexpr double kFitUntil = 0.451;                        // s
+constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7;  // m³, tetrahedra
+constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;   // s
 
 Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double high) {
   std::vector<int> chosen;
@@ -55,11 +55,12 @@ std::vector<std::shared_ptr<const Effect>> TrueEffects(const TrialCase& trial) {
 }
 
 std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
+  const double deviation = trial.Disturbance().time_deviation;
   std::vector<double> times;
   for (int f = 0; f < kTrialFrames; ++f) {
     double time = kTrialSpacing * f;
-    if (trial.nuisance == "time_jitter")
-      time += 0.0015 * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
+    if (deviation > 0)
+      time += deviation * std::clamp(Gauss(trial, 40 + recording, f, 0), -2.0, 2.0);
     times.push_back(time);
   }
   return times;
@@ -118,14 +119,15 @@ void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, b
   if (!trial.Hides(gravity))
     known += fmt::format("  - {{type: {}, acceleration: [0, 0, {} m/s^2]}}\n", gravity,
                          -kStandardGravity);
+  const double wrong_volume = trial.Disturbance().element_volume;
   std::string yaml = fmt::format(
       "schema_version: 1\nname: {}\nmesh: {{max_volume: {} m^3, order: 2, preserve_surface: "
       "false}}\n"
       "material: {{law: {}, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
       "effects:{}\nfit: {{parameters: [{}]}}\n"
       "{}{}recordings:\n",
-      trial.name, trial.nuisance == "coarse_mesh" ? kCoarseVolume : kModelVolume,
-      NeoHookeanCard().type, known.empty() ? " []" : "\n" + known, fitted,
+      trial.name, wrong_volume > 0 ? wrong_volume : kModelVolume, NeoHookeanCard().type,
+      known.empty() ? " []" : "\n" + known, fitted,
       rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "",
       trial.is_scanned ? fmt::format("scan: {{shape_deviation: {} m}}\n", kTrialShapeError)
                        : fmt::format("place_deviation: {} m\n", 2 * kTrialPlaceError));

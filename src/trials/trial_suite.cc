@@ -15,8 +15,10 @@
 #include "core/workers.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/effect_ranking.h"
-#include "diagnosis/grip_nuisances.h"
+#include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/thresholds.h"
 #include "effects/catalogue.h"
 #include "effects/stiffness_damping.h"
 #include "experiment/reference_body.h"
@@ -30,12 +32,6 @@ namespace {
 
 // Number of draws of a case until the detectable size of its effect is plausible.
 constexpr int kMostAttempts = 8;
-
-const std::vector<std::string>& Nuisances() {
-  static const std::vector<std::string> nuisances = {"grip", "bad_frame", "coarse_mesh",
-                                                     "time_jitter"};
-  return nuisances;
-}
 
 TrialCase DrawEffectCase(const std::string& name, const std::string& group,
                          const std::vector<std::string>& types, double factor, int recordings,
@@ -111,14 +107,16 @@ std::vector<MisfitDirection> SizeDirections(const HiddenEffect& hidden) {
 std::vector<NuisanceCandidate> CaseNuisances(const CalibrationProblem& problem,
                                              const Eigen::VectorXd& values,
                                              const LinearisedMisfit& misfit,
-                                             const GripNuisances& grips,
+                                             const GripMotions& grips,
                                              const Eigen::MatrixXd& grip_columns) {
-  std::vector<NuisanceCandidate> nuisances = grips.Candidates(grip_columns);
-  for (NuisanceCandidate& nuisance : NuisancesAlwaysTaken(problem, values, misfit))
+  std::vector<NuisanceCandidate> nuisances = GripNuisances(grips, grip_columns);
+  for (NuisanceCandidate& nuisance : ModelNuisances({problem, values, misfit, grips, grip_columns}))
     nuisances.push_back(std::move(nuisance));
-  for (NuisanceCandidate& nuisance : MeasurementNuisances(problem, misfit, misfit.residual))
-    if (nuisance.name == "clock" || nuisance.name == "registration_drift")
-      nuisances.push_back(std::move(nuisance));
+  for (NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual))
+    nuisances.push_back(std::move(nuisance));
+  std::erase_if(nuisances, [](const NuisanceCandidate& nuisance) {
+    return !nuisance.card.trial.limits_detection;
+  });
   return nuisances;
 }
 
@@ -140,8 +138,8 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   const CalibrationProblem problem(study, reference.mesh);
   const Eigen::VectorXd values = TrueValues(trial, without, study, problem);
   std::vector<MisfitDirection> directions = SizeDirections(hidden);
-  const GripNuisances grips(problem);
-  directions.insert(directions.end(), grips.directions().begin(), grips.directions().end());
+  const GripMotions grips = MakeGripMotions(problem);
+  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
   LinearisedMisfit misfit = problem.Linearise(values, true, directions);
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
   // The noise of a depth camera is that along its rays and stays as estimated.
@@ -155,10 +153,10 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     columns.rightCols(more.cols()) = more;
     priors.insert(priors.end(), its_priors.begin(), its_priors.end());
   };
-  const Eigen::Index of_grips = static_cast<Eigen::Index>(grips.directions().size());
+  const Eigen::Index of_grips = static_cast<Eigen::Index>(grips.directions.size());
   for (const NuisanceCandidate& nuisance :
        CaseNuisances(problem, values, misfit, grips, misfit.by.rightCols(of_grips)))
-    add(nuisance.by, nuisance.priors);
+    add(nuisance.columns, nuisance.priors);
   const int own = static_cast<int>(columns.cols());
   if (hidden.amplitude.empty()) {
     add(ChangeBy(hidden, problem, values, misfit), {{}});
@@ -174,7 +172,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   std::vector<int> taken(own);
   std::iota(taken.begin(), taken.end(), 0);
   const double remaining = model.Remaining(taken, {own}, {own}, 1)(0, 0);
-  return remaining > 0 ? kStandsOut / std::sqrt(remaining)
+  return remaining > 0 ? kThresholds.ranking.detectable_deviations / std::sqrt(remaining)
                        : std::numeric_limits<double>::infinity();
 }
 
@@ -256,8 +254,10 @@ std::vector<TrialCase> CasesOf(const TrialSuite& suite) {
                              nuisance));
   };
   for (int k = 0; k < suite.controls; ++k) control("control", "", k);
+  const std::vector<NuisanceTrial> disturbances = NuisanceControls();
   for (int k = 0; k < suite.hard_controls; ++k)
-    control("hard_control", Nuisances()[(k / suite.recordings.size()) % Nuisances().size()], k);
+    control("hard_control",
+            disturbances[(k / suite.recordings.size()) % disturbances.size()].control, k);
   const int largest = *std::max_element(suite.factors.begin(), suite.factors.end());
   for (const std::string& type : suite.removed)
     for (const int recordings : suite.recordings)

@@ -119,6 +119,7 @@ TEST(CommandLine, ListsTheEffects) {
     EXPECT_THAT(list.said, HasSubstr(entry.card->type));
   EXPECT_EQ(Lacuna("effects gravity").said, Lacuna("explain gravity").said);
   EXPECT_THAT(Lacuna("explain gravty").said, HasSubstr("did you mean \"gravity\"?"));
+  EXPECT_THAT(Lacuna("explain time_jitter").said, HasSubstr("check the camera's clock"));
   EXPECT_EQ(Lacuna("explain").status, 2);
 }
 

@@ -14,7 +14,7 @@
 #include "core/logging.h"
 #include "diagnosis/candidates.h"
 #include "diagnosis/effect_ranking.h"
-#include "diagnosis/nuisance_candidates.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/pilot_hypotheses.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
@@ -61,7 +61,9 @@ int Run(const std::string& file, int repeats) {
     tangents.push_back(Seconds([&] { problem.Linearise(values, true, directions); }));
     pilots.push_back(Seconds([&] { RunPilots(problem, values, misfit, {}); }));
     misfit = problem.Linearise(values, true);
-    nuisances.push_back(Seconds([&] { NuisancesAlwaysTaken(problem, values, misfit); }));
+    nuisances.push_back(Seconds([&] {
+      ModelNuisances({problem, values, misfit, GripMotions{}, Eigen::MatrixXd()});
+    }));
     ranking.push_back(Seconds([&] { RankEffects(problem, values, &progress); }));
   }
   const double unit = Median(forward);

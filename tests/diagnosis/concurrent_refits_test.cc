@@ -1,5 +1,5 @@
-// Refits of one diagnosis share the fitted problem, its effects and its recordings. They may run side
-// by side: what each finds does not depend on the other. The preset tsan looks for races.
+// Refits of one diagnosis share the fitted problem, its effects and its recordings. They may run
+// side by side: what each finds does not depend on the other. The preset tsan looks for races.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -25,7 +25,7 @@ ScoredEffect Candidate(const std::string& type, const std::map<std::string, doub
   ScoredEffect effect;
   effect.candidate = {type, "", MakeEffect(type, at_null), {0}};
   effect.score.size = Eigen::VectorXd::Constant(1, expected);
-  effect.fitted = fitted;
+  effect.expected_values = fitted;
   return effect;
 }
 

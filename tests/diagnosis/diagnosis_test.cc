@@ -21,7 +21,7 @@ namespace {
 
 using ::testing::Contains;
 
-// The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
+// The truth has a finer mesh and shorter steps; the error of the model is about 1.5 to 2 σ.
 constexpr double kModelError = 2;  // σ
 
 const std::map<std::string, std::string> kWithoutDamping{
@@ -39,7 +39,7 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
     if (effect.scored.candidate.type != "mass_damping") continue;
     EXPECT_TRUE(effect.refitted);
     EXPECT_LT(effect.errors.rms_over_sigma, kModelError);
-    // 1/s; the interval's width is a tenth of it.
+    // 1/s; the width of the interval is a tenth of the value.
     ASSERT_EQ(effect.sizes.size(), 1u);
     EXPECT_NEAR(effect.sizes[0].value, truth.alpha, 0.15 * truth.alpha);
     EXPECT_LT(effect.sizes[0].low, effect.sizes[0].value);
@@ -48,14 +48,14 @@ TEST(Diagnosis, NamesADampingThatTheModelLacks) {
   }
 }
 
-TEST(Diagnosis, NamesNothingWhereNothingIsMissing) {
+TEST(Diagnosis, NamesNoEffectIfNothingIsMissing) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << ExplainVerdict(RecordOf(diagnosis));
 }
 
-// Half the distance of frames, where the first fit would begin.
-TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
+// Without a time step in the experiment, the first fit starts with half of the frame spacing.
+TEST(Diagnosis, ShortensATimeStepWhoseErrorCouldLookLikeAnEffect) {
   HeldBarTruth truth;
   truth.alpha = 12;
   std::map<std::string, std::string> left_open = kWithoutDamping;
@@ -68,14 +68,14 @@ TEST(Diagnosis, ShortensAStepThatMayPassForAnEffect) {
   EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
   const auto doubt = [](const Diagnosis& diagnosis) {
     for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-      if (nuisance.candidate.name == kTimeStepNuisance) return nuisance.doubt;
+      if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.doubt;
     return std::nan("");
   };
   EXPECT_GT(DiscretisationUncertainty(doubt(as_given)), kThresholds.naming.least_evidence);
   EXPECT_LT(doubt(shortened), 0.5 * doubt(as_given));
 }
 
-TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
+TEST(Diagnosis, NamesTheTimeErrorsOfSingleFrames) {
   HeldBarTruth truth;
   truth.jitter = 1e-3;
   const Diagnosis diagnosis = DiagnoseBar(truth, {});
@@ -85,7 +85,7 @@ TEST(Diagnosis, BlamesTheTimesOfFramesThatAreMistimed) {
   EXPECT_GT(diagnosis.alternatives.bare.without_nuisances, diagnosis.errors.without_nuisances);
 }
 
-TEST(Diagnosis, SaysThatItHasNoPowerWhereNothingCouldShow) {
+TEST(Diagnosis, HasNoPowerIfNoEffectIsDetectable) {
   // 100 m of noise on a bar of 0.08 m.
   const Diagnosis diagnosis = DiagnoseBar({}, {{"noise: 0.05 mm", "noise: 100 m"}});
   EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << ExplainVerdict(RecordOf(diagnosis));

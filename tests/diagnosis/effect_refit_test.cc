@@ -19,7 +19,7 @@ namespace {
 constexpr int kFrames = 40, kSeries = 3;
 constexpr double kSigma = 1e-4;  // m
 
-// One recording of one marker: what is left looks like `amount` of the nuisance beside a wave.
+// One recording of one marker, whose residual is `amount` of the nuisance and a wave.
 FittedHypothesis MakeHypothesis(double amount) {
   LinearisedMisfit misfit;
   misfit.usable = true;
@@ -41,15 +41,15 @@ FittedHypothesis MakeHypothesis(double amount) {
   hypothesis.misfit = misfit;
   hypothesis.parameters = 1;
   hypothesis.priors = {{0, 1, false}, {0.1, 0.2, false}};
-  hypothesis.left = misfit.residual;
+  hypothesis.residual = misfit.residual;
   return hypothesis;
 }
 
 const NoiseLevel kNoise{0.008, 1.3};
 
-// At the best parameters it is the evidence of the linear model; a parameter that is elsewhere
-// loses what that costs.
-TEST(HypothesisEvidence, IsThatOfTheLinearModelAtItsBest) {
+// At the best parameters the evidence is that of the linear model; other parameter values have
+// less.
+TEST(HypothesisEvidence, IsThatOfTheLinearModelAtTheBestParameters) {
   FittedHypothesis hypothesis = MakeHypothesis(0.8);
   const auto fit = [&] {
     const LinearisedMisfit& misfit = hypothesis.misfit;
@@ -65,21 +65,21 @@ TEST(HypothesisEvidence, IsThatOfTheLinearModelAtItsBest) {
   EXPECT_NEAR(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence, 1e-9);
 }
 
-TEST(FallsShort, WhereItKeepsLittleOfThePromiseAndLeavesMoreThanNoise) {
-  const double noise = 100, promised = 50;
+TEST(FallsShort, WhereARefitGainsLittleOfThePredictionAndLeavesMoreThanNoise) {
+  const double noise = 100, predicted = 50;
   const auto falls_short = [&](double misfit_before, double misfit_after, double gained) {
-    return FallsShort({-900, misfit_before}, {-900 + gained, misfit_after}, noise, promised);
+    return FallsShort({-900, misfit_before}, {-900 + gained, misfit_after}, noise, predicted);
   };
   EXPECT_FALSE(falls_short(300, 200, 30));
   EXPECT_TRUE(falls_short(300, 200, 20));
-  EXPECT_FALSE(falls_short(300, 110, 20));  // there is no more to be found
-  // Of a model that is at the estimated noise, or below.
+  EXPECT_FALSE(falls_short(300, 110, 20));  // there is no more to be explained
+  // The residual of the model is at the estimated noise, or below.
   EXPECT_TRUE(falls_short(102, 90, 20));
   EXPECT_TRUE(falls_short(90, 80, 20));
   EXPECT_FALSE(falls_short(90, 80, 30));
 }
 
-TEST(PredictsWorse, WhereHeldOutFramesAreMissedByMoreThanNoiseExplains) {
+TEST(PredictsWorse, WhereTheHeldOutErrorGrowsByMoreThanNoiseExplains) {
   const auto predicts_worse = [](double with, bool has_held_out) {
     ModelErrors errors;
     errors.has_held_out = has_held_out;
@@ -94,18 +94,18 @@ TEST(PredictsWorse, WhereHeldOutFramesAreMissedByMoreThanNoiseExplains) {
   EXPECT_FALSE(predicts_worse(2.4, false));
 }
 
-// A nuisance takes its part of the misfit away, and is paid for by its prior.
-TEST(HypothesisEvidence, PaysForTheNuisancesItUses) {
+// A nuisance explains its part of the residual, at the cost that its prior puts on the amount.
+TEST(HypothesisEvidence, CountsTheCostOfTheNuisancesItUses) {
   const FittedHypothesis usual = MakeHypothesis(0.1), far = MakeHypothesis(0.9);
   const HypothesisEvidence of_usual = EvidenceOf(usual, kNoise), of_far = EvidenceOf(far, kNoise);
   EXPECT_LT(of_far.misfit, 1.05 * of_usual.misfit);
-  // (0.8 / 0.2)² / 2 = 8, if the column fixes it.
+  // (0.8 / 0.2)² / 2 = 8, if the data determine the amount.
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
 }
 
-// The evidence of the linear model with the other effect's change over that without, less its
-// price; the refitted effect is none of the others.
-TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
+// The evidence of the linear model with the columns of another effect, relative to that without,
+// less the selection penalty; the refitted effect itself is not considered.
+TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
   FittedHypothesis hypothesis = MakeHypothesis(0.1);
   LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(misfit.residual.size(), 0, 1);
@@ -135,7 +135,7 @@ TEST(FurtherEvidence, IsThatForTheBestOfTheOthers) {
   EXPECT_NEAR(further.of_nuisance, further.evidence + std::log(3) - 1, 1e-9);
 }
 
-// With its parameter where it is best for all frames, or for the fitted ones.
+// With the best parameter for all frames, or for the fitted ones.
 FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise, bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd change =
@@ -149,8 +149,9 @@ FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise,
   return hypothesis;
 }
 
-// What held-out frames add is how dense they are where the fitted ones predict them: a Gaussian
-// about what the parameter's best value expects, as wide as the noise and what is open of it.
+// The evidence of the held-out frames is their predictive density given the fitted ones: a Gaussian
+// about the prediction with the best parameter, whose covariance comes from the noise and from the
+// remaining uncertainty in the parameter.
 TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   const NoiseLevel white{0, 1.3};
   FittedHypothesis with = MakeHypothesis(0.8), without;
@@ -184,7 +185,7 @@ TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   EXPECT_GT(of_a.all - of_b.all, held_out);
 }
 
-// The bar that was held aside and let go, with elements that are too coarse.
+// The bar that was held aside and released, with elements that are too coarse.
 class OfACoarseBar : public ::testing::Test {
  protected:
   OfACoarseBar() {
@@ -207,8 +208,9 @@ class OfACoarseBar : public ::testing::Test {
 using EffectRankingOfACoarseBar = OfACoarseBar;
 using EffectRefitOfACoarseBar = OfACoarseBar;
 
-// Softer near one end may look like stiffer near the other: a refit begins from both.
-TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesThatAreBetterThanTheirNeighbours) {
+// A bar that is softer near one end may look like one that is stiffer near the other, so a refit
+// starts from both.
+TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesWithMoreEvidenceThanTheirNeighbours) {
   const EffectRanking ranking = RankEffects(*problem_, problem_->Start(), &progress_);
   int places = 0;
   for (const ScoredEffect& effect : ranking.effects) {
@@ -230,9 +232,9 @@ TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesThatAreBetterThanTheirNeighbours
   EXPECT_GT(places, 0);
 }
 
-// First order may expect a size at which everything is another motion, from where no fit finds
-// back.
-TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
+// First order may predict a size at which the motion is entirely different, and from which no fit
+// would return.
+TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   const Calibration fit = FitFromStart(*problem_, &progress_);
   ASSERT_FALSE(fit.estimates.empty()) << fit.message;
   const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
@@ -240,12 +242,12 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithout) {
 
   ScoredEffect bed;
   bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
-  bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: it stops the bar altogether
-  bed.fitted = fit.parameters;
+  bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: the bar cannot move
+  bed.expected_values = fit.parameters;
   const EffectRefit refit = Refit({*problem_, fit.parameters, misfit, &progress_}, &bed,
                                   {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
-  // A refit ends where a step gains less than one standard deviation.
+  // A refit ends when a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
   EXPECT_LT(refit.calibration.start_rms, 3 * fit.rms);
 }

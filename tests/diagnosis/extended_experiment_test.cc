@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// A run of the bar's study without its damping; `more`: keys of its experiment.
+// Fits the bar's study without its damping; `more` are further keys of the experiment.
 std::filesystem::path FitBar(const std::filesystem::path& folder, const std::string& more = "") {
   WriteBarRecording(folder, FilmHeldBar({}));
   std::ofstream(folder / "bar.yaml") << BarExperiment(
@@ -40,7 +40,7 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   const std::filesystem::path run = FitBar(folder.Path());
   FittedRun fitted = OpenRun(run);
   EXPECT_EQ(fitted.study.effects.front()->Parameters()[0], fitted.values[0]) << "as it was fitted";
-  CalibratedParameter& modulus = fitted.study.fitted[0].prior;  // that was measured otherwise
+  CalibratedParameter& modulus = fitted.study.fitted[0].prior;  // as another measurement has it
   ASSERT_TRUE(modulus.log_scale);
   modulus.prior_mean = 1.4e5;
   modulus.prior_deviation = 0.05;
@@ -66,7 +66,7 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   const CalibratedParameter &alpha = extended.fitted[1].prior,
                             expected = WithEffect(fitted.study, scored).fitted[1].prior;
   EXPECT_EQ(alpha.name, "mass_damping.alpha");
-  // Known before is what the refits of a diagnosis take for known, not where this fit starts.
+  // The prior is that of the refits of a diagnosis, not the start of this fit.
   EXPECT_EQ(expected.prior_mean, 0);
   EXPECT_EQ(alpha.prior_mean, expected.prior_mean);
   EXPECT_EQ(alpha.prior_deviation, expected.prior_deviation);
@@ -74,8 +74,8 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
 }
 
-// Mass damping, written as a law of the user's own beside another one: it is scored as the
-// catalogue's, and the experiment that adds it has the rest of the candidates.
+// Mass damping as one of two laws of the user: it has the same score as that of the catalogue, and
+// the experiment that adds it keeps the other law as a candidate.
 TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
   const TemporaryFolder folder;
   const ParameterCard& alpha = FindEntry("mass_damping")->card->parameters[0];
@@ -118,7 +118,7 @@ TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
 }
 
 TEST(ExtendedExperiment, ARunFromTheExperimentsOwnFolderIsOpened) {
-  // Its folder of runs is then "../results/…" of no folder that has a name.
+  // A relative path without a folder name is resolved too.
   const TemporaryFolder folder;
   const std::filesystem::path before = std::filesystem::current_path();
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
@@ -152,7 +152,7 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
   EXPECT_EQ(other.effects.front()->Parameters(), moduli);
   ASSERT_EQ(other.fitted.size(), 1u);
   EXPECT_EQ(other.fitted[0].prior.name, "young_modulus");
-  EXPECT_EQ(other.fitted[0].places[0].effect, 0u);
+  EXPECT_EQ(other.fitted[0].places[0].effect, 0u) << "the material";
 
   ScoredEffect contact;
   contact.candidate.type = "plane_contact";
@@ -164,12 +164,12 @@ TEST(ExtendedExperiment, ALawTakesTheOthersPlaceAndAPlaneIsAdded) {
       ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, contact)));
   ASSERT_EQ(more.effects.size(), fitted.study.effects.size() + 1);
   EXPECT_EQ(more.effects.back()->Parameters(), contact.candidate.effect->Parameters());
-  // The modulus, and of the plane where it is.
+  // The modulus, and the place of the plane.
   ASSERT_EQ(more.fitted.size(), 2u);
   EXPECT_EQ(more.fitted[1].prior.name, "plane_contact.offset");
 }
 
-TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
+TEST(ExtendedExperiment, ExplainsWhyAnEffectCannotBeDetected) {
   ScoredEffect scored;
   scored.candidate.type = "drag";
   scored.candidate.effect = MakeEffect("drag", {{"coefficient", 0}});
@@ -180,7 +180,7 @@ TEST(ExtendedExperiment, AnEffectThatCannotShowIsTold) {
   scored.score.detectable[0] = 2 * largest;
   EXPECT_THAT(WhyUnseen(scored), HasSubstr("larger than is plausible"));
   scored.score.detectable[0] = INFINITY;
-  EXPECT_THAT(WhyUnseen(scored), HasSubstr("drag does nothing in these recordings"));
+  EXPECT_THAT(WhyUnseen(scored), HasSubstr("drag changes nothing in these recordings"));
   scored.candidate.amplitude.clear();  // a pilot
   scored.score.detectable[0] = 3;
   EXPECT_THAT(WhyUnseen(scored), HasSubstr("3 times as large"));

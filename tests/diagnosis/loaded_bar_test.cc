@@ -12,7 +12,8 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/stepped_fit.h"
 #include "diagnosis/diagnosis.h"
-#include "diagnosis/grip_nuisances.h"
+#include "diagnosis/grip_motions.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "fem/prescribed_force.h"
@@ -199,9 +200,9 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
   }
 }
 
-// A bar that is stretched evenly by two grips, whose motion is known from noisy markers: the
-// nuisance is as large as what that does to the model between them.
-TEST_F(LoadedBar, ShakesAsTheNoiseOfItsGripsDoes) {
+// A bar is stretched uniformly by two grips, whose motion is known from noisy markers. The nuisance
+// is as large as the error that this noise causes in the predicted motion between the grips.
+TEST_F(LoadedBar, HasAGripJitterOfTheSizeOfTheMarkersNoise) {
   WriteBox(folder_ / "box.off");
   std::vector<Eigen::Vector3d> places;
   for (const double x : {0.0, 0.08, 0.02, 0.03, 0.04, 0.05, 0.06})
@@ -246,19 +247,25 @@ gripped:
           kNoise, (folder_ / "recording.yaml").string()),
       (folder_ / "study.yaml").string()));
   const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
-  const GripNuisances grips(problem);
-  const LinearisedMisfit misfit = problem.Linearise(problem.Start(), true, grips.directions());
+  const GripMotions grips = MakeGripMotions(problem);
+  const Eigen::VectorXd start = problem.Start();
+  const LinearisedMisfit misfit = problem.Linearise(start, true, grips.directions);
   ASSERT_TRUE(misfit.usable) << misfit.message;
-  const auto jitter = grips.Jitter(
-      problem, misfit, misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions().size())));
-  ASSERT_TRUE(jitter.has_value());
-  EXPECT_EQ(jitter->by.cols(), 21 * 2 * (3 + 6));
+  const Eigen::MatrixXd grip_columns =
+      misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+  const std::vector<NuisanceCandidate> nuisances =
+      ModelNuisances({problem, start, misfit, grips, grip_columns});
+  const auto jitter = std::find_if(nuisances.begin(), nuisances.end(), [](const auto& nuisance) {
+    return nuisance.card.name == "grip_jitter";
+  });
+  ASSERT_NE(jitter, nuisances.end());
+  EXPECT_EQ(jitter->columns.cols(), 21 * 2 * (3 + 6));
   double seen = 0, expected = 0;
   const Eigen::Index series = 3 * static_cast<Eigen::Index>(places.size());
   for (Eigen::Index row = 0; row < misfit.residual.size(); ++row) {
     if (row % series < 3 * 8) continue;
     seen += misfit.residual[row] * misfit.residual[row];
-    expected += jitter->by.row(row).squaredNorm();
+    expected += jitter->columns.row(row).squaredNorm();
   }
   EXPECT_NEAR(std::sqrt(seen / expected), 1, 0.25);
 }

@@ -16,7 +16,7 @@ PredictionStudy ElasticBar() {
   return study;
 }
 
-// The last of its variants.
+// The last variant of the effect.
 CandidateEffect CandidateFor(const PredictionStudy& study, const std::string& type) {
   const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
   CandidateEffect found;
@@ -42,7 +42,7 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
     EXPECT_NEAR(prior.min, is_along ? 0 : -0.01, 1e-12) << prior.name;
     EXPECT_NEAR(prior.max, is_along ? 0.08 : 0.01, 1e-12) << prior.name;
     EXPECT_NEAR(prior.prior_mean, is_along ? 0.04 : 0, 1e-12) << prior.name;
-    // Of an even distribution.
+    // Of a uniform distribution.
     EXPECT_NEAR(prior.prior_deviation, (prior.max - prior.min) / std::sqrt(12.0), 1e-12);
     EXPECT_GE(prior.start, prior.min);
     EXPECT_LE(prior.start, prior.max);
@@ -51,8 +51,8 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
   EXPECT_EQ(places, 3);
 }
 
-// An angle may turn past the end of its range, as the directions there are each other's neighbours;
-// a size may not leave what is plausible.
+// An angle may leave its plausible range, because the directions at both ends are neighbours; a
+// size may not.
 TEST(WithEffect, LetsAnAngleTurnPastTheEndOfItsRange) {
   const PredictionStudy study = ElasticBar();
   ScoredEffect scored;

@@ -17,9 +17,9 @@ namespace {
 using ::testing::AnyOf;
 using ::testing::Contains;
 
-// The finer mesh and the smaller steps of the truth leave the model some 1.5 to 2 σ off.
+// The truth has a finer mesh and shorter steps; the error of the model is about 1.5 to 2 σ.
 constexpr double kModelError = 2;  // σ
-// The bar, 20 mm wide, is let go at y > 0 and swings to y < 0, where this plane is.
+// The bar, 20 mm wide, is released at y > 0 and swings to y < 0, where it meets this plane.
 constexpr double kPlane = -0.0125;  // m
 
 HeldBarTruth BesideAPlane() {
@@ -42,7 +42,7 @@ bool IsUntried(const std::vector<UntriedEffect>& untried, const std::string& typ
   return false;
 }
 
-// Pilots of the bar's model at the true parameters.
+// The pilots of the bar's model with the true parameters.
 struct PilotsOfBar {
   TemporaryFolder folder;
   PredictionStudy study;
@@ -65,25 +65,25 @@ struct PilotsOfBar {
   }
 };
 
-TEST(PilotHypotheses, TryThePlaneThatTheModelCrosses) {
+TEST(PilotHypotheses, TryThePlaneThatThePredictedBodyCrosses) {
   const PilotsOfBar bar(BesideAPlane());
   ASSERT_FALSE(bar.planes.empty());
   EXPECT_GT(bar.planes.front().normal.y(), 0.9);
-  // m: the edge sinks into the plane by some tenths, and the marker nearest to it stands off by as
-  // much again.
+  // m: the edge penetrates the plane by some tenths of a millimetre, and the nearest marker is as
+  // far away from the edge.
   EXPECT_NEAR(bar.planes.front().offset, kPlane, 1.2e-3);
   EXPECT_GT(bar.planes.front().crossing, 1e-3);
   EXPECT_FALSE(IsUntried(bar.pilots.untried, "plane_contact"));
   for (const PilotHypothesis& pilot : bar.pilots.tried) {
-    ASSERT_EQ(pilot.by.size(), bar.misfit.residual.size());
+    ASSERT_EQ(pilot.change.size(), bar.misfit.residual.size());
     if (pilot.candidate.type != "plane_contact") continue;
-    // At the true parameters the deepest plane explains most of what is left by itself.
-    EXPECT_LT((bar.misfit.residual + pilot.by).norm(), 0.5 * bar.misfit.residual.norm());
+    // With the true parameters the most deeply crossed plane explains most of the residual.
+    EXPECT_LT((bar.misfit.residual + pilot.change).norm(), 0.5 * bar.misfit.residual.norm());
     break;
   }
 }
 
-TEST(PilotHypotheses, TryNoPlaneWhereTheModelCrossesNone) {
+TEST(PilotHypotheses, TryNoPlaneIfThePredictedBodyCrossesNone) {
   const PilotsOfBar bar({});
   EXPECT_TRUE(bar.planes.empty());
   EXPECT_TRUE(IsUntried(bar.pilots.untried, "plane_contact"));
@@ -91,14 +91,14 @@ TEST(PilotHypotheses, TryNoPlaneWhereTheModelCrossesNone) {
   for (const PilotHypothesis& pilot : bar.pilots.tried) {
     tried.push_back(pilot.candidate.type);
     EXPECT_TRUE(pilot.candidate.replaces_material);
-    // The same moduli at small strain, another law: another motion, though not by much.
-    EXPECT_GT(pilot.by.norm(), 0);
+    // Another law with the same moduli changes the motion, though not by much.
+    EXPECT_GT(pilot.change.norm(), 0);
     EXPECT_EQ(pilot.candidate.effect->Parameters(), bar.study.effects.front()->Parameters());
   }
   EXPECT_THAT(tried, testing::ElementsAre("linear", "st_venant_kirchhoff"));
 }
 
-TEST(PilotHypotheses, ALawTakesOverTheFittedModuli) {
+TEST(PilotHypotheses, AnElasticityLawTakesOverTheFittedModuli) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar({}));
   const PredictionStudy study = ReadBarStudy(folder.Path());
@@ -110,7 +110,7 @@ TEST(PilotHypotheses, ALawTakesOverTheFittedModuli) {
   EXPECT_EQ(with.effects.size(), study.effects.size());
   EXPECT_EQ(with.effects.front(), law.effect);
   ASSERT_EQ(with.fitted.size(), study.fitted.size());
-  EXPECT_EQ(with.fitted[0].places[0].effect, 0u);
+  EXPECT_EQ(with.fitted[0].places[0].effect, 0u) << "the material";
   EXPECT_EQ(with.fitted[1].places, study.fitted[1].places);  // of the damping
 }
 
@@ -134,11 +134,11 @@ TEST(Diagnosis, HasNothingForContactWhereNothingIsMet) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   const RankedEffect* contact = Find(diagnosis, "plane_contact");
   EXPECT_EQ(contact == nullptr, IsUntried(diagnosis.untried, "plane_contact"));
-  // A plane that the mesh's error has proposed: effects are tried where the limit would be fitted.
+  // Such a plane would come from the error of the mesh, which the nuisance explains.
   if (contact != nullptr) {
     EXPECT_LT(contact->scored.score.evidence, 3);
   }
-  // So small strains that laws differ by less than the noise: none has evidence to speak of.
+  // At such small strains the laws differ by less than the noise, so none has evidence.
   for (const char* law : {"linear", "corotational", "st_venant_kirchhoff"}) {
     ASSERT_NE(Find(diagnosis, law), nullptr) << law;
     EXPECT_LT(Find(diagnosis, law)->scored.score.evidence, 3) << law;
@@ -153,7 +153,7 @@ TEST(Diagnosis, NamesNoWrongEffectWhereAnotherLawIsMissing) {
   ASSERT_FALSE(diagnosis.ranking.empty());
   EXPECT_THAT(diagnosis.ranking.front().scored.candidate.type,
               AnyOf("st_venant_kirchhoff", "strain_stiffening"));
-  // The bar's coarse mesh leaves enough that it may name nothing at all.
+  // The error of the coarse mesh is so large that the verdict may name nothing.
   if (diagnosis.verdict == Verdict::kMissing) {
     EXPECT_EQ(diagnosis.effects.front(), "st_venant_kirchhoff")
         << ExplainVerdict(RecordOf(diagnosis));

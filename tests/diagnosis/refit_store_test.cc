@@ -64,8 +64,8 @@ TEST(RefitStore, HasNothingOfAnotherFitOrOfADamagedFile) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-// As if it had been stopped: some of its fits are there.
-TEST(RefitStore, ADiagnosisThatWasStoppedGoesOnToTheSameResult) {
+// As if the diagnosis had been stopped after some of its fits.
+TEST(RefitStore, AStoppedDiagnosisContinuesToTheSameResult) {
   const TemporaryFolder folder;
   HeldBarTruth truth;
   truth.alpha = 12;
@@ -98,7 +98,7 @@ TEST(RefitStore, ADiagnosisThatWasStoppedGoesOnToTheSameResult) {
   EXPECT_EQ(diagnose("resumed.json"), whole);
   all = json::parse(FileContent(file));
   EXPECT_EQ(all.at("fits").size(), fits) << "what was kept is found again";
-  // What is found there is not fitted again.
+  // A kept fit is not repeated.
   for (auto& [key, kept] : all["fits"].items())
     for (json& estimate : kept["estimates"]) estimate["high_95"] = 1e9;
   std::ofstream(file) << all;

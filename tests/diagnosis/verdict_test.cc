@@ -36,8 +36,8 @@ Diagnosis DelayedFrames(double evidence, double error) {
   diagnosis.effects = {"time_jitter"};
   diagnosis.errors.has_held_out = true;
   ScoredNuisance& jitter = diagnosis.nuisances.emplace_back();
-  jitter.candidate.name = "time_jitter";
-  jitter.candidate.advice = "check the camera's clock";
+  jitter.candidate.card.name = "time_jitter";
+  jitter.candidate.card.advice = "check the camera's clock";
   jitter.evidence = kEvidence;
   jitter.adopted = true;
   diagnosis.alternatives.nuisances_evidence = kEvidence;
@@ -220,9 +220,9 @@ TEST(Verdict, DoesNotRuleOutWhatPredictsOtherRecordingsBetter) {
 // The uncertain change by a finer mesh could be what the effect explains.
 TEST(Verdict, IgnoresEvidenceWithinTheMeshUncertaintyAtTheNoise) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
-  diagnosis.nuisances.emplace_back().candidate.name = "mesh";
-  diagnosis.nuisances.back().candidate.is_always_taken = true;
-  diagnosis.nuisances.back().candidate.advice = "choose a smaller mesh.max_volume";
+  diagnosis.nuisances.emplace_back().candidate.card.name = "mesh";
+  diagnosis.nuisances.back().candidate.card.is_always_in_model = true;
+  diagnosis.nuisances.back().candidate.card.advice = "choose a smaller mesh.max_volume";
   diagnosis.nuisances.back().doubt = 200;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ is not noise";
@@ -242,7 +242,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   Diagnosis diagnosis = SaggingBeam(0, 0);
   for (RankedEffect& effect : diagnosis.ranking) effect.evidence = 1;
   ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
-  drift.candidate.name = "registration_drift";
+  drift.candidate.card.name = "registration_drift";
   drift.evidence = 20;
   drift.explained = 0.1;
   diagnosis.errors.rms_over_sigma = 2.4;
@@ -263,7 +263,7 @@ TEST(Verdict, CallsNothingANuisanceThatDoesNotPredict) {
   EXPECT_TRUE(diagnosis.effects.empty());
   // Errors of single frames cannot be predicted from others.
   diagnosis.effects.clear();
-  diagnosis.nuisances.back().candidate.is_of_single_frames = true;
+  diagnosis.nuisances.back().candidate.card.acts_on_single_frames = true;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << Explanation(diagnosis);
 }
@@ -276,7 +276,7 @@ TEST(Verdict, ComparesANuisanceWithTheEffectAfterARefit) {
     force.evidence = 1900;
     force.scored.score.evidence = 2000;
     ScoredNuisance& drift = diagnosis.nuisances.emplace_back();
-    drift.candidate.name = "registration_drift";
+    drift.candidate.card.name = "registration_drift";
     drift.evidence = 1980;
     drift.refitted = refitted;
     Decide(&diagnosis);
@@ -298,7 +298,7 @@ TEST(Verdict, MentionsASmallNuisanceAtTheNoiseWithoutNamingIt) {
   diagnosis.baseline_rms_over_sigma = 0.9;
   diagnosis.errors.rms_over_sigma = diagnosis.errors.without_nuisances = 1.1;
   ScoredNuisance& placement = diagnosis.nuisances.emplace_back();
-  placement.candidate.name = "grip_placement";
+  placement.candidate.card.name = "grip_placement";
   placement.candidate.what = "the placement";
   placement.evidence = 40;
   placement.explained = 0.03;

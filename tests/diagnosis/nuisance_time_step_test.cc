@@ -1,5 +1,3 @@
-#include "diagnosis/nuisance_candidates.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "support/held_bar.h"
@@ -16,9 +15,10 @@
 namespace lacuna {
 namespace {
 
-// What the step is said to change, in the limit, and what a step of a sixteenth changes.
+// Norms over all rows, m: of the change of the residual by steps that are 16 times shorter, of the
+// difference between that and the nuisance's first column, and of what the nuisance calls unknown.
 struct StepChange {
-  double change = 0, missed = 0, unknown = 0;  // norms over all rows, m
+  double change = 0, missed = 0, unknown = 0;
 };
 
 StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
@@ -27,13 +27,14 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
   const CalibrationProblem problem(study, MakeReferenceBody(study).mesh);
   Eigen::VectorXd values = problem.Start();
-  // What holds the bar aside, without which nothing would move.
+  // A force holds the bar aside, without which it would not move.
   for (size_t k = 0; k < problem.parameters().size(); ++k)
     if (problem.UnitOf(k) == "N") values[static_cast<Eigen::Index>(k)] = 0.03;
   const LinearisedMisfit misfit = problem.Linearise(values, /*with_jacobian=*/true);
-  const std::vector<NuisanceCandidate> nuisances = NuisancesAlwaysTaken(problem, values, misfit);
+  const std::vector<NuisanceCandidate> nuisances =
+      ModelNuisances({problem, values, misfit, GripMotions{}, Eigen::MatrixXd()});
   const auto step = std::find_if(nuisances.begin(), nuisances.end(),
-                                 [](const auto& own) { return own.name == "time_step"; });
+                                 [](const auto& own) { return own.card.name == "time_step"; });
   if (step == nuisances.end()) return {};
   PredictionStudy short_steps = problem.WithEstimatedNoise();
   short_steps.time_step /= 16;
@@ -42,19 +43,19 @@ StepChange StepChangeOf(const std::map<std::string, std::string>& replaced) {
                                       .Linearise(values, /*with_jacobian=*/false)
                                       .residual -
                                   misfit.residual);
-  return {change.norm(), (step->by.col(0) - change).norm(), step->unknown.norm()};
+  return {change.norm(), (step->columns.col(0) - change).norm(), step->unknown.norm()};
 }
 
-TEST(NuisanceCandidates, TheLimitOfTheStepIsWhereShorterOnesLead) {
+TEST(TimeStepNuisance, IsExtrapolatedToTheLimitOfShortSteps) {
   const std::string coarse = "max_volume: 4000 mm^3, preserve_surface: false";
   const StepChange damped = StepChangeOf(
       {{"max_volume: 1000 mm^3", coarse},
        {"{type: mass_damping, alpha: 1 1/s}",
         "{type: mass_damping, alpha: 1 1/s}\n  - {type: stiffness_damping, beta: 1 ms}"}});
   EXPECT_GT(damped.change, 0);
-  EXPECT_LT(damped.missed, 0.05 * damped.change) << "less than its prior allows";
+  EXPECT_LT(damped.missed, 0.05 * damped.change) << "it must be less than its prior allows";
   EXPECT_LT(damped.missed, damped.unknown);
-  // The shock of letting go rings in modes that no step resolves.
+  // The release excites vibrations that no step resolves.
   const StepChange ringing =
       StepChangeOf({{"max_volume: 1000 mm^3", coarse}, {"time_step: 1.5 ms", "time_step: 4 ms"}});
   EXPECT_GT(ringing.missed, 0.1 * ringing.change);

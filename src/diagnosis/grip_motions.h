@@ -1,0 +1,58 @@
+// Unit motions of the grips, which are simulated along the fitted trajectory together with the
+// effects. Nuisances of grips are combinations of the changes that these motions cause.
+//
+// With X the rest position of a gripped node and X̄ the mean over its grip, a grip moves its nodes
+// by
+//   shift eᵢ, rotation eᵢ × (X − X̄)          (misplaced grip; 6 directions)
+//   −F, −M × (X − X̄)                          (compliant grip; 2 directions)
+//   (X − X̄)ⱼ eᵢ                               (deforming grip; 9 directions, i fastest)
+// where F and M are the resultant force and moment of the grip's reaction.
+#ifndef LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
+#define LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
+
+#include <Eigen/Core>
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_problem.h"
+
+namespace lacuna {
+
+// The largest of the numbers that were added. Threads may add at the same time.
+class LargestNorm {
+ public:
+  void Add(double norm) {
+    double largest = largest_;
+    while (norm > largest && !largest_.compare_exchange_weak(largest, norm)) continue;
+  }
+  double Value() const { return largest_; }  // 0: nothing was added
+
+ private:
+  std::atomic<double> largest_ = 0;
+};
+
+struct GripMotions {
+  struct Grip {
+    size_t grip = 0;            // index in Model::grips
+    std::string label;          // "the grip", or "grip 2" if there are several
+    Eigen::Index rigid = 0;     // the first of 6 directions: per m and per rad
+    Eigen::Index yielding = 0;  // the first of 2 directions: per m/N and per rad/(N m)
+    Eigen::Index strain = -1;   // the first of 9 directions, per unit strain; −1: does not deform
+    // The largest force, N, and moment, N m, in all simulations of the directions.
+    std::shared_ptr<LargestNorm> force, moment;
+  };
+  std::vector<Grip> grips;                  // those that hold nodes
+  std::vector<MisfitDirection> directions;  // of all grips
+};
+
+// The motions of the grips of the first recording's model.
+GripMotions MakeGripMotions(const CalibrationProblem& problem);
+
+// How grip `grip` of the model was recorded; null for one that does not move.
+const RecordedGrip* RecordedAs(const Recording& recording, size_t grip);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_

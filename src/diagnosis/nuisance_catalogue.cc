@@ -1,0 +1,136 @@
+#include "diagnosis/nuisance_catalogue.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
+
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+
+NuisanceEntry MeshNuisance();
+NuisanceEntry TimeStepNuisance();
+NuisanceEntry ShapeNuisance();
+NuisanceEntry GripJitterNuisance();
+NuisanceEntry GripPlacementNuisance();
+NuisanceEntry GripComplianceNuisance();
+NuisanceEntry ClockNuisance();
+NuisanceEntry TimeJitterNuisance();
+NuisanceEntry BadFrameNuisance();
+NuisanceEntry RegistrationDriftNuisance();
+
+const std::vector<NuisanceEntry>& NuisanceCatalogue() {
+  static const std::vector<NuisanceEntry> entries{
+      // Of the model, part of every model.
+      MeshNuisance(),
+      TimeStepNuisance(),
+      ShapeNuisance(),
+      GripJitterNuisance(),
+      // Of each grip.
+      GripPlacementNuisance(),
+      GripComplianceNuisance(),
+      // Of each recording.
+      ClockNuisance(),
+      TimeJitterNuisance(),
+      BadFrameNuisance(),
+      RegistrationDriftNuisance(),
+  };
+  return entries;
+}
+
+namespace {
+
+void Add(const NuisanceCard& card, NuisanceCandidate candidate,
+         std::vector<NuisanceCandidate>* candidates) {
+  candidate.card = card;
+  if (candidate.what.empty()) candidate.what = card.title;
+  candidates->push_back(std::move(candidate));
+}
+
+// Calls visit(card, maker) for the nuisances of one kind.
+template <typename Maker, typename Visitor>
+void ForEach(const Visitor& visit) {
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (const Maker* make = std::get_if<Maker>(&entry.make)) visit(entry.card, *make);
+}
+
+}  // namespace
+
+const NuisanceCard* FindNuisance(const std::string& name) {
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (entry.card.name == name) return &entry.card;
+  return nullptr;
+}
+
+std::vector<NuisanceTrial> NuisanceControls() {
+  std::vector<NuisanceTrial> controls;
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (entry.card.trial.control_position > 0) controls.push_back(entry.card.trial);
+  std::sort(controls.begin(), controls.end(), [](const NuisanceTrial& a, const NuisanceTrial& b) {
+    return a.control_position < b.control_position;
+  });
+  return controls;
+}
+
+std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context) {
+  std::vector<NuisanceCandidate> candidates;
+  ForEach<ModelNuisance>([&](const NuisanceCard& card, ModelNuisance make) {
+    if (auto candidate = make(context)) Add(card, *std::move(candidate), &candidates);
+  });
+  return candidates;
+}
+
+std::vector<NuisanceCandidate> GripNuisances(const GripMotions& grips,
+                                             const Eigen::MatrixXd& grip_columns) {
+  std::vector<NuisanceCandidate> candidates;
+  for (const GripMotions::Grip& grip : grips.grips)
+    ForEach<GripNuisance>([&](const NuisanceCard& card, GripNuisance make) {
+      Add(card, make(grip, grip_columns), &candidates);
+    });
+  return candidates;
+}
+
+std::vector<NuisanceCandidate> RecordingNuisances(const CalibrationProblem& problem,
+                                                  const LinearisedMisfit& misfit,
+                                                  const Eigen::VectorXd& whitened_residual) {
+  const Eigen::Vector3d centre = problem.body()->mesh.nodes.rowwise().mean();
+  std::vector<NuisanceCandidate> candidates;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const std::vector<double>& times = part.layout.times;
+    if (times.size() < 3) continue;
+    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    const RecordingContext context{problem, misfit, part, whitened_residual, spacing, centre};
+    ForEach<RecordingNuisance>([&](const NuisanceCard& card, RecordingNuisance make) {
+      if (auto candidate = make(context)) Add(card, *std::move(candidate), &candidates);
+    });
+  }
+  return candidates;
+}
+
+std::vector<LinearPrior> RigidMotionPriors() {
+  const auto& thresholds = kThresholds.nuisances;
+  std::vector<LinearPrior> priors(3, {0, thresholds.shift, false});
+  priors.resize(6, {0, thresholds.rotation, false});
+  return priors;
+}
+
+Eigen::VectorXd RecordingContext::Column(
+    const std::function<double(Eigen::Index frame, int series)>& value) const {
+  Eigen::VectorXd column = Eigen::VectorXd::Zero(misfit.residual.size());
+  for (Eigen::Index frame = 0; frame < Frames(); ++frame)
+    for (int series = 0; series < part.layout.series; ++series)
+      column[part.first_row + frame * part.layout.series + series] = value(frame, series);
+  return column;
+}
+
+double RecordingContext::RigidChange(Eigen::Index frame, int series, int axis) const {
+  const Observed& seen = part.observed[static_cast<size_t>(frame)];
+  const bool along_normal = seen.normal.cols() > 0;
+  const int point = along_normal ? series : series / 3;
+  if (seen.count[point] == 0) return 0;
+  Eigen::Vector3d motion = Eigen::Vector3d::Unit(axis % 3);
+  if (axis >= 3) motion = motion.cross(Eigen::Vector3d(seen.measured.col(point) - centre));
+  return along_normal ? motion.dot(seen.normal.col(point)) : motion[series % 3];
+}
+
+}  // namespace lacuna

@@ -1,0 +1,36 @@
+// A clock that is late or early by the same time in all frames of a recording.
+#include "diagnosis/nuisance_catalogue.h"
+
+namespace lacuna {
+namespace {
+
+NuisanceCard Card() {
+  NuisanceCard card;
+  card.name = "clock";
+  card.title = "the clock of a recording";
+  card.directions = "all frames of a recording later by the same time";
+  card.prior = "one frame";
+  card.residual_when_present =
+      "The residual is proportional to the velocity, with the same factor in all frames.";
+  card.advice = "give clock_deviation";
+  card.trial.limits_detection = true;
+  return card;
+}
+
+std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
+  // A study with a clock deviation fits the clock.
+  if (at.problem.models()[at.part.recording].item().clock_deviation != 0) return std::nullopt;
+  NuisanceCandidate candidate;
+  candidate.what = "the clock of " + at.Name();
+  candidate.columns = at.Column([&](Eigen::Index frame, int series) {
+    return at.part.speed[frame * at.part.layout.series + series];
+  });
+  candidate.priors = {{0, at.spacing, false}};
+  return candidate;
+}
+
+}  // namespace
+
+NuisanceEntry ClockNuisance() { return {Card(), &Make}; }
+
+}  // namespace lacuna

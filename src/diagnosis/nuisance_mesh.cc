@@ -1,0 +1,70 @@
+// The error of the finite element mesh.
+//
+// The first column is the change from the model's mesh to a finer one beyond what the parameters
+// can compensate for (calibration/mesh_limit.h), the second the last part of that change, from an
+// intermediate mesh. The prior of the first expects the extrapolation to infinitely fine elements.
+#include <algorithm>
+#include <memory>
+
+#include "calibration/linear_misfit.h"
+#include "calibration/mesh_limit.h"
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+namespace {
+
+NuisanceCard Card() {
+  NuisanceCard card;
+  card.name = "mesh";
+  card.title = "the size of the elements";
+  card.directions =
+      "the change of the prediction with finer elements, and with elements of twice that volume, "
+      "each with parameters that compensate for as much as they can";
+  card.prior = "the extrapolation to infinitely fine elements, and how far it is uncertain";
+  card.residual_when_present =
+      "A coarse mesh is too stiff where strains vary, near clamps above all, so its residual looks "
+      "like that of a stiffness that varies along the object.";
+  card.advice = "choose a smaller mesh.max_volume";
+  card.source = NuisanceSource::kDiscretisation;
+  card.is_always_in_model = true;
+  card.trial.limits_detection = true;
+  card.trial.control = "coarse_mesh";
+  card.trial.control_position = 3;
+  card.trial.element_volume = 4e-6;
+  return card;
+}
+
+std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
+  const std::optional<FinerMesh> finer =
+      MakeFinerMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false);
+  if (!finer) return std::nullopt;
+  const PredictionStudy study = at.problem.WithEstimatedNoise();
+  const auto residual = [&](const CalibrationProblem& finer_problem, double ratio) {
+    const Eigen::VectorXd change = finer->ToRatio(ratio) * finer->change;
+    return finer_problem.Linearise(MovedBy(at.problem.parameters(), at.values, change), false)
+        .residual;
+  };
+  const std::unique_ptr<const CalibrationProblem> half_way =
+      WithFinerElements(study, finer->ratio / 2);
+  if (half_way == nullptr) return std::nullopt;
+  const Eigen::VectorXd fine = residual(CalibrationProblem(study, finer->mesh), finer->ratio);
+  const Eigen::VectorXd between = residual(*half_way, finer->ratio / 2);
+  if (fine.size() != at.misfit.residual.size() || between.size() != fine.size())
+    return std::nullopt;
+  NuisanceCandidate candidate;
+  candidate.columns.resize(fine.size(), 2);
+  candidate.columns << fine - at.misfit.residual, fine - between;
+  const double limit = finer->ToLimit();
+  const NuisanceThresholds& thresholds = kThresholds.nuisances;
+  candidate.priors = {{limit, std::max(thresholds.mesh_limit, limit - 1), false},
+                      {0, thresholds.mesh_unknown, false}};
+  candidate.unknown = thresholds.mesh_unknown * candidate.columns.col(1);
+  return candidate;
+}
+
+}  // namespace
+
+NuisanceEntry MeshNuisance() { return {Card(), &Make}; }
+
+}  // namespace lacuna

@@ -1,0 +1,42 @@
+// An independent error in the time of each frame.
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+namespace {
+
+NuisanceCard Card() {
+  NuisanceCard card;
+  card.name = "time_jitter";
+  card.title = "the times of single frames";
+  card.directions = "each frame later by a time of its own";
+  card.prior = "a tenth of the time between frames";
+  card.residual_when_present =
+      "The residual is proportional to the velocity, with another factor in each frame.";
+  card.advice = "check the camera's clock and its exposure";
+  card.acts_on_single_frames = true;
+  card.trial.control = "time_jitter";
+  card.trial.control_position = 4;
+  card.trial.time_deviation = 0.0015;
+  return card;
+}
+
+std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
+  if (at.part.layout.times.size() > kThresholds.nuisances.most_single_frames) return std::nullopt;
+  NuisanceCandidate candidate;
+  candidate.what = "the times of single frames of " + at.Name();
+  candidate.columns.resize(at.misfit.residual.size(), at.Frames());
+  for (Eigen::Index own = 0; own < at.Frames(); ++own)
+    candidate.columns.col(own) = at.Column([&](Eigen::Index frame, int series) {
+      return frame == own ? at.part.speed[frame * at.part.layout.series + series] : 0.0;
+    });
+  candidate.priors.assign(static_cast<size_t>(at.Frames()),
+                          {0, kThresholds.nuisances.frame_time * at.spacing, false});
+  return candidate;
+}
+
+}  // namespace
+
+NuisanceEntry TimeJitterNuisance() { return {Card(), &Make}; }
+
+}  // namespace lacuna

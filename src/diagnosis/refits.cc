@@ -1,0 +1,262 @@
+#include "diagnosis/refits.h"
+
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "diagnosis/thresholds.h"
+
+namespace lacuna {
+namespace {
+
+// Of two refits of one effect that started from different variants.
+bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
+  if (!a.message.empty() || !b.message.empty()) return a.message.empty();
+  const NoiseLevel white;
+  return EvidenceOf(a.hypothesis, white).log_evidence >
+         EvidenceOf(b.hypothesis, white).log_evidence;
+}
+
+// Whether a refit has probably ended in a local minimum.
+bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit,
+                          const EffectRefit& without, const Score& score) {
+  if (!refit.message.empty() || PredictsWorse(refit.errors, without.errors)) return true;
+  const double noise = ranking.noise.variance * static_cast<double>(ObservedRows(ranking.misfit));
+  return FallsShort(EvidenceOf(without.hypothesis, ranking.noise),
+                    EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
+}
+
+// Refits one effect from its best variants, and from a fixed size where that seems to end in a
+// local minimum. Writes the result into the effect, but not its evidence.
+EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
+                        const EffectRefit& without, RankedEffect* effect) {
+  const bool is_far_off = RmsOverSigma(without.hypothesis) > kFarOff;
+  const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
+    return Refit(context.model, &variant, adopted, is_far_off, start);
+  };
+  EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
+  ScoredVariant best = effect->scored;
+  for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
+    if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
+      break;
+    EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
+    if (!IsBetter(other, refit)) continue;
+    refit = std::move(other);
+    best = elsewhere;
+  }
+  if (!effect->scored.candidate.IsPilot() &&
+      IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
+    EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
+    if (IsBetter(other, refit)) {
+      refit = std::move(other);
+      best = effect->scored;
+    }
+  }
+  static_cast<ScoredVariant&>(effect->scored) = std::move(best);
+  effect->refitted = true;
+  effect->refit_message = refit.message;
+  effect->errors = refit.errors;
+  if (refit.message.empty()) {
+    effect->values = refit.effect;
+    effect->sizes = refit.sizes;
+    effect->others = refit.others;
+  }
+  return refit;
+}
+
+void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
+  RankedEffect& own = ranked->effects[effect];
+  if (own.refitted || ranked->count == ranked->limit) return;
+  ++ranked->count;
+  ranked->refits[effect] = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
+}
+
+// `rivals`: number of effects from which this one was selected.
+void SetEvidence(const RefitContext& context, const EffectRefit& with, const RefitEvidence& before,
+                 const NoiseLevel& noise, size_t rivals, RankedEffect* effect) {
+  const RefitEvidence after = EvidenceOf(with, noise);
+  effect->evidence = after.all - before.all - SelectionPenalty(rivals);
+  effect->held_out_evidence = after.held_out - before.held_out;
+  if (!std::isfinite(effect->evidence)) {
+    effect->evidence = 0;
+    effect->refit_message = "the evidence at the end of the refit is not a finite number";
+    return;
+  }
+  effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
+  effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
+  effect->further = FurtherEvidenceOf(with.hypothesis, context.ranking.tried,
+                                      effect->scored.candidate.type, noise);
+}
+
+// The hypothesis with the smallest residual, the model without an effect among them.
+const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const NoiseLevel& noise) {
+  const FittedHypothesis* best = &ranked.baseline.hypothesis;
+  double least = EvidenceOf(*best, noise).misfit;
+  for (size_t k = 0; k < ranked.refits.size(); ++k) {
+    if (!ranked.IsUsable(k)) continue;
+    const double misfit = EvidenceOf(ranked.refits[k].hypothesis, noise).misfit;
+    if (misfit >= least) continue;
+    least = misfit;
+    best = &ranked.refits[k].hypothesis;
+  }
+  return *best;
+}
+
+// The effect with the most evidence after its refit; null: none has evidence.
+const RankedEffect* BestRefitted(const std::vector<RankedEffect>& effects) {
+  const auto best = std::max_element(
+      effects.begin(), effects.end(),
+      [](const RankedEffect& a, const RankedEffect& b) { return a.evidence < b.evidence; });
+  return best != effects.end() && best->evidence > 0 ? &*best : nullptr;
+}
+
+}  // namespace
+
+double RmsOverSigma(const FittedHypothesis& hypothesis) {
+  const Eigen::VectorXd white = WhitenedRows(hypothesis.residual, hypothesis.misfit, 0, false);
+  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(hypothesis.misfit));
+  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+}
+
+RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
+                            int wanted) {
+  RefittedRanking ranked;
+  ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
+  CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
+  ranked.effects.resize(effects.size());
+  for (size_t k = 0; k < effects.size(); ++k) ranked.effects[k].scored = effects[k];
+  ranked.refits.resize(effects.size());
+  ranked.limit = std::max(kThresholds.refit.most_effects, wanted);
+  return ranked;
+}
+
+std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int wanted) {
+  std::vector<size_t> chosen;
+  if (effects.empty() || wanted == 0) return chosen;
+  const auto evidence = [&](size_t k) { return effects[k].scored.score.evidence; };
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const size_t last = std::min(effects.size(), static_cast<size_t>(wanted)) - 1;
+  const double least =
+      std::min(evidence(0) - thresholds.close_behind, thresholds.share_of_last * evidence(last));
+  for (size_t k = 0; k < effects.size() && evidence(k) >= thresholds.least_evidence; ++k)
+    if (k <= last || evidence(k) > least) chosen.push_back(k);
+  return chosen;
+}
+
+std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects) {
+  std::vector<size_t> chosen;
+  const RankedEffect* best = BestRefitted(effects);
+  if (best == nullptr) return chosen;
+  const std::vector<std::string>& look_alikes = best->scored.look_alikes;
+  for (size_t k = 0; k < effects.size(); ++k)
+    if (std::count(look_alikes.begin(), look_alikes.end(), effects[k].scored.candidate.type) > 0)
+      chosen.push_back(k);
+  return chosen;
+}
+
+void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
+              RefittedRanking* ranked) {
+  for (const size_t effect : effects) RefitOne(context, effect, ranked);
+}
+
+void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
+                        int wanted, RefittedRanking* ranked) {
+  for (size_t k = 0; k < early.size() && static_cast<int>(k) < wanted; ++k) {
+    if (early[k].score.evidence < kThresholds.refit.least_evidence) break;
+    for (size_t at = 0; at < ranked->effects.size(); ++at) {
+      RankedEffect& effect = ranked->effects[at];
+      if (effect.scored.candidate.type != early[k].candidate.type || effect.refitted) continue;
+      // The score stays that of all fitted frames.
+      const Score score = std::exchange(effect.scored, early[k]).score;
+      RefitOne(context, at, ranked);
+      effect.scored.score = score;
+    }
+  }
+}
+
+RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
+  const FittedHypothesis& best = LeastResidual(*ranked, context.ranking.noise);
+  const RefitNoise noise{LevelOf(best.residual, best.misfit, best.misfit.by.cols(),
+                                 context.model.problem.LeastNoiseVariance()),
+                         RmsOverSigma(best)};
+  const RefitEvidence before = EvidenceOf(ranked->baseline, noise.level);
+  const size_t rivals = ranked->effects.size();
+  for (size_t k = 0; k < rivals; ++k)
+    if (ranked->IsUsable(k))
+      SetEvidence(context, ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+  return noise;
+}
+
+void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ranked,
+                         const RefitNoise& noise, std::vector<ScoredNuisance>* nuisances) {
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const RankedEffect* best = BestRefitted(ranked.effects);
+  if (best == nullptr || best->evidence < thresholds.least_evidence) return;
+  const double least = std::max(
+      thresholds.rival_nuisance_share * std::min(best->evidence, best->scored.score.evidence),
+      thresholds.least_evidence);
+  std::vector<ScoredNuisance*> rivals;
+  for (ScoredNuisance& nuisance : *nuisances)
+    if (!nuisance.adopted && nuisance.evidence > least) rivals.push_back(&nuisance);
+  std::stable_sort(rivals.begin(), rivals.end(),
+                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  rivals.resize(std::min(rivals.size(), thresholds.most_rival_nuisances));
+  const double before = EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence;
+  for (ScoredNuisance* nuisance : rivals) {
+    const EffectRefit with =
+        Refit(context.model, nullptr, context.ranking.adopted.And(nuisance->candidate), false);
+    if (!with.message.empty()) continue;
+    const double evidence = EvidenceOf(with.hypothesis, noise.level).log_evidence - before -
+                            nuisance->candidate.selection_penalty -
+                            SelectionPenalty(nuisances->size());
+    if (std::isfinite(evidence)) nuisance->refitted = evidence;
+  }
+}
+
+void RankBesideBest(const RefitContext& context, const std::vector<std::string>& without,
+                    RefittedRanking* ranked) {
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const RankedEffect* best = BestRefitted(ranked->effects);
+  if (best == nullptr) return;
+  const double least = best->evidence - thresholds.second_ranking_lead;
+  int done = 0;
+  for (size_t k = 0; k < ranked->refits.size() && done < thresholds.most_second_rankings; ++k) {
+    RankedEffect& effect = ranked->effects[k];
+    if (!ranked->IsUsable(k) || effect.evidence < least ||
+        effect.further.evidence < std::max(thresholds.least_evidence,
+                                           kThresholds.naming.remainder_share * effect.evidence))
+      continue;
+    ++done;
+    effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without);
+  }
+}
+
+NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
+                                             const RefittedRanking& ranked, const RefitNoise& noise,
+                                             int wanted) {
+  NuisanceAlternatives alternatives;
+  const EffectRanking& ranking = context.ranking;
+  if (!ranking.adopted.HasMore()) return alternatives;
+  const AdoptedNuisances always = ranking.adopted.Always();
+  const EffectRefit bare = Refit(context.model, nullptr, always, false);
+  if (!bare.message.empty()) return alternatives;
+  alternatives.bare = bare.errors;
+  const RefitEvidence before = EvidenceOf(bare, noise.level);
+  alternatives.nuisances_evidence =
+      EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence - before.all;
+  const double least = kThresholds.refit.alternative_share * alternatives.nuisances_evidence;
+  for (const ScoredEffect& scored : ranking.without_adopted) {
+    if (static_cast<int>(alternatives.effects.size()) == wanted || scored.score.evidence < least)
+      break;
+    RankedEffect& effect = alternatives.effects.emplace_back();
+    effect.scored = scored;
+    const EffectRefit with = RefitEffect(context, always, bare, &effect);
+    if (with.message.empty())
+      SetEvidence(context, with, before, noise.level, ranked.effects.size(), &effect);
+  }
+  return alternatives;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,89 @@
+// The refits of a diagnosis: which of the ranked effects are fitted together with the model, and
+// what evidence they have afterwards.
+//
+// All state is in plain values. RefitAll() and RefitAsRankedEarly() add refits to a
+// RefittedRanking; WeighRefits() computes the evidence of all refits that it has, with a noise that
+// is estimated from the best one. "The best effect" is the one with the most of that evidence;
+// functions that start from it do nothing if no effect has any.
+#ifndef LACUNA_DIAGNOSIS_REFITS_H_
+#define LACUNA_DIAGNOSIS_REFITS_H_
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnosis_result.h"
+#include "diagnosis/effect_refit.h"
+
+namespace lacuna {
+
+// What all refits of a diagnosis share. References must outlive it.
+struct RefitContext {
+  const BaselineModel& model;
+  const EffectRanking& ranking;  // of `model`; its list of effects is not used
+};
+
+// The effects of a ranking with their refits. A refit is usable if its effect is marked as refitted
+// and has no message.
+struct RefittedRanking {
+  EffectRefit baseline;               // the model with the adopted nuisances
+  std::vector<RankedEffect> effects;  // in the order of the ranking
+  std::vector<EffectRefit> refits;    // of the effects, in the same order; empty if not refitted
+  int count = 0;                      // number of refits
+  int limit = 0;                      // the largest number of refits
+
+  bool IsUsable(size_t effect) const {
+    return effects[effect].refitted && effects[effect].refit_message.empty();
+  }
+};
+
+// The noise of the measurements, and the rms of the hypothesis with the smallest residual.
+struct RefitNoise {
+  NoiseLevel level;
+  double least_rms_over_sigma = 0;
+};
+
+// The rms residual over all frames, adopted nuisances at their best, over σ.
+double RmsOverSigma(const FittedHypothesis& hypothesis);
+
+// Fits the model without an effect. No effect is refitted yet; `wanted` is the number of refits
+// that the user asks for. Throws Interrupted, as do the other functions that fit.
+RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
+                            int wanted);
+
+// The `wanted` best effects by first order, and those that are nearly as good.
+std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int wanted);
+
+// The effects that first order cannot distinguish from the best refitted one.
+std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
+
+// Refits the effects with these indices that have not been refitted, up to the limit.
+void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
+              RefittedRanking* ranked);
+
+// Refits the `wanted` best effects of another ranking, `early`, from the places, directions, times
+// and sizes that they have there.
+void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
+                        int wanted, RefittedRanking* ranked);
+
+// Estimates the noise from the refit with the smallest residual, and computes the evidence of all
+// refits. Replaces the results of an earlier call.
+RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked);
+
+// Refits the model with each nuisance that first order puts near the best effect or above it, and
+// sets ScoredNuisance::refitted.
+void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ranked,
+                         const RefitNoise& noise, std::vector<ScoredNuisance>* nuisances);
+
+// Where a good refit seems to leave evidence for another effect, ranks the effects again along the
+// refitted motion, and sets RankedEffect::further. `without`: types that are not ranked.
+void RankBesideBest(const RefitContext& context, const std::vector<std::string>& without,
+                    RefittedRanking* ranked);
+
+// Refits `wanted` effects, at most, in place of the adopted nuisances.
+NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
+                                             const RefittedRanking& ranked, const RefitNoise& noise,
+                                             int wanted);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_REFITS_H_

@@ -1,0 +1,96 @@
+#include "diagnosis/nuisance_catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "calibration/calibration_problem.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+// Everything that the rest of the program and the user may ask stands on every card.
+TEST(NuisanceCatalogue, HasACompleteCardForEachNuisance) {
+  std::set<std::string> names;
+  for (const NuisanceEntry& entry : NuisanceCatalogue()) {
+    const NuisanceCard& card = entry.card;
+    EXPECT_TRUE(names.insert(card.name).second) << card.name << " stands in the list twice";
+    for (const std::string& text : {card.name, card.title, card.directions, card.prior,
+                                    card.residual_when_present, card.advice})
+      EXPECT_FALSE(text.empty()) << card.name;
+    EXPECT_NE(card.advice.back(), '.') << "the verdict continues the sentence";
+    EXPECT_EQ(FindNuisance(card.name), &card);
+    // Free directions of single frames follow any residual, and would be part of every model.
+    if (card.is_always_in_model) {
+      EXPECT_FALSE(card.acts_on_single_frames) << card.name;
+    }
+    const bool is_of_model = std::holds_alternative<ModelNuisance>(entry.make);
+    EXPECT_EQ(card.is_always_in_model, is_of_model) << card.name;
+    if (std::holds_alternative<GripNuisance>(entry.make)) {
+      EXPECT_EQ(card.source, NuisanceSource::kGrip) << card.name;
+    }
+    if (std::holds_alternative<RecordingNuisance>(entry.make)) {
+      EXPECT_EQ(card.source, NuisanceSource::kMeasurement) << card.name;
+    }
+    if (card.shrinks_with_time_step) {
+      EXPECT_EQ(card.source, NuisanceSource::kDiscretisation) << card.name;
+    }
+  }
+  EXPECT_EQ(FindNuisance("gravity"), nullptr);
+}
+
+// The sealed trials refer to the controls by position and name; a case of a seed must not change.
+TEST(NuisanceCatalogue, KeepsTheControlsOfTheTrialsInTheirOrder) {
+  std::vector<std::string> controls;
+  for (const NuisanceTrial& control : NuisanceControls()) {
+    controls.push_back(control.control);
+    EXPECT_GT(control.largest_clamp_error + control.element_volume + control.time_deviation +
+                  control.frame_shift,
+              0)
+        << control.control << " disturbs nothing";
+  }
+  EXPECT_THAT(controls, testing::ElementsAre("grip", "bad_frame", "coarse_mesh", "time_jitter"));
+}
+
+// A marker in uniform motion, whose frames a clock, their own times or a drift may displace.
+TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+  const LinearisedMisfit misfit = problem.Linearise(problem.Start(), /*with_jacobian=*/false);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  const LinearisedMisfit::Part& part = misfit.parts.front();
+  const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
+  Eigen::VectorXd residual = Eigen::VectorXd::Zero(misfit.residual.size());
+  residual[part.first_row + 5 * part.layout.series] = 1;  // frame 5 is misplaced
+  std::map<std::string, NuisanceCandidate> made;
+  for (const NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, residual)) {
+    ASSERT_EQ(nuisance.columns.rows(), misfit.residual.size()) << nuisance.card.name;
+    ASSERT_EQ(nuisance.columns.cols(), static_cast<Eigen::Index>(nuisance.priors.size()));
+    made[nuisance.card.name] = nuisance;
+  }
+  EXPECT_FALSE(made.contains("clock")) << "the study fits the clock";
+  // The errors of all frames together are that of the clock.
+  const Eigen::VectorXd all_late = made.at("time_jitter").columns.rowwise().sum();
+  EXPECT_LT((all_late - part.speed).norm(), 1e-12 * part.speed.norm());
+  EXPECT_EQ(made.at("time_jitter").columns.cols(), frames);
+  const Eigen::MatrixXd& bad = made.at("bad_frame").columns;
+  EXPECT_GT(bad.middleRows(5 * part.layout.series, part.layout.series).norm(), 0);
+  EXPECT_EQ(bad.topRows(5 * part.layout.series).norm(), 0);
+  EXPECT_DOUBLE_EQ(made.at("bad_frame").selection_penalty, std::log(static_cast<double>(frames)));
+  // The drift is complete, 1 m per unit, in the last frame.
+  const Eigen::MatrixXd& drift = made.at("registration_drift").columns;
+  EXPECT_EQ(drift.topRows(part.layout.series).norm(), 0);
+  EXPECT_DOUBLE_EQ(drift(drift.rows() - 3, 0), 1);
+}
+
+}  // namespace
+}  // namespace lacuna
