@@ -8,6 +8,7 @@
 
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"

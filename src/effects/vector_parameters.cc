@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "effects/gravity.h"
-
 namespace lacuna {
 namespace {
 
@@ -62,19 +60,6 @@ void AppendPlace(const std::string& meaning, EffectCard* card) {
                               .default_value = 0.005,
                               .log_scale = true,
                               .setting = true});
-}
-
-void AppendGravitySetting(EffectCard* card) {
-  AppendVector({.name = kGravitySetting,
-                .meaning = "acceleration of free fall, which must be that of the model's gravity "
-                           "(0, 0, 0 in a model without),",
-                .dimension = kAcceleration,
-                .bounds = kAnyValue,
-                .null_value = 0,
-                .plausible_min = -kStandardGravity,
-                .plausible_max = kStandardGravity,
-                .setting = true},
-               {0, 0, -kStandardGravity}, card);
 }
 
 }  // namespace lacuna

@@ -31,10 +31,6 @@ std::string VectorNameAt(const EffectCard& card, size_t k);
 // describes the place, e.g. "place of the mass on the body at rest".
 void AppendPlace(const std::string& meaning, EffectCard* card);
 
-// Appends the setting `gravity` (m/s²), the acceleration of free fall; by default the standard
-// value 9.80665 m/s² (3rd CGPM, 1901) along −z.
-void AppendGravitySetting(EffectCard* card);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_EFFECTS_VECTOR_PARAMETERS_H_
