@@ -114,6 +114,26 @@ double PriorVariance(const Posterior& posterior, double sigma, double residual,
   return (1.0 - tangential_weight) * directed + tangential_weight * isotropic;
 }
 
+// The surface of the source at this level; `rest` holds its points.
+SourceSurface SurfaceOf(const NormalisedClouds& clouds, const Level& level,
+                        const GaussianBasis& basis, const CpdOptions& options,
+                        const Eigen::Matrix3Xd& rest) {
+  SourceSurface surface;
+  surface.normals = EveryNth(clouds.source_normals, level.source_stride);
+  surface.curvature_bias =
+      CurvatureBias(rest.cast<float>(), surface.normals, 1.5 * level.floor, options);
+  surface.patches = MakePatches(basis, rest);
+  return surface;
+}
+
+// `change`: rms displacement of the last step in normalised units.
+void ReportProgress(const NormalisedClouds& clouds, const CpdOptions& options, const Drift& drift,
+                    int points, double change) {
+  if (!options.progress) return;
+  options.progress({drift.iterations, points, static_cast<int>(clouds.source.cols()),
+                    clouds.scale * drift.sigma, clouds.scale * change});
+}
+
 }  // namespace
 
 void RunLevel(const NormalisedClouds& clouds, const Level& level, const GaussianBasis& basis,
@@ -130,10 +150,7 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
       (level.is_last ? 1.0 : 10.0) * options.tolerance * options.sigma_floor * spacing;
 
   const BasisTable table(basis, source, *options.kernels);
-  SourceSurface surface;
-  surface.normals = EveryNth(clouds.source_normals, level.source_stride);
-  surface.curvature_bias = CurvatureBias(rest_single, surface.normals, 1.5 * level.floor, options);
-  surface.patches = MakePatches(basis, rest);
+  const SourceSurface surface = SurfaceOf(clouds, level, basis, options, rest);
   const Eigen::MatrixXd rigidity_hessian = RigidityHessian(surface.patches);
 
   const int rank = basis.Rank();
@@ -186,11 +203,7 @@ void RunLevel(const NormalisedClouds& clouds, const Level& level, const Gaussian
     if (options.estimate_outlier_weight) {
       drift->outlier_weight = 1.0 - drift->posterior.total_weight / target_count;
     }
-    if (options.progress) {
-      options.progress({drift->iterations, static_cast<int>(rest.cols()),
-                        static_cast<int>(clouds.source.cols()), clouds.scale * drift->sigma,
-                        clouds.scale * change});
-    }
+    ReportProgress(clouds, options, *drift, static_cast<int>(rest.cols()), change);
     drift->converged = drift->sigma > 0.97 * sigma && change < tolerance;
   }
   drift->coefficients.leftCols(rank) = coefficients;
