@@ -18,8 +18,8 @@ TEST(PrescribedForce, IsDistributedByAreaAndFollowsItsHistory) {
       if (body.mesh.nodes(0, i) > 0.1 - 1e-9) tip.push_back(i);
     const Eigen::VectorXi nodes =
         Eigen::Map<const Eigen::VectorXi>(tip.data(), static_cast<Eigen::Index>(tip.size()));
-    const PrescribedForce of_gauge(BoundaryShares(body, nodes),
-                                   [](double time) { return Eigen::Vector3d(time, 0, -2 * time); });
+    const PrescribedForce force(BoundaryShares(body, nodes),
+                                [](double time) { return Eigen::Vector3d(time, 0, -2 * time); });
     const Eigen::VectorXd position = body.mesh.nodes.reshaped();
     const Eigen::VectorXd velocity = Eigen::VectorXd::Zero(position.size()), state;
     Eigen::VectorXd total = Eigen::VectorXd::Zero(position.size());
