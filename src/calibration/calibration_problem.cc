@@ -232,6 +232,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   const bool seek = known.correspondences.empty();
   if (seek) known.correspondences.resize(models_.size());
   known.equilibria.resize(models_.size());
+  const std::vector<Eigen::VectorXd> equilibria_before = known.equilibria;
   const std::vector<size_t> fitted = FittedRecordings();
   std::vector<Prediction> parts(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t k) {
@@ -247,7 +248,9 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) {
     if (!part.usable) {
-      if (seek) known.correspondences.clear();  // to be found by a prediction that gets to the end
+      // The next prediction depends on none that did not reach the end.
+      known.equilibria = equilibria_before;
+      if (seek) known.correspondences.clear();
       return part;
     }
     rows += part.residual.size();

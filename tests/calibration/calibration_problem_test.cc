@@ -86,12 +86,12 @@ TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, StudyMesh());
   constexpr double kWhole = std::numeric_limits<double>::infinity();
-  CalibrationProblem::Correspondences compared;
+  CalibrationProblem::FitMemory memory;
   Eigen::VectorXd liquid = problem.Start();
   liquid[0] = 1;  // Pa
-  EXPECT_FALSE(problem.Predict(liquid, false, kWhole, &compared).usable);
-  EXPECT_TRUE(compared.empty());
-  const Prediction after = problem.Predict(problem.Start(), false, kWhole, &compared);
+  EXPECT_FALSE(problem.Predict(liquid, false, kWhole, &memory).usable);
+  EXPECT_TRUE(memory.correspondences.empty());
+  const Prediction after = problem.Predict(problem.Start(), false, kWhole, &memory);
   ASSERT_TRUE(after.usable) << after.message;
   EXPECT_EQ(after.residual, problem.Predict(problem.Start(), false).residual);
 }

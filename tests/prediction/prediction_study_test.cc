@@ -107,9 +107,11 @@ TEST_F(ReadingAPredictionStudy, SharesTheMaterialsParameters) {
                    {{"{type: mass_damping, alpha: 1 1/s}", "{type: stiffness_damping, beta: 3 ms}"},
                     {"mass_damping.alpha", "stiffness_damping.beta"}});
   ASSERT_EQ(study.fitted[0].places.size(), 2u);
-  SetParameter(study.fitted[0], 123456);
-  EXPECT_EQ(study.effects[0]->Parameters()[0], 123456);
-  EXPECT_EQ(study.effects[2]->Parameters()[1], 123456);
+  const double before = study.effects[0]->Parameters()[0];
+  const EffectList changed = WithValues(study.effects, study.fitted, Eigen::Vector2d(123456, 0.01));
+  EXPECT_EQ(changed[0]->Parameters()[0], 123456);
+  EXPECT_EQ(changed[2]->Parameters()[1], 123456);
+  EXPECT_EQ(study.effects[0]->Parameters()[0], before) << "an effect does not change";
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesTooFewFrames) {
