@@ -81,7 +81,7 @@ class Fitter {
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
     const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
-    Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kMayBeAstray});
+    Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kLocalMinimumSuspected});
     // "Before" is where the caller started, not where the first part ended.
     calibration.start_rms = Left(problem_, start);
     return calibration;
@@ -156,19 +156,19 @@ double ShortHorizon(const CalibrationProblem& problem) {
   return longest;
 }
 
-Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                         Progress* progress) {
+Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                            Progress* progress) {
   return Fitter(problem, progress).Beginning("fit, first part", start);
 }
 
-Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                    Progress* progress) {
+Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                        Progress* progress) {
   Fitter fitter(problem, progress);
   return fitter.Whole(start, fitter.Beginning("fit, first part", start));
 }
 
-Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
-                  Progress* progress) {
+Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
+                      Progress* progress) {
   return Fitter(problem, progress).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
 }
 
@@ -179,7 +179,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   const Eigen::VectorXd start = problem.Start();
   Calibration calibration = fitter.Whole(
       start, beginning != nullptr ? *beginning : fitter.Beginning("fit, first part", start));
-  if (calibration.usable && calibration.rms <= kMayBeAstray) return calibration;
+  if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
 
   const std::vector<ModelParameter>& fitted = problem.study().fitted;
   double least = calibration.usable ? calibration.rms : kUnlimited;

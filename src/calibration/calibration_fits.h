@@ -18,16 +18,16 @@ namespace lacuna {
 double ShortHorizon(const CalibrationProblem& problem);
 
 // Fits over the short horizon, where a wrong model has the least time to diverge.
-Calibration FitBeginning(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                         Progress* progress);
+Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                            Progress* progress);
 
 // Fits over the short horizon first, then over all fitted frames.
-Calibration FitFrom(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                    Progress* progress);
+Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
+                        Progress* progress);
 
 // Fits all fitted frames at once, from near the solution.
-Calibration FitOn(const CalibrationProblem& problem, const Eigen::VectorXd& near,
-                  Progress* progress);
+Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
+                      Progress* progress);
 
 // Fits from the problem's start. A distant start may lead to a local minimum that is off by a
 // period of a vibration: where the residual is far above the noise, the moduli are started from

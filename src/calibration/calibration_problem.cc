@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
-#include "prediction/own_nuisance.h"
 #include "prediction/recorded_motion.h"
+#include "prediction/recording_nuisances.h"
 
 namespace lacuna {
 namespace {
@@ -139,11 +139,11 @@ Eigen::VectorXd CalibrationProblem::NuisanceOf(size_t recording,
   if (first_nuisance_[recording] >= 0)
     return values.segment(first_nuisance_[recording],
                           static_cast<Eigen::Index>(model.nuisances().size()));
-  return OwnNuisance(ModelAt(recording, values), ErrorsOf(model),
-                     PlacesFromFitted(recording, values));
+  return FitRecordingNuisances(ModelAt(recording, values), ErrorsOf(model),
+                               PlacesFromFitted(recording, values));
 }
 
-std::optional<size_t> CalibrationProblem::PlacesToldBy(size_t recording) const {
+std::optional<size_t> CalibrationProblem::RecordingWithSamePlaces(size_t recording) const {
   if (models_[recording].Markers() == nullptr || first_nuisance_[recording] >= 0)
     return std::nullopt;
   for (size_t r = 0; r < models_.size(); ++r)
@@ -155,7 +155,7 @@ std::optional<size_t> CalibrationProblem::PlacesToldBy(size_t recording) const {
 
 std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
     size_t recording, const Eigen::VectorXd& values) const {
-  const std::optional<size_t> teller = PlacesToldBy(recording);
+  const std::optional<size_t> teller = RecordingWithSamePlaces(recording);
   if (!teller) return std::nullopt;
   const RecordingModel fitted = ModelAt(*teller, values);
   const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values));
@@ -220,7 +220,7 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
   const Eigen::Index series = rows / static_cast<Eigen::Index>(std::max<size_t>(1, frames.size()));
   for (Eigen::Index row = 0; row < rows; ++row)
     part.before.push_back(row < series ? -1 : row - series);
-  if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.by, 0));
+  if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.jacobian, 0));
   return part;
 }
 
@@ -278,7 +278,7 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
   // The clock comes last: its derivative is the speed, with the sign turned.
   std::vector<MisfitDirection> wanted;
   if (with_jacobian) wanted = DirectionsFor(model, directions);
-  wanted.push_back({MisfitDirection::Of::kClock});
+  wanted.push_back({MisfitDirection::Kind::kClock});
   Misfit misfit =
       model.Predict(item.frames, NuisanceOf(r, values), wanted, {.observed = compared_with});
   LinearisedRecording linearised;
@@ -299,10 +299,10 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
   part.layout.deformation = std::move(misfit.deformation);
   part.observed = std::move(misfit.observed);
-  part.speed = -misfit.by.rightCols<1>();
+  part.speed = -misfit.jacobian.rightCols<1>();
   if (with_jacobian)
-    linearised.by = ColumnsOf(r, misfit.by.leftCols(misfit.by.cols() - 1),
-                              static_cast<Eigen::Index>(directions.size()));
+    linearised.jacobian = ColumnsOf(r, misfit.jacobian.leftCols(misfit.jacobian.cols() - 1),
+                                    static_cast<Eigen::Index>(directions.size()));
   linearised.residual = std::move(misfit.residual);
   return linearised;
 }
@@ -328,11 +328,11 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
   }
   all.residual.resize(rows);
   if (with_jacobian)
-    all.by.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
+    all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
   for (LinearisedRecording& recording : recordings) {
     const Eigen::Index first = recording.part.first_row, count = recording.residual.size();
     all.residual.segment(first, count) = recording.residual;
-    if (with_jacobian) all.by.middleRows(first, count) = recording.by;
+    if (with_jacobian) all.jacobian.middleRows(first, count) = recording.jacobian;
     all.parts.push_back(std::move(recording.part));
   }
   all.usable = true;

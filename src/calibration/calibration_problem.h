@@ -37,16 +37,16 @@ struct LinearisedMisfit {
   bool usable = false;
   std::string message;
   Eigen::VectorXd residual;
-  Eigen::MatrixXd by;  // Jacobian: the problem's parameters, then the directions asked for
+  Eigen::MatrixXd jacobian;  // columns: the problem's parameters, then the directions asked for
   std::vector<Part> parts;
 };
 
 // A fit whose rms residual exceeds this many σ may have ended in a local minimum; other starts are
 // tried. Lower: more fits are repeated; higher: more local minima are kept.
-inline constexpr double kMayBeAstray = 2;
+inline constexpr double kLocalMinimumSuspected = 2;
 // A model whose rms residual exceeds this many σ is far from the truth; the error of its mesh does
 // not matter then.
-inline constexpr double kFarOff = 3;
+inline constexpr double kFarFromTruth = 3;
 
 class CalibrationProblem {
  public:
@@ -85,7 +85,7 @@ class CalibrationProblem {
   // fitted are taken: the first one with markers of the same names at the same places. The markers
   // sit on the object, so that their place errors are the same in both. Empty where there is none,
   // and for scans.
-  std::optional<size_t> PlacesToldBy(size_t recording) const;
+  std::optional<size_t> RecordingWithSamePlaces(size_t recording) const;
 
   // What one prediction of a fit hands on to the next.
   struct FitMemory {
@@ -114,7 +114,7 @@ class CalibrationProblem {
                              const LinearisedMisfit* same = nullptr) const;
 
  private:
-  // The errors of the marker places as PlacesToldBy() has them, 3 × markers, m.
+  // The errors of the marker places as RecordingWithSamePlaces() has them, 3 × markers, m.
   std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
                                                   const Eigen::VectorXd& values) const;
   // The directions in which a recording's Misfit is differentiated: each place of the study's
@@ -134,7 +134,7 @@ class CalibrationProblem {
     std::string message;  // why it is not usable; empty: it is
     LinearisedMisfit::Part part;
     Eigen::VectorXd residual;
-    Eigen::MatrixXd by;
+    Eigen::MatrixXd jacobian;
   };
   LinearisedRecording LineariseRecording(size_t recording, const Eigen::VectorXd& values,
                                          bool with_jacobian,

@@ -30,7 +30,7 @@ struct CalibrationStage {
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
                             Progress* progress) {
-  const SteppedFit fit = FitWithItsStep(reference.mesh, &study, progress);
+  const SteppedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
   const Calibration& calibration = fit.calibration;
   const CalibrationProblem problem(study, reference.mesh);
   CalibrationStage stage;
@@ -73,7 +73,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   record.prior_conflicts = FindPriorConflicts(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);
   progress->End();
-  if (calibration.rms <= kFarOff) {
+  if (calibration.rms <= kFarFromTruth) {
     progress->Begin("finer elements", 0);
     if (const auto limit = AtMeshLimit(problem, calibration.parameters))
       for (size_t k = 0; k < record.parameters.size(); ++k) {

@@ -120,7 +120,7 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
     return WhitenedRows(fine - coarse, misfit, 0, fitted_only);
   };
   const Eigen::MatrixXd by =
-      WhitenedRows(misfit.by.leftCols(values.size()), misfit, 0, fitted_only);
+      WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only);
   const ChangePrior prior = PriorOfChange(problem, values);
   Eigen::VectorXd left = difference(finer.change);
   const bool is_finer = left.size() > 0;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/parallel.h"
-#include "prediction/own_nuisance.h"
+#include "prediction/recording_nuisances.h"
 
 namespace lacuna {
 namespace {
@@ -45,7 +45,7 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   RecordingMisfit recording;
   recording.name = item.name;
   recording.nuisance =
-      item.fitted ? problem.NuisanceOf(r, values) : OwnNuisance(model, errors, places);
+      item.fitted ? problem.NuisanceOf(r, values) : FitRecordingNuisances(model, errors, places);
   recording.misfit = model.Predict(item.frames, recording.nuisance);
   // Of a recording that is not fitted, only what it shows before it moves tells the places, where
   // no fitted one does.
@@ -74,11 +74,11 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
   for (const bool is_told : {false, true}) {
     std::vector<size_t> some;
     for (size_t r = 0; r < all.size(); ++r)
-      if (problem.PlacesToldBy(r).has_value() == is_told) some.push_back(r);
+      if (problem.RecordingWithSamePlaces(r).has_value() == is_told) some.push_back(r);
     ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
       const size_t r = some[static_cast<size_t>(k)];
       std::optional<Eigen::MatrixXd> places;
-      if (const std::optional<size_t> teller = problem.PlacesToldBy(r);
+      if (const std::optional<size_t> teller = problem.RecordingWithSamePlaces(r);
           teller && all[*teller].misfit.summary.IsUsable())
         places = all[*teller].place_offset;
       all[r] = MisfitOf(problem, values, r, places);

@@ -25,7 +25,7 @@ struct RecordingMisfit {
 
 // The misfits of all recordings at these values of the problem's parameters. For a recording that
 // is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
-// PlacesToldBy.
+// RecordingWithSamePlaces.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values);
 

@@ -56,7 +56,8 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
 
 }  // namespace
 
-SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress) {
+SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
+                                   Progress* progress) {
   SteppedFit fit;
   Calibration beginning;
   if (study->chooses_time_step) {
@@ -64,7 +65,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
-      beginning = FitBeginning(problem, problem.Start(), progress);
+      beginning = FitShortHorizon(problem, problem.Start(), progress);
       further = problem.WithEstimatedNoise();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
@@ -80,7 +81,7 @@ SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress*
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = fit.calibration.usable;
       const bool has_begun = tried == 1 && beginning.usable;
-      fit.calibration = goes_on ? FitOn(problem, fit.calibration.parameters, progress)
+      fit.calibration = goes_on ? RefineFit(problem, fit.calibration.parameters, progress)
                                 : FitFromStart(problem, progress, has_begun ? &beginning : nullptr);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;

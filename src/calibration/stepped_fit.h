@@ -19,7 +19,7 @@ struct SteppedFit {
 // FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
 // step_error is small against the noise or the model's residual, and the fit continues from where
 // it was. `study` receives the step that was chosen. Throws Interrupted.
-SteppedFit FitWithItsStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
+SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
 
 }  // namespace lacuna
 

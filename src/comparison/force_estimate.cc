@@ -158,7 +158,7 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
 
   const bool helps = fit.rms_over_sigma_with < kWorthwhile * fit.rms_over_sigma_without;
   if (!state.estimate || (!fit.converged && !helps)) {
-    return Unusable(force, fit.rms_over_sigma_without > kFarOff
+    return Unusable(force, fit.rms_over_sigma_without > kFarFromTruth
                                ? "the model is so far off that no small force brings it closer"
                                : "no small, smooth force brings the model closer to the markers");
   }

@@ -30,7 +30,7 @@ ForceLinearisation::ForceLinearisation(const RecordingModel& recording,
   for (const auto& nuisance : recording.nuisances()) {
     prior_deviations_[static_cast<Eigen::Index>(held_shape_.size())] =
         nuisance.prior.prior_deviation;
-    const bool is_force = nuisance.direction.of == MisfitDirection::Of::kModel;
+    const bool is_force = nuisance.direction.kind == MisfitDirection::Kind::kModel;
     held_shape_.push_back(is_force ? shapes_.cols() : -1);
     if (!is_force) continue;
     shapes_.conservativeResize(Eigen::NoChange, shapes_.cols() + 1);
@@ -127,8 +127,8 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
     for (Eigen::Index k = 0; k < nuisances; ++k) {
       const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
       auto column = jacobian.col(forces + k).segment<3>(row);
-      if (direction.of == MisfitDirection::Of::kModel) continue;
-      if (direction.of != MisfitDirection::Of::kClock)
+      if (direction.kind == MisfitDirection::Kind::kModel) continue;
+      if (direction.kind != MisfitDirection::Kind::kClock)
         column = recording_.ByRegistration(direction, motion.registration,
                                            motion.predicted.col(frame).segment<3>(3 * m));
       else if (times[index] > field_.start)

@@ -57,7 +57,7 @@ bool IsStepTooLong(const EffectRanking& ranking) {
                                    return nuisance.candidate.card.shrinks_with_time_step;
                                  });
   return step != ranking.nuisances.end() &&
-         DiscretisationUncertainty(step->doubt) > kThresholds.naming.least_evidence &&
+         DiscretisationUncertainty(step->uncertain_evidence) > kThresholds.naming.least_evidence &&
          !ranking.effects.empty() &&
          ranking.effects.front().score.evidence > kThresholds.naming.least_evidence;
 }
@@ -80,7 +80,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
   diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
-  if (diagnosis.baseline_rms_over_sigma > kFarOff)
+  if (diagnosis.baseline_rms_over_sigma > kFarFromTruth)
     RefitAsRankedEarly(context, RankEarly(problem, fitted, setting), options.refits, &ranked);
   WeighRefits(context, &ranked);
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
@@ -114,7 +114,7 @@ std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
       fmt::format("{:.3g} ms, because the error of twice that could look like an effect",
                   1e3 * study.time_step));
   const CalibrationProblem shorter(study, problem.body()->mesh);
-  const Calibration fit = FitOn(shorter, fitted, setting.progress);
+  const Calibration fit = RefineFit(shorter, fitted, setting.progress);
   if (fit.parameters.size() != fitted.size()) return std::nullopt;
   return DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting);
 }

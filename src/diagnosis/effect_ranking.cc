@@ -117,11 +117,11 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   CHECK(misfit_.usable) << "the fitted model could be predicted before: " << misfit_.message;
 
   parameters_ = base_ =
-      hypotheses_.Add(misfit_.by.leftCols(known_), PriorsAbout(problem.parameters(), values));
-  AddEffects(misfit_.by.middleCols(known_, of_effects),
+      hypotheses_.Add(misfit_.jacobian.leftCols(known_), PriorsAbout(problem.parameters(), values));
+  AddEffects(misfit_.jacobian.middleCols(known_, of_effects),
              RunPilots(problem, values, misfit_, without));
   const Eigen::MatrixXd grip_columns =
-      misfit_.by.rightCols(misfit_.by.cols() - known_ - of_effects);
+      misfit_.jacobian.rightCols(misfit_.jacobian.cols() - known_ - of_effects);
   for (NuisanceCandidate& nuisance :
        ModelNuisances({problem, values, misfit_, grips, grip_columns}))
     AddNuisance(std::move(nuisance));
@@ -200,7 +200,7 @@ void HypothesisRanking::ScoreNuisancesOfEveryModel() {
     const LinearGaussianModel unknown = weighed_->all.WithResidual(
         WhitenedRows(nuisance.candidate.unknown, misfit_, ranking_.noise.correlation_time, false),
         weighed_->columns);
-    nuisance.doubt = 0.5 * unknown.Fit(parameters_, variance).misfit / variance;
+    nuisance.uncertain_evidence = 0.5 * unknown.Fit(parameters_, variance).misfit / variance;
   }
 }
 
@@ -318,7 +318,7 @@ EffectRanking HypothesisRanking::Rank() && {
                      SelectionPenalty(candidates_.size());
   ranking_.effects = ScoredEntries();
   ranking_.tried = Tried();
-  misfit_.by.resize(0, 0);
+  misfit_.jacobian.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);
 }

@@ -76,9 +76,9 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
   const Eigen::MatrixXd& nuisances = adopted.columns;
-  Eigen::MatrixXd& columns = hypothesis.misfit.by;
+  Eigen::MatrixXd& columns = hypothesis.misfit.jacobian;
   if (near != nullptr) {
-    columns = near->misfit.by;
+    columns = near->misfit.jacobian;
   } else {
     columns.conservativeResize(Eigen::NoChange, hypothesis.parameters + nuisances.cols());
     columns.rightCols(nuisances.cols()) = nuisances;
@@ -101,7 +101,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
                               bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only);
+      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
   const Eigen::VectorXd residual =
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
   const auto own = hypothesis.priors.begin() + hypothesis.parameters;
@@ -138,10 +138,10 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const std::vector<TriedVariant>& tried, const std::string& type,
                                   const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  Eigen::Index width = misfit.by.cols();
+  Eigen::Index width = misfit.jacobian.cols();
   for (const TriedVariant& variant : tried) width += variant.columns.cols();
-  Eigen::MatrixXd columns(misfit.by.rows(), width);
-  columns.leftCols(misfit.by.cols()) = misfit.by;
+  Eigen::MatrixXd columns(misfit.jacobian.rows(), width);
+  columns.leftCols(misfit.jacobian.cols()) = misfit.jacobian;
   std::vector<LinearPrior> priors = hypothesis.priors;
   for (const TriedVariant& variant : tried) {
     columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.columns.cols()) =
@@ -163,7 +163,7 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
     const double evidence =
         model.Fit(with, noise.variance).log_evidence - before - variant.selection_penalty;
     if (variant.is_nuisance) {
-      best.of_nuisance = std::max(best.of_nuisance, evidence);
+      best.nuisance_evidence = std::max(best.nuisance_evidence, evidence);
     } else if (evidence > best.evidence) {
       best.type = variant.type;
       best.evidence = evidence;
@@ -188,7 +188,8 @@ FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const Scored
     best.evidence = other->score.evidence;
   }
   for (const ScoredNuisance& nuisance : ranking.nuisances)
-    if (!nuisance.adopted) best.of_nuisance = std::max(best.of_nuisance, nuisance.evidence);
+    if (!nuisance.adopted)
+      best.nuisance_evidence = std::max(best.nuisance_evidence, nuisance.evidence);
   return best;
 }
 
@@ -198,7 +199,7 @@ namespace {
 LinearFit BestNear(const FittedHypothesis& hypothesis) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                             WhitenedRows(misfit.by, misfit, 0, false), hypothesis.priors)
+                             WhitenedRows(misfit.jacobian, misfit, 0, false), hypothesis.priors)
       .FitAll(1);
 }
 

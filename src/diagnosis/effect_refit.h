@@ -64,7 +64,7 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 struct FurtherEvidence {
   std::string type;     // of the other effect; empty: none has evidence
   double evidence = 0;  // of that effect
-  double of_nuisance = 0;
+  double nuisance_evidence = 0;
 };
 // With the columns of the ranking at the baseline model. `type`: the refitted effect.
 FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,

@@ -206,7 +206,7 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
   return Kept("afresh", with_.parameters(),
-              [&] { return FitFrom(with_, with_.Start(), baseline_.progress); });
+              [&] { return FitInStages(with_, with_.Start(), baseline_.progress); });
 }
 
 Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,

@@ -28,7 +28,8 @@ RecordedRefit RefitOf(const RankedEffect& effect) {
   refit.held_out_evidence = effect.held_out_evidence;
   refit.explained = effect.explained;
   refit.rms_over_sigma = effect.rms_over_sigma;
-  refit.remainder = {effect.further.type, effect.further.evidence, effect.further.of_nuisance};
+  refit.remainder = {effect.further.type, effect.further.evidence,
+                     effect.further.nuisance_evidence};
   refit.errors = effect.errors;
   for (const NamedEstimate& other : effect.others)
     refit.others.push_back({other.name, other.unit, IntervalOf(other.estimate)});
@@ -69,7 +70,7 @@ DiagnosisRecord RecordOf(const Diagnosis& diagnosis) {
     record.nuisances.push_back({nuisance.candidate.card.name, nuisance.candidate.what,
                                 nuisance.candidate.card.advice, nuisance.evidence,
                                 nuisance.explained, nuisance.refitted, nuisance.adopted,
-                                nuisance.doubt});
+                                nuisance.uncertain_evidence});
   for (const RankedEffect& effect : diagnosis.ranking) record.ranking.push_back(EffectOf(effect));
   record.untried = diagnosis.untried;
   for (const RankedEffect& effect : diagnosis.alternatives.effects)

@@ -32,7 +32,7 @@ bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit
 // local minimum. Writes the result into the effect, but not its evidence.
 EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
                         const EffectRefit& without, RankedEffect* effect) {
-  const bool is_far_off = RmsOverSigma(without.hypothesis) > kFarOff;
+  const bool is_far_off = RmsOverSigma(without.hypothesis) > kFarFromTruth;
   const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
     return Refit(context.model, &variant, adopted, is_far_off, start);
   };
@@ -178,7 +178,7 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   const FittedHypothesis& best = LeastResidual(*ranked, context.ranking.noise);
-  const RefitNoise noise{LevelOf(best.residual, best.misfit, best.misfit.by.cols(),
+  const RefitNoise noise{LevelOf(best.residual, best.misfit, best.misfit.jacobian.cols(),
                                  context.model.problem.LeastNoiseVariance()),
                          RmsOverSigma(best)};
   const RefitEvidence before = EvidenceOf(ranked->baseline, noise.level);

@@ -41,7 +41,7 @@ struct ScoredNuisance {
   bool adopted = false;                 // part of the model
   // Evidence that the unknown part of the nuisance (NuisanceCandidate::unknown) could contribute to
   // an effect that happens to lie along it.
-  double doubt = 0;
+  double uncertain_evidence = 0;
 };
 
 // The nuisances that are part of the model.

@@ -87,10 +87,10 @@ struct DiscretisationBound {
 DiscretisationBound LargestDiscretisationUncertainty(const std::vector<ScoredNuisance>& nuisances) {
   DiscretisationBound bound;
   for (size_t k = 0; k < nuisances.size(); ++k) {
-    const double evidence = DiscretisationUncertainty(nuisances[k].doubt);
+    const double evidence = DiscretisationUncertainty(nuisances[k].uncertain_evidence);
     if (evidence <= bound.evidence) continue;
     bound.evidence = evidence;
-    if (nuisances[k].doubt > 0) bound.nuisance = static_cast<int>(k);
+    if (nuisances[k].uncertain_evidence > 0) bound.nuisance = static_cast<int>(k);
   }
   return bound;
 }
@@ -110,10 +110,11 @@ double EvidenceNeeded(const Diagnosis& diagnosis) {
 
 // The lead in evidence with which an effect is preferred to a rival.
 double LeadNeeded(const Diagnosis& diagnosis, double evidence) {
-  double doubt = 0;
-  for (const ScoredNuisance& nuisance : diagnosis.nuisances) doubt += nuisance.doubt;
+  double uncertain_evidence = 0;
+  for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+    uncertain_evidence += nuisance.uncertain_evidence;
   return std::max(std::clamp(kNaming.lead_share * evidence, kNaming.least_lead, kNaming.most_lead),
-                  kNaming.discretisation_factor * doubt);
+                  kNaming.discretisation_factor * uncertain_evidence);
 }
 
 // Whether a nuisance explains enough to be a cause of the misfit.
@@ -172,9 +173,10 @@ Conclusion ConcludeWithoutEffect(const Diagnosis& diagnosis, double best_evidenc
         ErrorUnexplained{errors.held_out_rms, errors.rms_over_sigma, best_evidence}};
   }
   if (uncertain >= 0) {
-    const double doubt = diagnosis.nuisances[static_cast<size_t>(uncertain)].doubt;
-    conclusion.reasons.emplace_back(
-        UncertainDiscretisation{uncertain, best_evidence, DiscretisationUncertainty(doubt)});
+    const double uncertain_evidence =
+        diagnosis.nuisances[static_cast<size_t>(uncertain)].uncertain_evidence;
+    conclusion.reasons.emplace_back(UncertainDiscretisation{
+        uncertain, best_evidence, DiscretisationUncertainty(uncertain_evidence)});
     conclusion.next_steps = {RefineDiscretisation{uncertain, /*fit_again=*/false}};
   }
   const std::vector<VerdictReason>& further = is_noise ? causes.negligible : causes.explaining;
@@ -196,7 +198,7 @@ std::optional<Conclusion> RejectPartialExplanations(const Diagnosis& diagnosis,
   };
   const auto leaves_evidence = [&](const RankedEffect* effect) {
     return effect->further.evidence >
-           std::max(chance, effect->further.of_nuisance + kNaming.least_lead);
+           std::max(chance, effect->further.nuisance_evidence + kNaming.least_lead);
   };
   const std::string& type = TypeOf(best);
   const double excess = ExplainedExcess(diagnosis.baseline_rms_over_sigma, best.rms_over_sigma);
@@ -261,7 +263,7 @@ std::vector<SuggestedStep> AddRivalNuisances(const Diagnosis& diagnosis, const R
     const int index = static_cast<int>(k);
     const double part = nuisance.candidate.card.outgrows_first_order ? kNaming.grip_share : 1;
     const double evidence = nuisance.refitted.value_or(nuisance.evidence);
-    if (DiscretisationUncertainty(nuisance.doubt) > best.evidence) {
+    if (DiscretisationUncertainty(nuisance.uncertain_evidence) > best.evidence) {
       conclusion->effects.push_back(nuisance.candidate.card.name);
       refinements.emplace_back(RefineDiscretisation{index, /*fit_again=*/true});
     } else if (!nuisance.adopted &&
@@ -329,8 +331,8 @@ Conclusion Conclude(const Diagnosis& diagnosis) {
 
 }  // namespace
 
-double DiscretisationUncertainty(double doubt) {
-  return kNaming.discretisation_factor * doubt + kNaming.least_lead;
+double DiscretisationUncertainty(double uncertain_evidence) {
+  return kNaming.discretisation_factor * uncertain_evidence + kNaming.least_lead;
 }
 
 void Decide(Diagnosis* diagnosis) { static_cast<Conclusion&>(*diagnosis) = Conclude(*diagnosis); }

@@ -9,9 +9,10 @@
 
 namespace lacuna {
 
-// The evidence for an effect that an uncertain discretisation could account for, where `doubt` is
-// what lies along the uncertain direction (ScoredNuisance::doubt).
-double DiscretisationUncertainty(double doubt);
+// The evidence for an effect that an uncertain discretisation could account for, where
+// `uncertain_evidence` is what lies along the uncertain direction
+// (ScoredNuisance::uncertain_evidence).
+double DiscretisationUncertainty(double uncertain_evidence);
 
 // Sets the conclusion (verdict, effects, reasons, next steps) from everything else.
 void Decide(Diagnosis* diagnosis);

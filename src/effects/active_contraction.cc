@@ -4,7 +4,6 @@
 // The second Piola–Kirchhoff stress is T a ⊗ a, a pull along the direction a of the rest shape that
 // does not depend on strain: the force per rest area on a face normal to a is T times the stretch.
 #include <algorithm>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/vector_parameters.h"
@@ -59,7 +58,6 @@ class ActiveContractionLaw {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     EffectCard card{
         .type = "active_contraction",
         .title = "Active contraction along a direction",
@@ -92,14 +90,14 @@ class ActiveContractionLaw {
                                .null_value = 0,
                                .plausible_min = -1e4,
                                .plausible_max = 1e5,
-                               .default_value = kNone});
+                               .default_value = kMustBeGiven});
     AppendDirectionSetting("axis", "direction in the rest shape, of any length, a,",
-                           Eigen::Vector3d::Constant(kNone), &card);
+                           Eigen::Vector3d::Constant(kMustBeGiven), &card);
     card.parameters.push_back({.name = "start",
                                .meaning = "time at which the pull sets in, t₀",
                                .dimension = kTime,
                                .bounds = kAnyValue,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0,
                                .plausible_max = 10,
                                .default_value = 0,
@@ -108,7 +106,7 @@ class ActiveContractionLaw {
                                .meaning = "time from its onset to its full size, τ; 0: at once",
                                .dimension = kTime,
                                .bounds = kNotNegative,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0,
                                .plausible_max = 10,
                                .default_value = 0,

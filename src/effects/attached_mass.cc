@@ -6,7 +6,6 @@
 // element size. It adds no stiffness and no rotational inertia beyond that of the nodes.
 #include <glog/logging.h>
 
-#include <limits>
 
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
@@ -17,8 +16,6 @@
 
 namespace lacuna {
 namespace {
-
-constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
 class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, AddedMass> {
  public:

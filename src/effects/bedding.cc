@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include <limits>
 
 #include "core/error.h"
 #include "effects/rest_region.h"
@@ -24,16 +23,15 @@ ParameterCard BeddingModulus() {
           .null_value = 0,
           .plausible_min = 0,
           .plausible_max = 1e7,
-          .default_value = std::numeric_limits<double>::quiet_NaN()};
+          .default_value = kMustBeGiven};
 }
 
 void AppendBeddedPart(EffectCard* card) {
-  constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
   AppendVector({.name = "point",
                 .meaning = "a point of the plane that bounds the supported part, and the centre "
                            "of its radius, c,",
                 .dimension = kLength,
-                .null_value = kNoNull,
+                .null_value = kNoNullValue,
                 .plausible_min = -1,
                 .plausible_max = 1,
                 .setting = true},
@@ -47,7 +45,7 @@ void AppendBeddedPart(EffectCard* card) {
                                          "(standard deviation), r; 0: it does not fade",
                               .dimension = kLength,
                               .bounds = kNotNegative,
-                              .null_value = kNoNull,
+                              .null_value = kNoNullValue,
                               .plausible_min = 0,
                               .plausible_max = 0.1,
                               .default_value = 0,

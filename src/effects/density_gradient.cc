@@ -4,7 +4,6 @@
 // It uses the nodal volumes of the lumped mass, so that the total mass is exact.
 #include <glog/logging.h>
 
-#include <limits>
 
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
@@ -18,8 +17,6 @@ namespace {
 
 constexpr Dimension kDensityPerLength{-4,           1,       0, 0, 0, "a density per length",
                                       "500 kg/m^4", "kg/m^4"};
-constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
 class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect, AddedMass> {
  public:
@@ -82,7 +79,7 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
                   .meaning = "a point at rest where the density is the body's; at the centre of "
                              "volume the total mass stays",
                   .dimension = kLength,
-                  .null_value = kNoNull,
+                  .null_value = kNoNullValue,
                   .plausible_min = -1,
                   .plausible_max = 1,
                   .setting = true},

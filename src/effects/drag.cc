@@ -5,7 +5,6 @@
 // The law neglects the wake and the added mass of the medium; the shape enters through c only.
 #include <glog/logging.h>
 
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
@@ -41,7 +40,7 @@ class DragEffect final : public CloneableEffect<DragEffect> {
               .null_value = 0,
               .plausible_min = 0,
               .plausible_max = 300,
-              .default_value = std::numeric_limits<double>::quiet_NaN(),
+              .default_value = kMustBeGiven,
               .log_scale = false},
              {.name = "linear",
               .meaning =

@@ -4,7 +4,6 @@
 #ifndef LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
 #define LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_
 
-#include <limits>
 #include <vector>
 
 #include "record/effect_card.h"
@@ -14,7 +13,6 @@ namespace lacuna {
 // young_modulus and poisson_ratio, in the order that ElasticSolid (fem/elastic_solid.h) expects.
 // The bounds exclude ν = ½, where the bulk modulus is infinite.
 inline std::vector<ParameterCard> ElasticParameters() {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   return {{.name = "young_modulus",
            .meaning = "Young's modulus at small strain",
            .dimension = kPressure,
@@ -22,7 +20,7 @@ inline std::vector<ParameterCard> ElasticParameters() {
            .null_value = 0,
            .plausible_min = 1e3,
            .plausible_max = 1e7,
-           .default_value = kNone,
+           .default_value = kMustBeGiven,
            .log_scale = true},
           {.name = "poisson_ratio",
            .meaning = "Poisson's ratio at small strain; 0.5 would be incompressible, which a "
@@ -30,10 +28,10 @@ inline std::vector<ParameterCard> ElasticParameters() {
                       "elements above 0.45, linear ones lock)",
            .dimension = kDimensionless,
            .bounds = {-1, 0.5, true, true},
-           .null_value = kNone,
+           .null_value = kNoNullValue,
            .plausible_min = 0.2,
            .plausible_max = 0.499,
-           .default_value = kNone,
+           .default_value = kMustBeGiven,
            .log_scale = false}};
 }
 

@@ -12,7 +12,6 @@
 // Radial return at the end of the step (Wilkins 1964); its incremental potential is quadratic up to
 // yield and linear beyond. Independent of rate, so statics is a step like any other.
 #include <cmath>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "fem/memory_branch.h"
@@ -72,7 +71,6 @@ class ElastoplasticLaw {
   static constexpr double kNormOfUnitStretch = 1.2247448713915890;  // ‖diag(1, −½, −½)‖ = √(3/2)
 
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {.type = "elastoplastic_branch",
             .title = "Elastic–perfectly plastic branch (Prandtl element)",
             .equation =
@@ -97,17 +95,17 @@ class ElastoplasticLaw {
                   .null_value = 0,
                   .plausible_min = 0,
                   .plausible_max = 3e5,
-                  .default_value = kNone,
+                  .default_value = kMustBeGiven,
                   .log_scale = false},
                  {.name = "yield_strain",
                   .meaning = "stretch at which a bar starts to flow, ε_y; from stiff pastes to "
                              "soft foams",
                   .dimension = kDimensionless,
                   .bounds = kPositive,
-                  .null_value = kNone,
+                  .null_value = kNoNullValue,
                   .plausible_min = 1e-3,
                   .plausible_max = 0.3,
-                  .default_value = kNone,
+                  .default_value = kMustBeGiven,
                   .log_scale = true,
                   .trial = {.min = 0.005, .max = 0.03, .draw = 2}}},
             .residual_when_missing =

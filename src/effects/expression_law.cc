@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <utility>
@@ -15,7 +14,6 @@ namespace {
 using Law = ExpressionLaw;
 using Measure = Law::Measure;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 const char* const kVariableNames[Law::kVariables] = {"x",  "y",  "z",  "X",  "Y", "Z",  "ux", "uy",
                                                      "uz", "vx", "vy", "vz", "t", "nx", "ny", "nz"};
 
@@ -45,8 +43,9 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
   }
   *value = config.Quantity("value", card.dimension, card.bounds);
   card.default_value = *value;
-  card.null_value =
-      config.Has("null_value") ? ReadLike(config, "null_value", card.dimension, kAnyValue) : kNone;
+  card.null_value = config.Has("null_value")
+                        ? ReadLike(config, "null_value", card.dimension, kAnyValue)
+                        : kNoNullValue;
   const std::vector<double> plausible = config.Quantities("plausible", card.dimension, card.bounds);
   if (plausible.size() == 2 && plausible[0] < plausible[1]) {
     card.plausible_min = plausible[0];

@@ -15,7 +15,6 @@
 #define LACUNA_EFFECTS_EXTRA_STIFFNESS_H_
 
 #include <Eigen/Core>
-#include <limits>
 #include <string>
 
 #include "effects/elastic_parameters.h"
@@ -36,7 +35,7 @@ inline ParameterCard YoungModulusDifference(const std::string& where) {
           .null_value = 0,
           .plausible_min = -1e5,
           .plausible_max = 1e6,
-          .default_value = std::numeric_limits<double>::quiet_NaN()};
+          .default_value = kMustBeGiven};
 }
 
 // A law for PointEnergyEffect (fem/point_energy_effect.h).

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "fem/point_energy_effect.h"
@@ -79,7 +78,6 @@ class FibreStiffnessLaw {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     EffectCard card{
         .type = "fibre_stiffness",
         .title = "Stiffness along fibres (transverse isotropy)",
@@ -113,13 +111,13 @@ class FibreStiffnessLaw {
                                .null_value = 0,
                                .plausible_min = -1e5,
                                .plausible_max = 1e6,
-                               .default_value = kNone});
+                               .default_value = kMustBeGiven});
     card.parameters.push_back({.name = "azimuth",
                                .meaning = "angle from the x axis to the fibres' shadow on the xy "
                                           "plane, φ; without meaning for fibres along z",
                                .dimension = kAngle,
                                .bounds = kAnyValue,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = -M_PI / 2,
                                .plausible_max = M_PI / 2,
                                .default_value = 0,
@@ -128,7 +126,7 @@ class FibreStiffnessLaw {
                                .meaning = "angle of the fibres above the xy plane, θ",
                                .dimension = kAngle,
                                .bounds = kAnyValue,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = -M_PI / 2,
                                .plausible_max = M_PI / 2,
                                .default_value = 0,

@@ -18,7 +18,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "effects/catalogue.h"
@@ -32,8 +31,6 @@
 
 namespace lacuna {
 namespace {
-
-constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
 // N_a at the quadrature points of an element (nodes × points).
 Eigen::MatrixXd ShapesAtPoints(int order) {

@@ -1,6 +1,5 @@
 // A stiffer or softer inclusion in the body, with a smooth boundary (extra_stiffness.h).
 #include <cmath>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/extra_stiffness.h"
@@ -36,7 +35,6 @@ class BumpWeight {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     EffectCard card{
         .type = "inclusion",
         .title = "A stiffer or softer inclusion",
@@ -64,19 +62,19 @@ class BumpWeight {
     AppendVector({.name = "centre",
                   .meaning = "place of the lump in the rest shape,",
                   .dimension = kLength,
-                  .null_value = kNone,
+                  .null_value = kNoNullValue,
                   .plausible_min = -0.2,
                   .plausible_max = 0.2},
-                 Eigen::Vector3d::Constant(kNone), &card);
+                 Eigen::Vector3d::Constant(kMustBeGiven), &card);
     card.parameters.push_back({.name = "radius",
                                .meaning = "distance from the centre at which 61 % of the "
                                           "difference is left, r; some element sizes at least",
                                .dimension = kLength,
                                .bounds = kPositive,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0.002,
                                .plausible_max = 0.05,
-                               .default_value = kNone,
+                               .default_value = kMustBeGiven,
                                .log_scale = true,
                                .trial = {.share_of_length = 0.15}});
     card.parameters.push_back(ElasticSettings()[1]);

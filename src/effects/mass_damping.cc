@@ -22,7 +22,7 @@ class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 20,
-                        .default_value = std::numeric_limits<double>::quiet_NaN(),
+                        .default_value = kMustBeGiven,
                         .log_scale = false}},
         .residual_when_missing =
             "The residual is a force against the velocity, proportional to mass: the amplitudes of "

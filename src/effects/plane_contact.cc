@@ -3,7 +3,6 @@
 #include <glog/logging.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "effects/catalogue.h"
@@ -143,8 +142,6 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
   };
 
   static EffectCard MakeCard() {
-    constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
     EffectCard card{
         .type = "plane_contact",
         .title = "Contact with a plane, with Coulomb friction",
@@ -183,7 +180,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
     AppendVector({.name = "normal",
                   .meaning = "direction away from the half-space, of any length,",
                   .dimension = kDimensionless,
-                  .null_value = kNoNull,
+                  .null_value = kNoNullValue,
                   .plausible_min = -1,
                   .plausible_max = 1},
                  Eigen::Vector3d::UnitZ(), &card);
@@ -191,7 +188,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                                .meaning = "height of the plane along its unit normal, c = n·x",
                                .dimension = kLength,
                                .bounds = kAnyValue,
-                               .null_value = kNoNull,
+                               .null_value = kNoNullValue,
                                .plausible_min = -1,
                                .plausible_max = 1,
                                .default_value = 0,
@@ -202,7 +199,6 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
 
   // Appends the friction and the two regularisations of the contact law.
   static void AppendContactLaw(EffectCard* card) {
-    constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
     card->parameters.push_back({.name = "friction",
                                 .meaning = "coefficient of friction, μ",
                                 .dimension = kDimensionless,
@@ -216,7 +212,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                                 .meaning = "slip at which friction reaches 71 % of its limit, w",
                                 .dimension = kVelocity,
                                 .bounds = kPositive,
-                                .null_value = kNoNull,
+                                .null_value = kNoNullValue,
                                 .plausible_min = 1e-5,
                                 .plausible_max = 1e-2,
                                 .default_value = 1e-3,
@@ -226,7 +222,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                                 .meaning = "depth over which the push becomes proportional, s",
                                 .dimension = kLength,
                                 .bounds = kPositive,
-                                .null_value = kNoNull,
+                                .null_value = kNoNullValue,
                                 .plausible_min = 1e-6,
                                 .plausible_max = 1e-3,
                                 .default_value = 1e-4,

@@ -8,7 +8,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
@@ -18,9 +17,6 @@
 
 namespace lacuna {
 namespace {
-
-constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
 class PointForceEffect final : public CloneableEffect<PointForceEffect> {
  public:
@@ -105,7 +101,7 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
     card.parameters.push_back({.name = "start",
                                .meaning = "time from which it acts",
                                .dimension = kTime,
-                               .null_value = kNoNull,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0,
                                .plausible_max = 1e3,
                                .default_value = 0,
@@ -113,7 +109,7 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
     card.parameters.push_back({.name = "stop",
                                .meaning = "time from which it acts no longer (by default 1e9 s)",
                                .dimension = kTime,
-                               .null_value = kNoNull,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0,
                                .plausible_max = 1e9,
                                .default_value = 1e9,

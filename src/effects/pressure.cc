@@ -18,7 +18,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "core/error.h"
@@ -30,9 +29,6 @@
 
 namespace lacuna {
 namespace {
-
-constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNoNull = std::numeric_limits<double>::quiet_NaN();
 
 // Shape functions of a face of kNodes nodes (three corners, then the midpoints of the edges (0,1)
 // (1,2) (2,0)) at a quadrature point of the triangle 0 ≤ ξ, η, ξ + η ≤ 1.
@@ -185,7 +181,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
     AppendVector({.name = "point",
                   .meaning = "a point of the plane that bounds the part under pressure,",
                   .dimension = kLength,
-                  .null_value = kNoNull,
+                  .null_value = kNoNullValue,
                   .plausible_min = -1,
                   .plausible_max = 1,
                   .setting = true},

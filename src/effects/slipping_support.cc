@@ -11,7 +11,6 @@
 // incremental potential is convex: quadratic up to the limit and linear beyond it.
 #include <glog/logging.h>
 
-#include <limits>
 
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
@@ -115,10 +114,10 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
                             "largest traction is k d",
                         .dimension = kLength,
                         .bounds = kPositive,
-                        .null_value = std::numeric_limits<double>::quiet_NaN(),
+                        .null_value = kNoNullValue,
                         .plausible_min = 1e-5,
                         .plausible_max = 1e-2,
-                        .default_value = std::numeric_limits<double>::quiet_NaN(),
+                        .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 2e-4, .max = 2e-3, .draw = 9}}},
         .residual_when_missing =

@@ -11,7 +11,6 @@
 // the rate, and statics is a step like any other.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "fem/memory_branch.h"
@@ -68,7 +67,6 @@ class SofteningLaw {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {
         .type = "softening",
         .title = "Softening by the largest past strain (Mullins effect)",
@@ -89,26 +87,26 @@ class SofteningLaw {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 3e5,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = false},
                        {.name = "softening_strain",
                         .meaning = "largest past strain at which half of the modulus is gone, κ₀",
                         .dimension = kDimensionless,
                         .bounds = kPositive,
-                        .null_value = kNone,
+                        .null_value = kNoNullValue,
                         .plausible_min = 0.01,
                         .plausible_max = 1,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 0.03, .max = 0.2, .draw = 3}},
                        {.name = "poisson_ratio",
                         .meaning = "Poisson's ratio of the branch (if left out: the material's)",
                         .dimension = kDimensionless,
                         .bounds = {-1, 0.5, true, true},
-                        .null_value = kNone,
+                        .null_value = kNoNullValue,
                         .plausible_min = 0.2,
                         .plausible_max = 0.499,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = false,
                         .setting = true}},
         .residual_when_missing =

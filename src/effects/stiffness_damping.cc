@@ -134,7 +134,7 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
                                .null_value = 0,
                                .plausible_min = 0,
                                .plausible_max = 0.05,
-                               .default_value = std::numeric_limits<double>::quiet_NaN(),
+                               .default_value = kMustBeGiven,
                                .log_scale = false});
     for (ParameterCard parameter : ElasticParameters()) {
       parameter.meaning =

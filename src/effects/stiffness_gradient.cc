@@ -1,6 +1,5 @@
 // A stiffness that changes linearly along a direction of the body, as in a casting that cured or
 // settled unevenly (extra_stiffness.h).
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/extra_stiffness.h"
@@ -29,7 +28,6 @@ class LinearWeight {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     EffectCard card{
         .type = "stiffness_gradient",
         .title = "Stiffness that changes along the body",
@@ -55,18 +53,18 @@ class LinearWeight {
     AppendVector({.name = "origin",
                   .meaning = "place in the rest shape where nothing is added, o,",
                   .dimension = kLength,
-                  .null_value = kNone,
+                  .null_value = kNoNullValue,
                   .plausible_min = -0.2,
                   .plausible_max = 0.2,
                   .setting = true},
                  Eigen::Vector3d::Zero(), &card);
     AppendDirectionSetting("axis", "direction in which stiffness grows, of any length,",
-                           Eigen::Vector3d::Constant(kNone), &card);
+                           Eigen::Vector3d::Constant(kMustBeGiven), &card);
     card.parameters.push_back({.name = "length",
                                .meaning = "distance over which the difference is added, L",
                                .dimension = kLength,
                                .bounds = kPositive,
-                               .null_value = kNone,
+                               .null_value = kNoNullValue,
                                .plausible_min = 0.01,
                                .plausible_max = 1,
                                .default_value = 0.1,

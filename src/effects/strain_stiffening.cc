@@ -8,7 +8,6 @@
 // strain deviator e. Hence I² is of fourth order (of sixth order in a pure change of volume): the
 // effect does not change the moduli of the material at small strain.
 #include <Eigen/LU>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/strain_invariants.h"
@@ -37,7 +36,7 @@ class StrainStiffeningLaw {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 1e5,
-                        .default_value = std::numeric_limits<double>::quiet_NaN()}},
+                        .default_value = kMustBeGiven}},
         .residual_when_missing =
             "Small loads are predicted well, large ones are not: the measured displacement falls "
             "more and more behind the prediction, most where the body is stretched or sheared "

@@ -8,7 +8,6 @@
 // only. K belongs to the effect: when a fit changes the modulus of the material, 3 K ε stays the
 // same, and ε refers to the K given here.
 #include <Eigen/LU>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
@@ -87,7 +86,7 @@ class SwellingLaw {
                                .null_value = 0,
                                .plausible_min = -0.1,
                                .plausible_max = 0.1,
-                               .default_value = std::numeric_limits<double>::quiet_NaN()});
+                               .default_value = kMustBeGiven});
     for (ParameterCard& setting : ElasticSettings()) card.parameters.push_back(std::move(setting));
     return card;
   }

@@ -1,13 +1,8 @@
 #include "effects/vector_parameters.h"
 
-#include <limits>
 
 namespace lacuna {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_value,
                   EffectCard* card) {
@@ -26,7 +21,7 @@ void AppendDirectionSetting(const std::string& name, const std::string& meaning,
   AppendVector({.name = name,
                 .meaning = meaning,
                 .dimension = kDimensionless,
-                .null_value = kNone,
+                .null_value = kNoNullValue,
                 .plausible_min = -1,
                 .plausible_max = 1,
                 .setting = true},
@@ -46,15 +41,15 @@ void AppendPlace(const std::string& meaning, EffectCard* card) {
   AppendVector({.name = "centre",
                 .meaning = meaning,
                 .dimension = kLength,
-                .null_value = kNone,
+                .null_value = kNoNullValue,
                 .plausible_min = -0.2,
                 .plausible_max = 0.2},
-               Eigen::Vector3d::Constant(kNone), card);
+               Eigen::Vector3d::Constant(kMustBeGiven), card);
   card->parameters.push_back({.name = "radius",
                               .meaning = "spread about that place (standard deviation), r",
                               .dimension = kLength,
                               .bounds = kPositive,
-                              .null_value = kNone,
+                              .null_value = kNoNullValue,
                               .plausible_min = 1e-3,
                               .plausible_max = 0.05,
                               .default_value = 0.005,

@@ -17,7 +17,6 @@
 // hence exact in a hold, of second order else, and stable for any h/τ. A point remembers e and E.
 // Statics is the limit of a very slow motion: e = 0.
 #include <cmath>
-#include <limits>
 
 #include "effects/catalogue.h"
 #include "fem/memory_branch.h"
@@ -71,7 +70,6 @@ class ViscoelasticLaw {
 
  private:
   static EffectCard MakeCard() {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     return {
         .type = "viscoelastic_branch",
         .title = "Viscoelastic branch (Maxwell element of a Prony series)",
@@ -94,7 +92,7 @@ class ViscoelasticLaw {
                         .null_value = 0,
                         .plausible_min = 0,
                         .plausible_max = 3e5,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = false},
                        {.name = "relaxation_time",
                         .meaning =
@@ -102,20 +100,20 @@ class ViscoelasticLaw {
                             "a recording tells those between its frame interval and its duration",
                         .dimension = kTime,
                         .bounds = kPositive,
-                        .null_value = kNone,
+                        .null_value = kNoNullValue,
                         .plausible_min = 1e-3,
                         .plausible_max = 1e2,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 0.02, .max = 0.3, .draw = 1}},
                        {.name = "poisson_ratio",
                         .meaning = "Poisson's ratio of the branch (if left out: the material's)",
                         .dimension = kDimensionless,
                         .bounds = {-1, 0.5, true, true},
-                        .null_value = kNone,
+                        .null_value = kNoNullValue,
                         .plausible_min = 0.2,
                         .plausible_max = 0.499,
-                        .default_value = kNone,
+                        .default_value = kMustBeGiven,
                         .log_scale = false,
                         .setting = true}},
         .residual_when_missing =

@@ -35,7 +35,7 @@ std::vector<int> EvenlySpread(const Eigen::Matrix3Xd& points, const std::vector<
 
 }  // namespace
 
-void SeeAsMarkers(const std::vector<int>& frames, Recording* recording) {
+void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording) {
   const Eigen::Matrix3Xd places = PointsByRow(LoadFrame(*recording, frames.front()));
   std::vector<int> seen;
   for (int row = 0; row < places.cols(); ++row)

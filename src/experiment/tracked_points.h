@@ -14,7 +14,7 @@ namespace lacuna {
 // does not show are left out; of more than some hundred points an evenly spread subset is used. A
 // grip that follows the scan then follows the points in its region. Throws InputError, naming the
 // file, where a region shows no point, and whatever LoadFrame throws.
-void SeeAsMarkers(const std::vector<int>& frames, Recording* recording);
+void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording);
 
 }  // namespace lacuna
 

@@ -99,8 +99,8 @@ void AddSlopes(const BoundarySurface& boundary, const SurfaceTracks& samples,
   const SurfaceTracks moving{samples.at_rest, Eigen::Matrix3Xd::Zero(3, samples.Count())};
   for (size_t i = 0; i < result->by_moduli.size(); ++i) {
     ObjectiveSlope& slope = result->by_moduli[i];
-    const Eigen::Matrix3Xd nodes =
-        frame.position_by.col(static_cast<Eigen::Index>(i)).reshaped(3, frame.position.cols());
+    const Eigen::Matrix3Xd nodes = frame.position_derivative.col(static_cast<Eigen::Index>(i))
+                                       .reshaped(3, frame.position.cols());
     const double share = 1 / (frames * static_cast<double>(samples.Count()));
     const Eigen::Matrix3Xd moved = PointsAt(moving, boundary, nodes);
     slope.residual_per_point += share * SlopeOfLengths(at_samples, moved, false);
@@ -115,7 +115,7 @@ void Measure(const ParameterObjective& problem, const FollowedMotion& motion,
   const SurfaceTracks samples = TrackOnSurface(boundary, problem.tracked.points);
   result->residual_sum = result->residual_per_point = result->scan_distance = result->force = 0;
   const auto frames = static_cast<double>(motion.frames.size() - 1);
-  const bool differentiated = motion.frames.back().position_by.size() > 0;
+  const bool differentiated = motion.frames.back().position_derivative.size() > 0;
   if (differentiated) result->by_moduli.assign(2, {0, 0, 0});
   double mean_square = 0;
   for (size_t k = 1; k < motion.frames.size(); ++k) {

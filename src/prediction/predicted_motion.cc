@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-using Of = MisfitDirection::Of;
+using Of = MisfitDirection::Kind;
 
 constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
 
@@ -149,12 +149,12 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
   for (const auto& load : MakeKnownForces(recording.recording, model_))
     model_.effects.push_back(load);
   if (item_.hold) AddHold(mesh);
-  if (item_.clock_deviation > 0) AddNuisance("clock", "s", item_.clock_deviation, {Of::kClock});
+  if (item_.clock_deviation > 0) AddNuisance("clock", "s", item_.clock_deviation, {Kind::kClock});
   for (const bool turns : {false, true}) {
     const double deviation = turns ? item_.turn_deviation : item_.shift_deviation;
     for (int axis = 0; deviation > 0 && axis < 3; ++axis)
       AddNuisance(fmt::format("{}_{}", turns ? "turn" : "shift", "xyz"[axis]), turns ? "rad" : "m",
-                  deviation, {turns ? Of::kTurn : Of::kShift, axis});
+                  deviation, {turns ? Kind::kTurn : Kind::kShift, axis});
   }
 }
 
@@ -230,7 +230,8 @@ PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const
 double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
   double late = 0;
   for (size_t k = 0; k < nuisances_.size(); ++k)
-    if (nuisances_[k].direction.of == Of::kClock) late += nuisance[static_cast<Eigen::Index>(k)];
+    if (nuisances_[k].direction.kind == Kind::kClock)
+      late += nuisance[static_cast<Eigen::Index>(k)];
   return late;
 }
 
@@ -238,8 +239,10 @@ Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) 
   Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
   for (size_t k = 0; k < nuisances_.size(); ++k) {
     const MisfitDirection& direction = nuisances_[k].direction;
-    if (direction.of == Of::kShift) shift[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
-    if (direction.of == Of::kTurn) turn[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+    if (direction.kind == Kind::kShift)
+      shift[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
+    if (direction.kind == Kind::kTurn)
+      turn[direction.axis] = nuisance[static_cast<Eigen::Index>(k)];
   }
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   if (shift.isZero(0) && turn.isZero(0)) return registration;
@@ -254,7 +257,7 @@ Eigen::Vector3d RecordingModel::ByRegistration(const MisfitDirection& direction,
                                                const Eigen::Isometry3d& registration,
                                                const Eigen::Vector3d& place) const {
   const Eigen::Vector3d axis = Eigen::Vector3d::Unit(direction.axis);
-  if (direction.of == Of::kShift) return axis;
+  if (direction.kind == Kind::kShift) return axis;
   return axis.cross(place - registration * Middle());
 }
 
@@ -279,7 +282,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   std::vector<Eigen::Index> column;
   for (const MisfitDirection& direction : directions) {
     column.push_back(static_cast<Eigen::Index>(perturbations.size()));
-    if (direction.of == Of::kModel) perturbations.push_back(direction.perturbation);
+    if (direction.kind == Kind::kModel) perturbations.push_back(direction.perturbation);
   }
   const Eigen::Isometry3d registration = Registration(nuisance);
   const bool is_registered = item_.shift_deviation > 0 || item_.turn_deviation > 0;
@@ -289,7 +292,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   const Eigen::Index components = observer_->Components();
   const Eigen::Index rows_of_frame = components * misfit.points;
   misfit.residual.resize(rows_of_frame * static_cast<Eigen::Index>(frames.size()));
-  misfit.by.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
+  misfit.jacobian.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
         const int frame = frames[index];
@@ -316,17 +319,18 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
           misfit.residual.segment(row, components) =
               predicted.segment(own, components) - seen.target.segment(own, components);
           for (size_t k = 0; k < directions.size(); ++k) {
-            auto derivative = misfit.by.col(static_cast<Eigen::Index>(k)).segment(row, components);
-            switch (directions[k].of) {
-              case Of::kModel:
+            auto derivative =
+                misfit.jacobian.col(static_cast<Eigen::Index>(k)).segment(row, components);
+            switch (directions[k].kind) {
+              case Kind::kModel:
                 derivative = by.col(column[k]).segment(own, components);
                 break;
-              case Of::kClock:
+              case Kind::kClock:
                 if (state.time > options.start_time)
                   derivative = -velocity.segment(own, components);
                 break;
-              case Of::kShift:
-              case Of::kTurn:
+              case Kind::kShift:
+              case Kind::kTurn:
                 derivative = ByRegistration(directions[k], registration, predicted.segment<3>(own));
                 break;
             }
@@ -338,7 +342,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
       });
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
-  misfit.by.conservativeResize(reached, Eigen::NoChange);
+  misfit.jacobian.conservativeResize(reached, Eigen::NoChange);
   return misfit;
 }
 

@@ -22,7 +22,7 @@ struct Misfit {
   std::vector<int> frames;   // of the recording, as far as the prediction came
   int points = 0;            // in each frame
   Eigen::VectorXd residual;  // components·points·frames
-  Eigen::MatrixXd by;  // Jacobian, ∂residual/∂(direction); no columns where none was asked for
+  Eigen::MatrixXd jacobian;  // ∂residual/∂(direction); no columns where none was asked for
   std::vector<int>
       count;  // points × frames: how many measurements each is the mean of; 0: not seen
   // points × frames: the deformation gradient F (Observed), rotated into the measuring frame; empty
@@ -43,8 +43,8 @@ struct Misfit {
 struct MisfitDirection {
   // A parameter of the model, or one of the recording: the time, s, by which its clock is late; the
   // translation, m, or rotation, rad, of its measuring frame along an axis.
-  enum class Of { kModel, kClock, kShift, kTurn };
-  Of of = Of::kModel;
+  enum class Kind { kModel, kClock, kShift, kTurn };
+  Kind kind = Kind::kModel;
   int axis = 0;
   Perturbation perturbation = {};  // for kModel
 };

@@ -151,7 +151,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   }
   if (item.fitted && item.fit_until < item.recording.times[item.frames[fewest - 1]])
     config.Fail("fit_until", fmt::format("leaves fewer than {} frames to fit", fewest));
-  if (HasTrackedPoints(item.recording)) SeeAsMarkers(item.frames, &item.recording);
+  if (HasTrackedPoints(item.recording)) ConvertTrackedPointsToMarkers(item.frames, &item.recording);
   CheckObserved(config, item, tells_the_shape);
   if (scheme == TimeScheme::kQuasiStatic) {
     if (item.hold)

@@ -148,7 +148,7 @@ class Follower {
     if (sensitivity_ != nullptr) {
       sensitivity_->Advance(from, time_step > 0 ? study_.follow.scheme : TimeScheme::kQuasiStatic,
                             time_step, after.position);
-      frame.position_by = sensitivity_->position();
+      frame.position_derivative = sensitivity_->position();
     }
     history_ = after;
     force_ = fit.force;

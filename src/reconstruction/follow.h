@@ -33,7 +33,7 @@ struct FollowedFrame {
   int observations = 0;
   // dx/dθ for the requested moduli (3·nodes × moduli). It is not kept in files, and empty where it
   // was not requested or does not exist (followed_sensitivity.h).
-  Eigen::MatrixXd position_by;
+  Eigen::MatrixXd position_derivative;
   SolverStatus solver;
 };
 

@@ -9,6 +9,7 @@
 #ifndef LACUNA_RECORD_EFFECT_CARD_H_
 #define LACUNA_RECORD_EFFECT_CARD_H_
 
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -32,15 +33,20 @@ struct TrialSetting {
   bool IsDrawn() const { return min < max; }
 };
 
+// A parameter that has no value at which the effect vanishes.
+inline constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
+// A parameter whose value the user must give, as no default makes sense.
+inline constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
+
 struct ParameterCard {
   std::string name;           // the YAML key
   std::string meaning;        // one phrase
   Dimension dimension;        // of the value; SI inside
   Bounds bounds = kAnyValue;  // the YAML check refuses values outside, which make no sense
-  double null_value = 0;      // the value at which the effect vanishes; NaN if there is none
+  double null_value = 0;      // the value at which the effect vanishes, or kNoNullValue
   double plausible_min = 0;   // range of plausible values for soft objects, SI; the larger of the
   double plausible_max = 0;   // two absolute values is the scale of the prior
-  double default_value = 0;   // SI; NaN: the user must give the value
+  double default_value = 0;   // SI, or kMustBeGiven
   bool log_scale = false;     // the fit and the trials use the logarithm of the value
   bool setting = false;       // says where or how the effect acts: given by the user, never fitted
   TrialSetting trial = {};

@@ -53,7 +53,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
     Progress progress(Silent());
     const LinearisedMisfit misfit = problem.Linearise(values, false);
     const EffectRefit refit = Refit({problem, values, misfit, &progress}, &effect->scored, {},
-                                    diagnosis.baseline_rms_over_sigma > kFarOff);
+                                    diagnosis.baseline_rms_over_sigma > kFarFromTruth);
     if (!refit.message.empty()) return;
     sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;
@@ -81,7 +81,8 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   const ReferenceBody reference = MakeReferenceBody(study);
   Progress progress(Silent());
-  const Calibration calibration = FitWithItsStep(reference.mesh, &study, &progress).calibration;
+  const Calibration calibration =
+      FitWithAdaptiveTimeStep(reference.mesh, &study, &progress).calibration;
   const CalibrationProblem problem(study, reference.mesh);
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;

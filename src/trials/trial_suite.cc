@@ -146,7 +146,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   if (!trial.is_scanned)
     for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
   const Eigen::Index known = values.size();
-  Eigen::MatrixXd columns = misfit.by.leftCols(known);
+  Eigen::MatrixXd columns = misfit.jacobian.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
   const auto add = [&](const Eigen::MatrixXd& more, const std::vector<LinearPrior>& its_priors) {
     columns.conservativeResize(Eigen::NoChange, columns.cols() + more.cols());
@@ -155,7 +155,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   };
   const Eigen::Index of_grips = static_cast<Eigen::Index>(grips.directions.size());
   for (const NuisanceCandidate& nuisance :
-       CaseNuisances(problem, values, misfit, grips, misfit.by.rightCols(of_grips)))
+       CaseNuisances(problem, values, misfit, grips, misfit.jacobian.rightCols(of_grips)))
     add(nuisance.columns, nuisance.priors);
   const int own = static_cast<int>(columns.cols());
   if (hidden.amplitude.empty()) {
@@ -164,7 +164,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
     Eigen::VectorXd amount(static_cast<Eigen::Index>(hidden.amplitude.size()));
     for (size_t k = 0; k < hidden.amplitude.size(); ++k)
       amount[static_cast<Eigen::Index>(k)] = hidden.parameters.at(hidden.amplitude[k]);
-    add(misfit.by.middleCols(known, amount.size()) * amount, {{}});
+    add(misfit.jacobian.middleCols(known, amount.size()) * amount, {{}});
   }
   const LinearGaussianModel model(
       WhitenedRows(misfit.residual, misfit, trial.noise_correlation_time, false),

@@ -13,7 +13,6 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/recording_misfit.h"
 #include "core/parallel.h"
-#include "diagnosis/effect_ranking.h"
 #include "effects/catalogue.h"
 #include "prediction/recorded_motion.h"
 #include "support/held_bar.h"
@@ -62,19 +61,19 @@ TEST(CalibrationProblem, JacobianAgreesWithDifferences) {
   // How errors of the markers' places show is what it is at `at`.
   const LinearisedMisfit here = problem.Linearise(at, true);
   ASSERT_TRUE(here.usable) << here.message;
-  ASSERT_EQ(here.by.cols(), kCount);
+  ASSERT_EQ(here.jacobian.cols(), kCount);
   for (Eigen::Index k = 0; k < kCount; ++k) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(kCount, k);
     const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
                                         problem.Linearise(at - shift, false, {}, &here).residual) /
                                        (2 * steps[k]);
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
-    EXPECT_LT((here.by.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
+    EXPECT_LT((here.jacobian.col(k) - difference).norm(), 1e-3 * difference.norm()) << names[k];
   }
   // And the fitted frames of that, whitened, are what is fitted.
   const Prediction fitted = problem.Predict(at, true);
   ASSERT_TRUE(fitted.usable) << fitted.message;
-  const Eigen::MatrixXd white = WhitenedRows(here.by, here, 0, true);
+  const Eigen::MatrixXd white = WhitenedRows(here.jacobian, here, 0, true);
   EXPECT_LT((fitted.jacobian - white.topRows(fitted.jacobian.rows())).norm(),
             1e-6 * fitted.jacobian.norm());
 }
@@ -94,34 +93,6 @@ TEST(CalibrationProblem, APredictionThatBreaksOffLeavesNothingBehind) {
   const Prediction after = problem.Predict(problem.Start(), false, kWhole, &memory);
   ASSERT_TRUE(after.usable) << after.message;
   EXPECT_EQ(after.residual, problem.Predict(problem.Start(), false).residual);
-}
-
-// Softer across is, to first order, much like stiffer along; a refit tries both.
-TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
-  const TemporaryFolder folder;
-  HeldBarTruth truth;
-  truth.hidden = {
-      MakeEffect("fibre_stiffness", {{"modulus", 5e4}, {"azimuth", 0.6}, {"inclination", 0}})};
-  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
-  const PredictionStudy study = ReadBarStudy(folder.Path());
-  const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
-  const Calibration calibration = FitOf(problem);
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
-  const EffectRanking ranking = RankEffects(problem, calibration.parameters, &progress);
-  const auto fibres = std::find_if(
-      ranking.effects.begin(), ranking.effects.end(),
-      [](const ScoredEffect& effect) { return effect.candidate.type == "fibre_stiffness"; });
-  ASSERT_NE(fibres, ranking.effects.end());
-  ASSERT_FALSE(fibres->elsewhere.empty());
-  const auto is_other = [&](const ScoredVariant& other) {
-    return std::abs(other.candidate.position.axis.dot(fibres->candidate.position.axis)) < 0.55 &&
-           other.score.evidence < fibres->score.evidence;
-  };
-  EXPECT_TRUE(std::all_of(fibres->elsewhere.begin(), fibres->elsewhere.end(), is_other));
-  EXPECT_GT(fibres->elsewhere.front().score.evidence, 0.3 * fibres->score.evidence);
-  EXPECT_LT(fibres->elsewhere.front().score.size[0] * fibres->score.size[0], 0);
 }
 
 TEST(CalibrationProblem, RecoversWhatWasFilmed) {
@@ -301,7 +272,7 @@ TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
   EXPECT_EQ(prediction[0].residual, prediction[1].residual);
   EXPECT_EQ(prediction[0].jacobian, prediction[1].jacobian);
   EXPECT_EQ(linearised[0].residual, linearised[1].residual);
-  EXPECT_EQ(linearised[0].by, linearised[1].by);
+  EXPECT_EQ(linearised[0].jacobian, linearised[1].jacobian);
   for (size_t r = 0; r < 2; ++r) EXPECT_EQ(misfits[0][r].in_fit.rms, misfits[1][r].in_fit.rms);
 }
 

@@ -19,7 +19,7 @@ class SteppedFitOfABar : public testing::Test {
     ProgressOptions silent;
     silent.style = ProgressStyle::kSilent;
     Progress progress(silent);
-    return FitWithItsStep(BarMesh({8, 2, 2}, 2), study, &progress);
+    return FitWithAdaptiveTimeStep(BarMesh({8, 2, 2}, 2), study, &progress);
   }
 
   TemporaryFolder folder_;

@@ -35,7 +35,7 @@ TEST(ConcurrentRefits, FindTheSameBitsAsOneAfterTheOther) {
   const PredictionStudy study = ReadBarStudy(folder.Path());
   const CalibrationProblem problem(study, BarMesh({4, 1, 1}, 1));
   Progress progress(Silent());
-  const Calibration fit = FitBeginning(problem, problem.Start(), &progress);
+  const Calibration fit = FitShortHorizon(problem, problem.Start(), &progress);
   ASSERT_FALSE(fit.estimates.empty()) << fit.message;
   const LinearisedMisfit misfit = problem.Linearise(fit.parameters, true);
   ASSERT_TRUE(misfit.usable) << misfit.message;

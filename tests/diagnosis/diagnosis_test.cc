@@ -66,13 +66,14 @@ TEST(Diagnosis, ShortensATimeStepWhoseErrorCouldLookLikeAnEffect) {
   given["time_step: 1.5 ms"] = "time_step: 5 ms";
   const Diagnosis as_given = DiagnoseBar(truth, given, {.refits = 1, .without = {}});
   EXPECT_DOUBLE_EQ(as_given.time_step, 0.005);
-  const auto doubt = [](const Diagnosis& diagnosis) {
+  const auto uncertain_evidence = [](const Diagnosis& diagnosis) {
     for (const ScoredNuisance& nuisance : diagnosis.nuisances)
-      if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.doubt;
+      if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.uncertain_evidence;
     return std::nan("");
   };
-  EXPECT_GT(DiscretisationUncertainty(doubt(as_given)), kThresholds.naming.least_evidence);
-  EXPECT_LT(doubt(shortened), 0.5 * doubt(as_given));
+  EXPECT_GT(DiscretisationUncertainty(uncertain_evidence(as_given)),
+            kThresholds.naming.least_evidence);
+  EXPECT_LT(uncertain_evidence(shortened), 0.5 * uncertain_evidence(as_given));
 }
 
 TEST(Diagnosis, NamesTheTimeErrorsOfSingleFrames) {

@@ -31,11 +31,11 @@ FittedHypothesis MakeHypothesis(double amount) {
   part.fitted.assign(kFrames, 1);
   const Eigen::Index rows = kSeries * kFrames;
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(rows, 0, 1);
-  misfit.by.resize(rows, 2);
-  misfit.by.col(0) = 1e-3 * (2 * std::numbers::pi * t).array().cos();
-  misfit.by.col(1) = 1e-3 * t;
+  misfit.jacobian.resize(rows, 2);
+  misfit.jacobian.col(0) = 1e-3 * (2 * std::numbers::pi * t).array().cos();
+  misfit.jacobian.col(1) = 1e-3 * t;
   misfit.residual = kSigma * (40 * t).array().sin();
-  misfit.residual -= amount * misfit.by.col(1);
+  misfit.residual -= amount * misfit.jacobian.col(1);
   misfit.parts.push_back(part);
   FittedHypothesis hypothesis;
   hypothesis.misfit = misfit;
@@ -55,12 +55,13 @@ TEST(HypothesisEvidence, IsThatOfTheLinearModelAtTheBestParameters) {
     const LinearisedMisfit& misfit = hypothesis.misfit;
     return LinearGaussianModel(
                WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-               WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false), hypothesis.priors)
+               WhitenedRows(misfit.jacobian, misfit, kNoise.correlation_time, false),
+               hypothesis.priors)
         .FitAll(kNoise.variance);
   };
   const LinearFit best = fit();
   EXPECT_LT(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence - 1e-6);
-  hypothesis.misfit.residual += best.change[0] * hypothesis.misfit.by.col(0);
+  hypothesis.misfit.residual += best.change[0] * hypothesis.misfit.jacobian.col(0);
   hypothesis.priors[0].mean -= best.change[0];
   EXPECT_NEAR(EvidenceOf(hypothesis, kNoise).log_evidence, best.log_evidence, 1e-9);
 }
@@ -122,17 +123,18 @@ TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
   const auto evidence = [&] {
     return LinearGaussianModel(
                WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
-               WhitenedRows(misfit.by, misfit, kNoise.correlation_time, false), hypothesis.priors)
+               WhitenedRows(misfit.jacobian, misfit, kNoise.correlation_time, false),
+               hypothesis.priors)
         .FitAll(kNoise.variance)
         .log_evidence;
   };
   const double without = evidence();
-  misfit.by.conservativeResize(Eigen::NoChange, 3);
-  misfit.by.col(2) = there;
+  misfit.jacobian.conservativeResize(Eigen::NoChange, 3);
+  misfit.jacobian.col(2) = there;
   hypothesis.priors.push_back({0, 1, false});
   EXPECT_NEAR(further.evidence, evidence() - without - std::log(3), 1e-9);
   EXPECT_GT(further.evidence, 10);
-  EXPECT_NEAR(further.of_nuisance, further.evidence + std::log(3) - 1, 1e-9);
+  EXPECT_NEAR(further.nuisance_evidence, further.evidence + std::log(3) - 1, 1e-9);
 }
 
 // With the best parameter for all frames, or for the fitted ones.
@@ -141,10 +143,11 @@ FittedHypothesis AtItsBest(FittedHypothesis hypothesis, const NoiseLevel& noise,
   const Eigen::VectorXd change =
       LinearGaussianModel(
           WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only),
-          WhitenedRows(misfit.by, misfit, noise.correlation_time, fitted_only), hypothesis.priors)
+          WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only),
+          hypothesis.priors)
           .FitAll(noise.variance)
           .change;
-  hypothesis.misfit.residual += change[0] * hypothesis.misfit.by.col(0);
+  hypothesis.misfit.residual += change[0] * hypothesis.misfit.jacobian.col(0);
   hypothesis.priors[0].mean -= change[0];
   return hypothesis;
 }
@@ -157,10 +160,10 @@ TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
   FittedHypothesis with = MakeHypothesis(0.8), without;
   std::fill(with.misfit.parts[0].fitted.begin() + kFrames / 2, with.misfit.parts[0].fitted.end(),
             0);
-  with.misfit.by = with.misfit.by.col(1).eval();
+  with.misfit.jacobian = with.misfit.jacobian.col(1).eval();
   with.priors = {{0, 2, false}};
   without = with;
-  without.misfit.by.setZero();
+  without.misfit.jacobian.setZero();
   EffectRefit a, b;
   a.at_fit = AtItsBest(with, white, true);
   a.hypothesis = AtItsBest(with, white, false);
@@ -170,7 +173,7 @@ TEST(RefitEvidence, OfHeldOutFramesIsTheirPredictiveDensity) {
 
   const Eigen::Index half = kSeries * kFrames / 2;
   const double variance = 1.3 * kSigma * kSigma;
-  const Eigen::VectorXd by = with.misfit.by.col(0), residual = with.misfit.residual;
+  const Eigen::VectorXd by = with.misfit.jacobian.col(0), residual = with.misfit.residual;
   const double precision = by.head(half).squaredNorm() / variance + 0.25;
   const double best = -by.head(half).dot(residual.head(half)) / variance / precision;
   const Eigen::VectorXd to_come = by.tail(half);

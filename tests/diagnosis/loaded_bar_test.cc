@@ -133,7 +133,7 @@ place_deviation: 0.1 mm
 TEST_F(LoadedBar, IsFittedInAStepAFrame) {
   PredictionStudy study = Record({});
   EXPECT_EQ(study.time_step, 1);
-  const SteppedFit fit = FitWithItsStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  const SteppedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_EQ(study.time_step, 1);  // nothing depends on rates
   EXPECT_LT(fit.step_error, 0.01);
@@ -181,7 +181,7 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
       Record({MakeEffect("viscoelastic_branch",
                          {{"modulus", 4e4}, {"relaxation_time", 2.5}, {"poisson_ratio", kRatio}})});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const SteppedFit fit = FitWithItsStep(mesh, &study, progress_.get());
+  const SteppedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
   DiagnosisOptions options;
@@ -252,7 +252,7 @@ gripped:
   const LinearisedMisfit misfit = problem.Linearise(start, true, grips.directions);
   ASSERT_TRUE(misfit.usable) << misfit.message;
   const Eigen::MatrixXd grip_columns =
-      misfit.by.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+      misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
   const std::vector<NuisanceCandidate> nuisances =
       ModelNuisances({problem, start, misfit, grips, grip_columns});
   const auto jitter = std::find_if(nuisances.begin(), nuisances.end(), [](const auto& nuisance) {

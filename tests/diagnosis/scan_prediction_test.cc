@@ -135,7 +135,7 @@ TEST(ScanPrediction, DerivativeAgreesWithDifferences) {
     const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(at.size(), k);
     const Eigen::VectorXd difference = (predict(at + shift) - predict(at - shift)) / (2 * steps[k]);
     // Truncation, and trajectories that are known to 1e-8 of the forces only.
-    EXPECT_LT((here.by.col(k) - difference).norm(), 2e-3 * difference.norm()) << k;
+    EXPECT_LT((here.jacobian.col(k) - difference).norm(), 2e-3 * difference.norm()) << k;
     EXPECT_GT(difference.norm(), 0) << k;
   }
 }

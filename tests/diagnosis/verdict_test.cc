@@ -161,12 +161,12 @@ TEST(Verdict, DoesNotNameAnEffectThatLeavesMoreThanChanceForAnother) {
   // Where a nuisance explains the remainder as well, it is no other effect.
   diagnosis.effects.clear();
   diagnosis.ranking[1].evidence = 150;
-  diagnosis.ranking[0].further.of_nuisance = 15;
+  diagnosis.ranking[0].further.nuisance_evidence = 15;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kMissing) << Explanation(diagnosis);
-  diagnosis.ranking[0].further.of_nuisance = 0;
+  diagnosis.ranking[0].further.nuisance_evidence = 0;
   // What the uncertainty of the mesh could account for is no evidence.
-  diagnosis.nuisances.emplace_back().doubt = 20;
+  diagnosis.nuisances.emplace_back().uncertain_evidence = 20;
   diagnosis.ranking[1].evidence = 150;
   diagnosis.effects.clear();
   Decide(&diagnosis);
@@ -223,7 +223,7 @@ TEST(Verdict, IgnoresEvidenceWithinTheMeshUncertaintyAtTheNoise) {
   diagnosis.nuisances.emplace_back().candidate.card.name = "mesh";
   diagnosis.nuisances.back().candidate.card.is_always_in_model = true;
   diagnosis.nuisances.back().candidate.card.advice = "choose a smaller mesh.max_volume";
-  diagnosis.nuisances.back().doubt = 200;
+  diagnosis.nuisances.back().uncertain_evidence = 200;
   Decide(&diagnosis);
   EXPECT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << "5 σ is not noise";
   EXPECT_THAT(diagnosis.effects, Contains("mesh"));

@@ -1,6 +1,6 @@
 // The nuisance parameters of a recording that is predicted but not fitted.
-#ifndef LACUNA_PREDICTION_OWN_NUISANCE_H_
-#define LACUNA_PREDICTION_OWN_NUISANCE_H_
+#ifndef LACUNA_PREDICTION_RECORDING_NUISANCES_H_
+#define LACUNA_PREDICTION_RECORDING_NUISANCES_H_
 
 #include <Eigen/Core>
 #include <optional>
@@ -13,9 +13,9 @@ namespace lacuna {
 // Fits them to the first tenth of the recording, with the model as it is. `place_offset`: the
 // errors of its markers' places (3 × markers, m) where another recording has determined them.
 // Returns an empty vector where the model cannot be simulated.
-Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
-                            const std::optional<Eigen::MatrixXd>& place_offset);
+Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementErrors errors,
+                                      const std::optional<Eigen::MatrixXd>& place_offset);
 
 }  // namespace lacuna
 
-#endif  // LACUNA_PREDICTION_OWN_NUISANCE_H_
+#endif  // LACUNA_PREDICTION_RECORDING_NUISANCES_H_

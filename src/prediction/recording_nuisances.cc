@@ -1,4 +1,4 @@
-#include "prediction/own_nuisance.h"
+#include "prediction/recording_nuisances.h"
 
 #include <utility>
 #include <vector>
@@ -15,8 +15,8 @@ constexpr int kRounds = 3;
 
 }  // namespace
 
-Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors errors,
-                            const std::optional<Eigen::MatrixXd>& place_offset) {
+Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementErrors errors,
+                                      const std::optional<Eigen::MatrixXd>& place_offset) {
   if (place_offset) errors.common = 0;
   std::vector<CalibratedParameter> own;
   std::vector<MisfitDirection> directions;
@@ -48,7 +48,7 @@ Eigen::VectorXd OwnNuisance(const RecordingModel& model, MeasurementErrors error
       prediction.residual =
           whitened(place_offset ? misfit.ResidualWithout(*place_offset) : misfit.residual);
       if (kept.empty()) kept = std::move(misfit.observed);
-      if (with_jacobian) prediction.jacobian = whitened(misfit.by);
+      if (with_jacobian) prediction.jacobian = whitened(misfit.jacobian);
       return prediction;
     });
     values = fitted.parameters;

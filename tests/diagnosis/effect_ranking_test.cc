@@ -1,0 +1,45 @@
+#include "diagnosis/effect_ranking.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/calibration_fits.h"
+#include "effects/catalogue.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+// Softer across is, to first order, much like stiffer along; a refit tries both.
+TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
+  const TemporaryFolder folder;
+  HeldBarTruth truth;
+  truth.hidden = {
+      MakeEffect("fibre_stiffness", {{"modulus", 5e4}, {"azimuth", 0.6}, {"inclination", 0}})};
+  WriteBarRecording(folder.Path(), FilmHeldBar(truth));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({7, 1, 1}, 2));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const Calibration calibration = FitFromStart(problem, &progress);
+  const EffectRanking ranking = RankEffects(problem, calibration.parameters, &progress);
+  const auto fibres = std::find_if(
+      ranking.effects.begin(), ranking.effects.end(),
+      [](const ScoredEffect& effect) { return effect.candidate.type == "fibre_stiffness"; });
+  ASSERT_NE(fibres, ranking.effects.end());
+  ASSERT_FALSE(fibres->elsewhere.empty());
+  const auto is_other = [&](const ScoredVariant& other) {
+    return std::abs(other.candidate.position.axis.dot(fibres->candidate.position.axis)) < 0.55 &&
+           other.score.evidence < fibres->score.evidence;
+  };
+  EXPECT_TRUE(std::all_of(fibres->elsewhere.begin(), fibres->elsewhere.end(), is_other));
+  EXPECT_GT(fibres->elsewhere.front().score.evidence, 0.3 * fibres->score.evidence);
+  EXPECT_LT(fibres->elsewhere.front().score.size[0] * fibres->score.size[0], 0);
+}
+
+}  // namespace
+}  // namespace lacuna
