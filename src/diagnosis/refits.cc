@@ -86,8 +86,6 @@ void SetEvidence(const RefitContext& context, const EffectRefit& with, const Ref
   }
   effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
-  effect->further = FurtherEvidenceOf(with.hypothesis, context.ranking.tried,
-                                      effect->scored.candidate.type, noise);
 }
 
 // The hypothesis with the smallest residual, the model without an effect among them.
@@ -212,24 +210,6 @@ void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ran
                             nuisance->candidate.selection_penalty -
                             SelectionPenalty(nuisances->size());
     if (std::isfinite(evidence)) nuisance->refitted = evidence;
-  }
-}
-
-void RankBesideBest(const RefitContext& context, const std::vector<std::string>& without,
-                    RefittedRanking* ranked) {
-  const RefitThresholds& thresholds = kThresholds.refit;
-  const RankedEffect* best = BestRefitted(ranked->effects);
-  if (best == nullptr) return;
-  const double least = best->evidence - thresholds.second_ranking_lead;
-  int done = 0;
-  for (size_t k = 0; k < ranked->refits.size() && done < thresholds.most_second_rankings; ++k) {
-    RankedEffect& effect = ranked->effects[k];
-    if (!ranked->IsUsable(k) || effect.evidence < least ||
-        effect.further.evidence < std::max(thresholds.least_evidence,
-                                           kThresholds.naming.remainder_share * effect.evidence))
-      continue;
-    ++done;
-    effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without);
   }
 }
 

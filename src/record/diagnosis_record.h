@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "record/decision_record.h"
 #include "record/model_errors.h"
 #include "record/verdict.h"
 
@@ -47,12 +48,6 @@ struct RecordedScore {
   double held_out_rms_over_sigma = 0;  // expected error of the held-out frames
 };
 
-// What remains beside a refitted effect: the best other effect, and the best nuisance.
-struct RecordedRemainder {
-  std::string effect;  // empty: no other effect has evidence
-  double evidence = 0, nuisance_evidence = 0;
-};
-
 // The model fitted again with an effect.
 struct RecordedRefit {
   std::string message;  // why it is not usable; empty: it is usable
@@ -60,7 +55,6 @@ struct RecordedRefit {
   double held_out_evidence = 0;  // the part of it that the held-out frames contribute
   double explained = 0;          // share of the squared misfit
   double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
-  RecordedRemainder remainder;
   ModelErrors errors;
   std::vector<RecordedValue> others;  // of a usable refit
 };
@@ -105,8 +99,8 @@ struct RecordedAlternatives {
 
 struct DiagnosisRecord : Conclusion {
   RecordedNoise noise;
-  double time_step = 0;         // s, of the simulations
-  double control_evidence = 0;  // found in 1 of 20 residuals that contain no effect
+  double time_step = 0;     // s, of the simulations
+  DecisionRecord decision;  // what the verdict follows from
   // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;

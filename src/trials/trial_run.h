@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "record/decision_record.h"
 #include "record/verdict.h"
 #include "trials/trial_case.h"
 
@@ -22,7 +23,11 @@ struct TrialOutcome {
   // Evidence (natural logarithm of the odds against the model as it is) of the first two ranked
   // effects, and the one that a twentieth of the controls without an effect exceeds; `left`: the
   // remaining rms residual over the noise. All as the Diagnosis has them.
-  double evidence = 0, second_evidence = 0, control = 0, left = 0;
+  double evidence = 0, second_evidence = 0, chance = 0, left = 0;
+  // The posterior of all hypotheses, the most probable one first, and the tail probability of what
+  // the first one leaves; empty and 1 for outcomes of older versions.
+  std::vector<HypothesisProbability> probabilities;
+  double p_adequate = 1;
   // Whether the first hidden effect was fitted, so that the following values hold. False if it is
   // not in the library, has no size, or could not be fitted.
   bool has_truth = false;
@@ -42,6 +47,11 @@ TrialOutcome RunCase(const std::filesystem::path& folder);
 // Write and read outcome.json. Both throw InputError if the file cannot be used.
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);
 TrialOutcome LoadOutcome(const std::filesystem::path& file);
+
+// Decides again upon every case that keeps what its decision was made from, with the rules as they
+// are now, and replaces the verdict of its outcome. Returns the number of such cases. Throws
+// InputError if a file cannot be read.
+int RedecideTrials(const std::filesystem::path& folder);
 
 // Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a
 // time. A case is claimed by a lock on a file in its folder, so that several calls may share the
