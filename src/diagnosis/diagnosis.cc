@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "calibration/calibration_fits.h"
+#include "diagnosis/decision_maker.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/recording_power.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"

@@ -314,7 +314,6 @@ std::vector<TriedVariant> HypothesisRanking::Tried() const {
 EffectRanking HypothesisRanking::Rank() && {
   ScoreNuisancesOfEveryModel();
   ScoreEffectsAndNuisances();
-  const double variance = ranking_.noise.variance;
   ranking_.variants = static_cast<int>(candidates_.size());
   const std::vector<int> adopted(base_.begin() + known_, base_.end());
   ranking_.adopted.columns = hypotheses_.columns(Eigen::all, adopted);

@@ -74,8 +74,8 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
 }
 
 // `rivals`: number of effects from which this one was selected.
-void SetEvidence(const RefitContext& context, const EffectRefit& with, const RefitEvidence& before,
-                 const NoiseLevel& noise, size_t rivals, RankedEffect* effect) {
+void SetEvidence(const EffectRefit& with, const RefitEvidence& before, const NoiseLevel& noise,
+                 size_t rivals, RankedEffect* effect) {
   const RefitEvidence after = EvidenceOf(with, noise);
   effect->evidence = after.all - before.all - SelectionPenalty(rivals);
   effect->held_out_evidence = after.held_out - before.held_out;
@@ -183,7 +183,7 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   const size_t rivals = ranked->effects.size();
   for (size_t k = 0; k < rivals; ++k)
     if (ranked->IsUsable(k))
-      SetEvidence(context, ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+      SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
   return noise;
 }
 
@@ -234,7 +234,7 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     effect.scored = scored;
     const EffectRefit with = RefitEffect(context, always, bare, &effect);
     if (with.message.empty())
-      SetEvidence(context, with, before, noise.level, ranked.effects.size(), &effect);
+      SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
   }
   return alternatives;
 }
