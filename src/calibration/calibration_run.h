@@ -26,7 +26,7 @@ struct FittedRun {
   PredictionStudy study;  // with its effects at the fitted values
   CalibrationRecord record;
   TetMesh mesh;
-  Eigen::VectorXd values;  // of all parameters of the problem
+  Eigen::VectorXd values;  // fitted values of all parameters of the problem
 };
 // Throws InputError when the folder is not that of a `lacuna fit`, the run is not finished or its
 // fit not usable, or when the experiment or a recording has changed since.
