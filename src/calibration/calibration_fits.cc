@@ -70,9 +70,7 @@ class Fitter {
     progress_.Begin(name, 0);
     Calibration calibration =
         problem_.HasScans() ? FitScans(horizon, start, options) : FitOnce(horizon, start, options);
-    progress_.Report(
-        evaluations_,
-        calibration.rms);  // the rms of the result rather than of the last values tried
+    progress_.Report(evaluations_, calibration.rms);  // replaces that of the last values tried
     progress_.End(calibration.message);
     calibration.predictions = evaluations_;
     return calibration;

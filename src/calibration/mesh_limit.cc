@@ -24,8 +24,7 @@ constexpr double kVolumePower = 0.7;
 // meshes.
 constexpr double kLongSteps = 3;
 constexpr int kMostSteps = 4;
-constexpr double kSettled =
-    1;  // σ²; the search ends when a step would reduce ‖difference‖² by less
+constexpr double kSettled = 1;  // σ², smallest reduction of ‖difference‖² by a step
 constexpr double kShortestStep = 1.0 / 4;  // fraction of a full step
 
 // The ratio of the element volumes: as small as a study of the mesh allows.
@@ -65,8 +64,8 @@ ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::Vector
 Eigen::VectorXd BestChange(const LinearGaussianModel& model, const Eigen::VectorXd& left,
                            const Eigen::MatrixXd& by, const Eigen::VectorXd& at,
                            const ChangePrior& prior) {
-  Eigen::VectorXd change =
-      Eigen::VectorXd::Zero(at.size());  // nonzero for the components that are fixed at their limit
+  // Nonzero for the components that are fixed at their limit.
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());
   std::vector<int> free(prior.priors.size());
   std::iota(free.begin(), free.end(), 0);
   for (;;) {
