@@ -319,7 +319,7 @@ TEST_F(CarriedBar, IsRefusedWhereItSaysNothing) {
   EXPECT_THAT(MessageWith(rest, CarriedSurfaces(), {{"to: 0.2001 s", "to: 0.03 s"}}),
               HasSubstr("2 frames lie between 0 s and 0.03 s; at least 3 are needed"));
   EXPECT_THAT(MessageWith(rest, CarriedSurfaces(), {{"fit_until: 0.1201 s", "from: 0.1 s"}}),
-              HasSubstr("the object moves already between its first two frames"));
+              HasSubstr("the object already moves between its first two frames"));
   TetMesh elsewhere = BarMesh({8, 1, 1}, 2);
   elsewhere.nodes.row(1).array() += 0.3;
   EXPECT_THAT(MessageOf([&] {

@@ -169,7 +169,7 @@ TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
   EXPECT_THAT(MessageAfterInRecording({{"reference",
                                         "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
                                         "reference"}}),
-              HasSubstr("does not tell where pull acts"));
+              HasSubstr("does not say where pull acts"));
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesAGripWhosePathDoesNotCoverTheFrames) {
@@ -263,7 +263,7 @@ TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
 TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
   const std::string statics = "motion: {scheme: quasi_static}";
   EXPECT_THAT(MessageAfter({{"motion: {time_step: 1.5 ms}", statics}}),
-              HasSubstr("recordings[0].hold: what is let go of swings"));
+              HasSubstr("recordings[0].hold: a released object vibrates"));
   Replacements one{{"motion: {time_step: 1.5 ms}", statics},
                    {"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}};
   one.insert(kNoHold.begin(), kNoHold.end());
@@ -311,7 +311,7 @@ TEST_F(ReadingAPredictionStudy, RefusesTwoRecordingsOfOneName) {
   const std::string entry = text.substr(text.find("  - recording: "));
   const std::string message = MessageOf(text + entry);
   EXPECT_THAT(message, HasSubstr("recordings[1].name: \""));
-  EXPECT_THAT(message, HasSubstr("is that of another recording already"));
+  EXPECT_THAT(message, HasSubstr("is already the name of another recording"));
 }
 
 TEST_F(ReadingAPredictionStudy, TakesTheNoiseOfRestForNoMotion) {
@@ -336,11 +336,11 @@ TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
   auto markers = Moving(0, 0);
   for (size_t frame = 1; frame < markers.size(); ++frame) markers[frame].array() += 0.001;
   WriteBarRecording(folder_.Path(), markers);
-  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object already moves between its first two"));
   // The first marker is not seen at first: the others tell.
   markers[0].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
   WriteBarRecording(folder_.Path(), markers);
-  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object already moves between its first two"));
   WriteBarRecording(folder_.Path(), Moving(0.001));
   EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
 }
