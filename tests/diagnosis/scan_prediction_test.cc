@@ -297,7 +297,7 @@ TEST_F(CarriedBar, TellsWhatItCannotFollow) {
   EXPECT_THAT(MessageWith(std::string("gripped: [{name: tool, half_space: {point: [0.002 m, 0 m, 0 "
                                       "m], normal: [-1, 0, 0]}}]\n") +
                           kShape),
-              HasSubstr("tool follows the scan, but frame 0 does not tell all of its motion"));
+              HasSubstr("tool follows the scan, but frame 0 does not determine all of its motion"));
   EXPECT_THAT(
       MessageWith(std::string("gripped: [{name: tool, sphere: {center: [0 m, 0.01 m, 0.01 m], "
                               "radius: 1 mm}}]\n") +

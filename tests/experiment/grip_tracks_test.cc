@@ -90,7 +90,7 @@ TEST_F(CarriedByMarkers, IsRefusedWhereTwoAreToTellHowItDeforms) {
       [&] {
         Follow({"a", "b"}, Moved());
       },
-      testing::ThrowsMessage<InputError>(testing::HasSubstr("span no plane")));
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("do not span a plane")));
 }
 
 TEST_F(CarriedByMarkers, DoesWithoutOneThatIsHidden) {

@@ -222,8 +222,9 @@ TEST_F(ReadingAPredictionStudy, RefusesCandidatesThatCouldNotBeAddedByName) {
               more}});
   };
   EXPECT_EQ(message("push"), "nothing was refused");
-  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: a candidate's is of letters"));
-  EXPECT_THAT(message("drag"), HasSubstr("candidates[0].name: is that of an effect of the cat"));
+  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: must consist of letters"));
+  EXPECT_THAT(message("drag"),
+              HasSubstr("candidates[0].name: is the name of an effect of the cat"));
   EXPECT_THAT(message("push", "  - {type: drag, coefficient: 1}\n"),
               HasSubstr("candidates[1].type: a diagnosis tries drag anyway"));
 }
