@@ -1,4 +1,4 @@
-// The report of a ledger of models, made from its record alone: ledger.txt.
+// The report of a ledger of models, made from its record alone. It is written to ledger.txt.
 #ifndef LACUNA_REPORT_LEDGER_REPORT_H_
 #define LACUNA_REPORT_LEDGER_REPORT_H_
 
