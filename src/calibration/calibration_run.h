@@ -20,7 +20,7 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
 // The record of a finished run. Throws InputError where there is none.
 CalibrationRecord LoadCalibration(const std::filesystem::path& run);
 
-// A finished run that was opened again. Its experiment and recordings are read anew and must be
+// A finished run that was opened again. Its experiment and recordings are read again and must be
 // those that were fitted.
 struct FittedRun {
   PredictionStudy study;  // with its effects at the fitted values

@@ -46,8 +46,8 @@ std::vector<double> StartTimes(const json& configuration,
 }
 
 // Compares recordings that may be repeats of each other, which have the same frame rate and the
-// same number of markers. Patches of scans are not compared, as they are not measured along the
-// surface.
+// same number of markers. Patches of scans are not compared, because they are not measured along
+// the surface.
 void ComparePairs(const json& configuration, Comparison* comparison) {
   const std::vector<double> starts = StartTimes(configuration, comparison->residuals);
   const std::vector<ComparedRecording>& recordings = comparison->record.recordings;

@@ -302,7 +302,7 @@ TEST_F(CarriedBar, TellsWhatItCannotFollow) {
       MessageWith(std::string("gripped: [{name: tool, sphere: {center: [0 m, 0.01 m, 0.01 m], "
                               "radius: 1 mm}}]\n") +
                   kShape),
-      HasSubstr("tool follows the scan, but holds no face of the surface"));
+      HasSubstr("tool follows the scan, but contains no face of the surface"));
   // What the tool hides.
   std::vector<TriMesh> without_end = CarriedSurfaces();
   std::vector<Eigen::Index> seen;

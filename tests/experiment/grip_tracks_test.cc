@@ -134,7 +134,7 @@ TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {
   } catch (const InputError& problem) {
     EXPECT_THAT(problem.what(),
                 testing::HasSubstr("frame 25, the last that is used, shows too few of the markers "
-                                   "that \"hand\" follows: choose `to`"));
+                                   "that \"hand\" follows: change `to`"));
   }
 }
 
