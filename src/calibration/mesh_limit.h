@@ -18,9 +18,9 @@ namespace lacuna {
 // steps with the derivatives of the study's mesh, the finer mesh stays in phase, and the difference
 // that remains is small.
 struct FinerMesh {
-  double ratio = 0;  // by which the volume of the elements is smaller
+  double ratio = 0;  // volume of the study's elements over that of the finer ones
   TetMesh mesh;
-  Eigen::VectorXd change;  // of the parameters, against the study's (MovedBy)
+  Eigen::VectorXd change;  // change of the parameters from the study's values (MovedBy)
 
   // Factors by which the change is to be multiplied for the limit of infinitely fine elements, and
   // for elements of another ratio.
@@ -28,9 +28,9 @@ struct FinerMesh {
   double ToRatio(double other) const;
 };
 
-// `misfit`: at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted frames
-// alone. Returns nothing where there is no finer mesh, as for a mesh that was given, or where it
-// cannot be simulated. Throws Interrupted.
+// `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
+// frames alone. Returns nothing where a finer mesh cannot be made, for example because the mesh was
+// given, or cannot be simulated. Throws Interrupted.
 std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);

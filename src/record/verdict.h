@@ -1,6 +1,6 @@
 // The verdict of a diagnosis and the reasons for it, as plain data.
 //
-// A reason holds what its sentence needs, and no sentence: report/verdict_text.h writes those.
+// A reason holds the data for its sentence, which report/verdict_text.h writes.
 // Evidence is the natural logarithm of the odds against the model without the effect. Errors with
 // "over_sigma" in their name are rms residuals divided by the standard deviation of the noise; 1 is
 // noise alone. A `nuisance` is an index in the list of nuisances of the same diagnosis.
@@ -25,7 +25,7 @@ enum class Verdict {
 
 // The verdict's name in files and reports, e.g. "not in library".
 std::string VerdictName(Verdict verdict);
-// The reverse. Throws InputError for any other text.
+// The verdict of this name. Throws InputError if there is none.
 Verdict VerdictFromName(const std::string& name);
 
 // --- Reasons for "no power", "adequate", "nuisance" and "not in library" ---
@@ -75,7 +75,7 @@ struct EvidenceForAnother {
 struct EffectReducesError {
   std::string effect;
   double evidence = 0;
-  bool held_out = true;                 // false: nothing was held out, the fitted frames are judged
+  bool held_out = true;                 // if nothing was held out, the fitted frames are judged
   bool adjusted_for_nuisances = false;  // the errors exclude what the adopted nuisances explain
   double over_sigma_before = 0, over_sigma_after = 0;
 };
@@ -84,7 +84,7 @@ using VerdictReason =
     std::variant<NothingDetectable, ErrorIsNoise, ErrorUnexplained, NuisanceExplains,
                  ResidualRemains, EvidenceForAnother, EffectReducesError>;
 
-// --- What would settle an open question ---
+// --- Steps that would resolve an open question ---
 
 // Add the effect and diagnose again: `expected_next` should then be named.
 struct AddAndDiagnose {
@@ -103,12 +103,12 @@ struct CheckNuisance {
 
 using SuggestedStep = std::variant<AddAndDiagnose, SeparateLookAlikes, CheckNuisance>;
 
-// What a diagnosis concludes.
+// The conclusion of a diagnosis.
 struct Conclusion {
   Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> effects;  // names of effects and nuisances, the best first
   std::vector<VerdictReason> reasons;
-  std::vector<SuggestedStep> next_steps;  // empty: nothing is open
+  std::vector<SuggestedStep> next_steps;  // empty where nothing is open
 };
 
 // The keys "verdict", "effects", "reasons" and "next_steps".

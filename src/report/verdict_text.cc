@@ -35,7 +35,7 @@ const RecordedNuisance& NuisanceAt(const DiagnosisRecord& diagnosis, int index) 
   return diagnosis.nuisances[static_cast<size_t>(index)];
 }
 
-// One sentence, or two, per kind of reason.
+// One or two sentences for each kind of reason.
 struct ReasonSentence {
   const DiagnosisRecord& diagnosis;
 
@@ -80,7 +80,7 @@ struct ReasonSentence {
         "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; the odds for it are e^{:.0f}.",
         reason.effect, JudgedFrames(reason.held_out),
         reason.adjusted_for_nuisances
-            ? ", without what mesh, time step and the other adopted nuisances explain,"
+            ? ", excluding the contributions of mesh, time step and the other adopted nuisances,"
             : "",
         reason.over_sigma_before, reason.over_sigma_after, reason.evidence);
   }

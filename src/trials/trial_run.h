@@ -31,17 +31,17 @@ struct TrialOutcome {
   // Whether the first hidden effect was fitted, so that the following values hold. False if it is
   // not in the library, has no size, or could not be fitted.
   bool has_truth = false;
-  double error_after = 0;  // held-out, with the hidden effect fitted
-  // |estimate − truth| / |truth|, each component in units of its detectable size, so that a
-  // component that hardly shows (such as weight along a bar) hardly counts.
+  double error_after = 0;  // held-out error with the hidden effect fitted
+  // |estimate − truth| / |truth|, with each component divided by its detectable size, so that a
+  // component with little influence (such as weight along a bar) has little weight.
   double relative_error = 0;
   std::vector<char> covered;  // for each amplitude: whether the 95 % interval contains the truth
   double seconds = 0;         // wall time of fit and diagnosis
 };
 
-// Fits and diagnoses the case in `folder` as its experiment.yaml says and writes diagnosis.json
-// there. The truth is opened only afterwards. Throws InputError if the case cannot be read or
-// fitted.
+// Fits and diagnoses the case in `folder` according to its experiment.yaml and writes
+// diagnosis.json there. The truth is opened only afterwards. Throws InputError if the case cannot
+// be read or fitted.
 TrialOutcome RunCase(const std::filesystem::path& folder);
 
 // Write and read outcome.json. Both throw InputError if the file cannot be used.
