@@ -35,13 +35,14 @@ int Main(int argc, char** argv) {
   make->add_option("--workers", workers, "Number of processes that run at the same time")
       ->check(CLI::Range(1, 64));
   CLI::App* run = app.add_subcommand("run", "Diagnose the cases that have no outcome yet");
-  run->add_option("folder", folder, "Of the cases")->required();
-  run->add_option("--workers", workers, "Processes at a time")->check(CLI::Range(1, 64));
+  run->add_option("folder", folder, "Folder of the cases")->required();
+  run->add_option("--workers", workers, "Number of processes that run at the same time")
+      ->check(CLI::Range(1, 64));
   CLI::App* redecide = app.add_subcommand(
       "redecide", "Decide again with the rules as they are now, from the stored evidence");
   redecide->add_option("folder", folder, "Folder of the cases")->required();
-  CLI::App* report = app.add_subcommand("report", "How often the diagnosis was right");
-  report->add_option("folder", folder, "Of the cases")->required();
+  CLI::App* report = app.add_subcommand("report", "Report how often the diagnosis was right");
+  report->add_option("folder", folder, "Folder of the cases")->required();
   CLI11_PARSE(app, argc, argv);
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
