@@ -22,6 +22,14 @@ double TailProbability(const std::vector<double>& sorted, double value) {
   return static_cast<double>(sorted.end() - first + 1) / static_cast<double>(sorted.size() + 1);
 }
 
+// Independent standard normal numbers.
+Eigen::VectorXd NormalVector(Eigen::Index size, uint64_t seed, uint64_t number, uint64_t stream) {
+  Eigen::VectorXd normal(size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    normal[k] = Normal(RandomBits({seed, number, stream, static_cast<uint64_t>(k)}));
+  return normal;
+}
+
 }  // namespace
 
 std::vector<NamedEvidence> SumVariants(const HypothesisSpace& space,
@@ -62,6 +70,7 @@ AdequacyStatistics MeasureAdequacy(const HypothesisSpace& space,
   for (size_t h = 0; h < space.hypotheses.size(); ++h)
     if (space.hypotheses[h].kind == HypothesisKind::kUnknownForce)
       statistics.unknown_force = factors[static_cast<Eigen::Index>(h)];
+  statistics.left = projected.ForceMisfit(projected.Project(residual.toward));
   statistics.further = -std::numeric_limits<double>::infinity();
   for (const NamedEvidence& named : SumVariants(space, factors)) {
     if (named.evidence <= statistics.further) continue;
@@ -71,6 +80,7 @@ AdequacyStatistics MeasureAdequacy(const HypothesisSpace& space,
   const double freedom = static_cast<double>(
       std::max<Eigen::Index>(1, space.rows - static_cast<Eigen::Index>(space.base.size())));
   statistics.variance = projected.Misfit(residual) / freedom;
+  statistics.left = std::max(statistics.left, 2 * statistics.further);
   return statistics;
 }
 
@@ -123,26 +133,38 @@ NoiseDraws::NoiseDraws(const HypothesisSpace& space)
   const Eigen::Index rank = (eigen.eigenvalues().array() > least).count();
   root_ = unit.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
           eigen.eigenvalues().tail(rank).cwiseSqrt().asDiagonal();
+  if (!(space.discretisation > 0)) return;
+  error_ = std::sqrt(2 * space.discretisation * space.variance);
+  products_ = products;
+  for (const WeighedHypothesis& hypothesis : space.hypotheses) {
+    if (hypothesis.kind == HypothesisKind::kUnknownForce) forces_.push_back(hypothesis.columns);
+    if (hypothesis.kind == HypothesisKind::kEffect) effects_.push_back(hypothesis.columns);
+  }
 }
 
 ResidualProducts NoiseDraws::Draw(uint64_t seed, uint64_t number) const {
-  Eigen::VectorXd normal(root_.cols());
-  for (Eigen::Index k = 0; k < normal.size(); ++k)
-    normal[k] = Normal(RandomBits({seed, number, static_cast<uint64_t>(k)}));
+  const Eigen::VectorXd normal = NormalVector(root_.cols(), seed, number, 0);
   // The part of the noise that no column sees: χ² with many degrees of freedom, by the cube-root
   // approximation of Wilson & Hilferty (PNAS 17, 1931).
   const double unseen = static_cast<double>(std::max<Eigen::Index>(0, rows_ - root_.cols()));
   double rest = 0;
   if (unseen > 0) {
     const double spread = 2 / (9 * unseen);
-    rest =
-        unseen *
-        std::pow(1 - spread + std::sqrt(spread) * Normal(RandomBits({seed, number, ~uint64_t{0}})),
-                 3);
+    const double deviation = std::sqrt(spread) * NormalVector(1, seed, number, 1)[0];
+    rest = unseen * std::pow(1 - spread + deviation, 3);
   }
   ResidualProducts products;
-  products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest));
+  // The product of noise and discretisation error is neglected: its mean is 0.
+  products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest)) + error_ * error_;
   products.toward = std::sqrt(variance_) * (root_ * normal);
+  const auto& along = number % 2 == 0 || effects_.empty() ? forces_ : effects_;
+  if (error_ > 0 && !along.empty()) {
+    const std::vector<int>& own = along[RandomBits({seed, number, 3}) % along.size()];
+    const Eigen::VectorXd amounts =
+        NormalVector(static_cast<Eigen::Index>(own.size()), seed, number, 2);
+    const double length = std::sqrt(amounts.dot(products_(own, own) * amounts));
+    if (length > 0) products.toward += error_ / length * (products_(Eigen::all, own) * amounts);
+  }
   return products;
 }
 

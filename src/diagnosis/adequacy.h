@@ -38,6 +38,8 @@ struct AdequacyStatistics {
   double further = 0;          // the largest NamedEvidence::evidence
   double variance = 0;         // of the whitened residual, per degree of freedom
   NamedEvidence best_further;  // what `further` belongs to
+  // The misfit, σ², that a smooth force or a further effect could remove beyond what noise lets it.
+  double left = 0;
 };
 
 // The statistics of one residual beside the columns that `projected` has taken.
@@ -59,7 +61,10 @@ struct AdequacyTest {
 AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& further,
                           bool noise_is_known, uint64_t seed);
 
-// Draws of the products of noise alone: t ~ N(0, v AᵀA), with rᵀr from the same noise.
+// Draws of the products of noise alone: t ~ N(0, v AᵀA), with rᵀr from the same noise. The unknown
+// part of the discretisation error (HypothesisSpace::discretisation) is added in a random
+// direction: in every other draw along the influence of a smooth force, which an error of the
+// stiffness resembles, else along that of an effect.
 class NoiseDraws {
  public:
   explicit NoiseDraws(const HypothesisSpace& space);
@@ -68,7 +73,10 @@ class NoiseDraws {
  private:
   double variance_;
   Eigen::Index rows_;
-  Eigen::MatrixXd root_;  // AᵀA = root rootᵀ, columns × rank
+  Eigen::MatrixXd root_;                            // AᵀA = root rootᵀ, columns × rank
+  double error_ = 0;                                // length of the discretisation error
+  Eigen::MatrixXd products_;                        // AᵀA; empty where there is no such error
+  std::vector<std::vector<int>> forces_, effects_;  // columns of hypotheses
 };
 
 }  // namespace lacuna

@@ -40,7 +40,8 @@ void CompareWithAdopted(const DecisionInput& input, double effects,
     } else if (one.kind == Kind::kEffect) {
       for (const WeighedRefit& refit : input.in_place_of_adopted)
         if (refit.effect == one.names.front())
-          one.evidence = LogSum(one.evidence, refit.evidence - effects - input.discretisation);
+          one.evidence =
+              LogSum(one.evidence, refit.evidence - effects - input.baseline.discretisation);
     }
   }
   hypotheses->emplace_back();  // nothing, and no nuisance
@@ -64,7 +65,7 @@ double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& f
 std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
                                                const std::vector<NamedEvidence>& first_order) {
   std::vector<HypothesisProbability> hypotheses =
-      HypothesesOf(first_order, input.families, input.discretisation);
+      HypothesesOf(first_order, input.families, input.baseline.discretisation);
   const double share = KeptShare(input, first_order);
   const double effects = std::log(static_cast<double>(CountOf(hypotheses, Kind::kEffect)));
   const double nuisances = std::log(static_cast<double>(CountOf(hypotheses, Kind::kNuisance)));
@@ -72,7 +73,7 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
     if (one.kind == Kind::kEffect) {
       const WeighedRefit* refit = FindRefit(input, one.names.front());
       if (refit != nullptr)
-        one.evidence = refit->evidence - effects - input.discretisation;
+        one.evidence = refit->evidence - effects - input.baseline.discretisation;
       else if (one.evidence > 0)
         one.evidence *= share;
       if (const auto natural = input.natural_value.find(one.names.front());

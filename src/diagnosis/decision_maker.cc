@@ -79,7 +79,6 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
       input.natural_value[candidate.type] = natural;
   }
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
-    input.discretisation += nuisance.uncertain_evidence;
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
       input.adopted.push_back(nuisance.candidate.card.name);
     if (nuisance.refitted)

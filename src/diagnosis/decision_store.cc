@@ -51,11 +51,9 @@ json SpaceToJson(const HypothesisSpace& space) {
     hypotheses.push_back(
         {{"kind", kind}, {"name", one.name}, {"variant", one.variant}, {"columns", one.columns}});
   }
-  return {{"variance", space.variance},
-          {"rows", space.rows},
-          {"base", space.base},
-          {"priors", priors},
-          {"hypotheses", hypotheses}};
+  return {
+      {"variance", space.variance}, {"rows", space.rows}, {"discretisation", space.discretisation},
+      {"base", space.base},         {"priors", priors},   {"hypotheses", hypotheses}};
 }
 
 HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& products) {
@@ -72,6 +70,7 @@ HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& pr
       all(0, 0), all.col(0).tail(size), all.bottomRightCorner(size, size), std::move(priors));
   space.variance = value.at("variance");
   space.rows = value.at("rows");
+  space.discretisation = value.at("discretisation");
   space.base = value.at("base").get<std::vector<int>>();
   for (const json& one : value.at("hypotheses")) {
     WeighedHypothesis& hypothesis = space.hypotheses.emplace_back();
@@ -113,7 +112,6 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
                     {"in_place_of_adopted", in_place},
                     {"families", families},
                     {"natural_value", input.natural_value},
-                    {"discretisation", input.discretisation},
                     {"noise_is_known", input.noise_is_known},
                     {"is_anything_detectable", input.is_anything_detectable},
                     {"seed", input.seed}};
@@ -145,7 +143,6 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     for (const auto& [effect, family] : value.at("families").items())
       input.families[effect] = FamilyFromName(family);
     input.natural_value = value.at("natural_value").get<std::map<std::string, double>>();
-    input.discretisation = value.at("discretisation");
     input.noise_is_known = value.at("noise_is_known");
     input.is_anything_detectable = value.at("is_anything_detectable");
     input.seed = value.at("seed");

@@ -358,10 +358,13 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
   }
   add({HypothesisKind::kUnknownForce, "", "", {}}, ranking.unknown_force);
   priors.resize(static_cast<size_t>(width), {0, 1, false});
-  return MakeHypothesisSpace(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-                             WhitenedRows(columns, misfit, noise.correlation_time, false),
-                             std::move(priors), base.cols(), std::move(hypotheses), noise.variance,
-                             ObservedRows(misfit));
+  HypothesisSpace space = MakeHypothesisSpace(
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+      WhitenedRows(columns, misfit, noise.correlation_time, false), std::move(priors), base.cols(),
+      std::move(hypotheses), noise.variance, ObservedRows(misfit));
+  for (const ScoredNuisance& nuisance : ranking.nuisances)
+    space.discretisation += nuisance.uncertain_evidence;
+  return space;
 }
 
 double SelectionPenalty(size_t rivals) {

@@ -44,6 +44,9 @@ class ProjectedHypotheses {
   // The logarithm of the Bayes factor of each hypothesis of the space against the taken columns
   // alone, from t'. 0 for a hypothesis whose columns are taken.
   Eigen::VectorXd LogBayesFactors(const Eigen::VectorXd& projected) const;
+  // The misfit, in units of v, that an unknown force could remove without any prior, less what it
+  // removes of noise on average; 0 where the space has none.
+  double ForceMisfit(const Eigen::VectorXd& projected) const;
   // The amounts with the largest posterior density of a hypothesis that is not an unknown force,
   // and their covariance matrix.
   struct Amounts {
@@ -72,6 +75,8 @@ class ProjectedHypotheses {
   Eigen::MatrixXd inverse_;   // M⁻¹
   Eigen::MatrixXd products_;  // S
   std::vector<Own> own_;
+  Eigen::MatrixXd force_inverse_;  // S_hh⁺ of the unknown force
+  Eigen::Index force_rank_ = 0;
 };
 
 }  // namespace lacuna

@@ -46,7 +46,7 @@ class SimulatedDecisions {
     const std::vector<NamedEvidence> evidence = SumVariants(
         space_, beside_nothing_.LogBayesFactors(beside_nothing_.Project(residual.toward)));
     std::vector<HypothesisProbability> posterior =
-        HypothesesOf(evidence, input_.families, input_.discretisation);
+        HypothesesOf(evidence, input_.families, space_.discretisation);
     SetPosterior(&posterior);
     const HypothesisProbability& best = posterior.front();
     int variant = -1;

@@ -86,7 +86,7 @@ TEST(Decide, CallsNoiseAdequate) {
 
 TEST(Decide, NamesAnEffectANuisanceOrTheEffectsOfOneFamily) {
   const SyntheticSpace synthetic;
-  const Eigen::VectorXd noise = SyntheticSpace::Noise(12);
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(22);
   const Decision gravity =
       Decide(InputOf(synthetic, noise - synthetic.Of("gravity") * Eigen::Vector3d(9, -7, 5)));
   EXPECT_EQ(gravity.verdict, Verdict::kMissing);
@@ -134,7 +134,7 @@ TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   const Decision decision = Decide(input);
   EXPECT_THAT(decision.names, ElementsAre("mass_damping"));
   // The uncertainty in the discretisation error counts against every effect.
-  input.discretisation = 50;
+  input.baseline.discretisation = 50;
   EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
 }
 
