@@ -23,6 +23,7 @@
 #include "core/progress.h"
 #include "diagnosis/hypothesis_score.h"
 #include "diagnosis/pilot_hypotheses.h"
+#include "diagnosis/scene_columns.h"
 #include "diagnosis/scored_effect.h"
 
 namespace lacuna {
@@ -44,12 +45,15 @@ struct EffectRanking {
   LinearisedMisfit misfit;  // at the fitted values, without columns
   double control = 0;       // evidence that chance gives to the best effect (ControlEvidence)
   int variants = 0;         // number of variants scored
+  SceneColumns scene;       // for further rankings
 };
 
 // Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
-// with the fitted `values` of CalibrationProblem::parameters. Throws Interrupted.
+// with the fitted `values` of CalibrationProblem::parameters. What `known` has is taken from there
+// instead of simulated. Throws Interrupted.
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress, const std::vector<std::string>& without = {});
+                          Progress* progress, const std::vector<std::string>& without = {},
+                          const SceneColumns& known = {});
 
 }  // namespace lacuna
 

@@ -71,7 +71,8 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
                               const LinearisedMisfit& correspondences,
                               const FittedHypothesis* near = nullptr) {
   FittedHypothesis hypothesis;
-  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences);
+  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences,
+                                        near != nullptr ? &near->misfit : &correspondences);
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
@@ -174,11 +175,12 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
 
 FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
-                                     const std::vector<std::string>& without) {
+                                     const std::vector<std::string>& without, SceneColumns scene) {
+  if (effect.candidate.replaces_material) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
   const EffectRanking ranking =
-      RankEffects(with, refit.calibration.parameters, baseline.progress, without);
+      RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene);
   FurtherEvidence best;
   const auto other = std::find_if(
       ranking.effects.begin(), ranking.effects.end(),

@@ -71,10 +71,12 @@ FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
                                   const std::vector<TriedVariant>& tried, const std::string& type,
                                   const NoiseLevel& noise);
 
-// With a new ranking along the motion of the refitted model. Throws Interrupted.
+// With a new ranking along the motion of the refitted model. `scene`: of the baseline's ranking,
+// whose pilots are tried again only beside another elasticity law, which they are compared with.
+// Throws Interrupted.
 FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                                      const EffectRefit& refit,
-                                     const std::vector<std::string>& without);
+                                     const std::vector<std::string>& without, SceneColumns scene);
 
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a

@@ -198,7 +198,8 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
   const Calibration calibration = Kept("fit", parameters, [&] {
     return Calibrate(parameters, predict,
                      {.max_iterations = holds_effect ? kHoldIterations : kIterations,
-                      .cost_tolerance = kTolerance});
+                      .cost_tolerance = kTolerance,
+                      .near_rms = kInfinity});
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);
   return calibration;

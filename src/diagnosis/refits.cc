@@ -229,7 +229,8 @@ void RankBesideBest(const RefitContext& context, const std::vector<std::string>&
                                            kThresholds.naming.remainder_share * effect.evidence))
       continue;
     ++done;
-    effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without);
+    effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without,
+                                          context.ranking.scene);
   }
 }
 
