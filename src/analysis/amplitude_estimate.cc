@@ -11,8 +11,8 @@
 namespace lacuna {
 namespace {
 
-constexpr int kWidths = 121;     // 20 per decade
-constexpr double kAsLikely = 2;  // decrease of the log-likelihood that counts as nearly as likely
+constexpr int kWidths = 121;        // 20 per decade
+constexpr double kAsLikely = 2;     // largest decrease of the log-likelihood of an accepted width
 constexpr double kSmallest = 1e-5;  // range of √ρ, relative to the plausible width
 constexpr double kLargest = 10;
 

@@ -1,4 +1,5 @@
-// Joint estimation of many amplitudes from a residual, under a prior whose width the data choose.
+// Joint estimation of many amplitudes from a residual, under a prior with a width estimated from
+// the data.
 //
 // Let r be the whitened residual of a fitted model, C its covariance when the fit is taken into
 // account (fitted_model.h), and S = ∂r/∂a its Jacobian with respect to amplitudes a of one kind and
@@ -24,7 +25,7 @@ struct AmplitudeEstimate {
   Eigen::MatrixXd covariance;  // k × k, posterior covariance
   double width = 0;            // s, in the unit of the amplitudes
   int shape = 0;               // index of the chosen L
-  double noise = 1;     // √v: standard deviation of the remaining residual, in that of the noise
+  double noise = 1;     // √v: standard deviation of the remaining residual over that of the noise
   double evidence = 0;  // natural log of the likelihood ratio of the best s to s = 0
 };
 

@@ -7,26 +7,26 @@
 
 namespace lacuna {
 
-// Of each component of each point (a marker, or a patch of a surface), over the frames f that saw
-// it as the mean of n_f measurements: covariance diag(σ²/n_f) + s² 1 1ᵀ. Where F_f, the deformation
-// gradient at each point in each frame (points × frames), is given, the common part is an error of
-// the point's place on the undeformed object, and shows as F_f times that: s² F_f F_gᵀ in place of
-// s² 1 1ᵀ (analysis/series_noise.h).
+// Each component of each point (a marker, or a patch of a surface) is observed in the frames f as
+// the mean of n_f measurements, and its errors have the covariance diag(σ²/n_f) + s² 1 1ᵀ. If the
+// deformation gradient F_f at each point in each frame (points × frames) is given, the common part
+// is an error of the point's place on the undeformed object, which is multiplied by F_f: the second
+// term is then s² F_f F_gᵀ (analysis/series_noise.h).
 struct MeasurementErrors {
-  double noise = 0;   // σ, m, of one measurement: the white part
-  double common = 0;  // s, m: what is the same in all frames, as the point's place on the object
-                      // is known to s only
+  double noise = 0;   // σ, m: white noise of one measurement
+  double common = 0;  // s, m: error that is the same in all frames, because the point's place on
+                      // the object is known only to within s
 };
 
-// Rows (components of points, frames outermost; a residual, or the columns of its derivative) times
-// the inverse square root of the covariance. `count` (points × frames) holds the n_f; rows of
-// points that were not seen (0) must be 0.
+// The inverse square root of the covariance times `rows` (components of points, frames outermost),
+// a residual or its Jacobian. `count` (points × frames) holds the n_f; rows of points that were not
+// seen (0) must be 0.
 Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& count, int points,
                          const MeasurementErrors& errors,
                          const std::vector<Eigen::Matrix3d>& deformation = {});
 
-// What is common to the frames `among` (a flag for each), components × points, m, on the undeformed
-// object: the mean of the posterior of that part of the errors, given the residual.
+// The posterior mean of the common part of the errors given the residual of the frames `among` (one
+// flag per frame): components × points, m, on the undeformed object.
 Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<int>& count,
                             int points, const MeasurementErrors& errors,
                             const std::vector<char>& among,

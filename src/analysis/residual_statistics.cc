@@ -69,7 +69,7 @@ StaticSpan MeasureSpan(const Eigen::VectorXd& times, const Eigen::MatrixXd& posi
   return span;
 }
 
-// Pairs of entries of which neither is NaN.
+// The pairs of entries that are both not NaN.
 std::vector<std::pair<double, double>> SeenPairs(const Eigen::MatrixXd& a,
                                                  const Eigen::MatrixXd& b) {
   CHECK_EQ(a.rows(), b.rows());
@@ -187,7 +187,8 @@ std::vector<StaticSpan> StaticSpans(const Eigen::VectorXd& times, const Eigen::M
     // The span also ends at a frame without a point in common with the first one (NaN).
     while (end < frames && RmsBetween(positions, first, end) <= threshold) ++end;
     if (end - first >= fewest) {
-      // Motion begins and ends slowly, within the threshold.
+      // A motion begins and ends slowly, so that its first and last frames are within the
+      // threshold.
       const int margin = std::max(0, std::min((end - first) / 6, (end - first - 3) / 2));
       StaticSpan span = MeasureSpan(times, positions, first + (first > 0 ? margin : 0),
                                     end - 1 - (end < frames ? margin : 0));

@@ -14,7 +14,7 @@
 
 namespace lacuna {
 
-// Stands for a statistic that the data do not determine.
+// The value of a statistic that the data do not determine.
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // The lengths (m × n) of vectors (3m × n); NaN if a coordinate is NaN.
@@ -40,7 +40,7 @@ double WhiteNoise(const Eigen::MatrixXd& positions);
 // A range of consecutive frames in which all points are at rest.
 struct StaticSpan {
   int first = 0, last = 0;      // columns, both inclusive
-  double deviation = kUnknown;  // m, of a coordinate about a straight line in time: total noise
+  double deviation = kUnknown;  // m, scatter of a coordinate about a line in time: total noise
   double drift = kUnknown;      // m/s, rms over the points of the slope of that line
 };
 // Finds the disjoint spans of at least `fewest` (≥ 3) frames in which the rms distance of the
@@ -58,9 +58,9 @@ Eigen::MatrixXd Speeds(const Eigen::VectorXd& times, const Eigen::MatrixXd& posi
 // Bins the lengths by a variable of the same shape. The bins contain about equally many points, and
 // equal values of the variable always fall into the same bin.
 struct ResidualBin {
-  double low = 0, high = 0, mean = 0;  // of the variable, in its unit
-  int points = 0;                      // entries in the bin
-  double rms = 0;                      // of the lengths, m
+  double low = 0, high = 0, mean = 0;  // values of the variable, in its unit
+  int points = 0;                      // number of entries in the bin
+  double rms = 0;                      // m, rms of the lengths
 };
 std::vector<ResidualBin> BinnedResiduals(const Eigen::MatrixXd& variable,
                                          const Eigen::MatrixXd& lengths, int bins);
@@ -91,9 +91,9 @@ MeanVector MeanOver(const Eigen::MatrixXd& vectors, int first, int last);
 // ± `largest_delay` of `delay` (s). The mean difference of each row is subtracted, because markers
 // may have been attached at slightly different places.
 struct Repeatability {
-  int frames = 0;              // of the first that the second covers at that delay; 0: no result
+  int frames = 0;              // frames of the first that the second covers; 0: no result
   double delay = kUnknown;     // s
-  double distance = kUnknown;  // m, rms between the two; each has 1/√2 of it as its error
+  double distance = kUnknown;  // m, rms between the two; the error of each is 1/√2 of it
 };
 Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::MatrixXd& first,
                              const Eigen::VectorXd& second_times, const Eigen::MatrixXd& second,

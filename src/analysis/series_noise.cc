@@ -11,7 +11,7 @@
 namespace lacuna {
 namespace {
 
-constexpr int kLags = 8;  // in the long-run variance
+constexpr int kLags = 8;  // number of lags in the long-run variance
 // Series with fewer frames do not allow an estimate of the correlation.
 constexpr size_t kFewestFrames = 8;
 // Noise with a larger lag-one correlation cannot be distinguished from motion.

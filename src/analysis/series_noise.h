@@ -4,7 +4,7 @@
 //   e ~ N(0, σ² R + s² 1 1ᵀ),   R_ij = exp(−|t_i − t_j|/τ).
 // Its first part is correlated over a time τ (an Ornstein–Uhlenbeck process; white for τ = 0). The
 // second part is an offset common to all frames, since the position of a marker on the object is
-// known to within s only. The offset moves with the material: if the deformation gradient F_t at
+// known only to within s. The offset moves with the material: if the deformation gradient F_t at
 // the marker is given, the three coordinates have the covariance s² F_t F_uᵀ between the frames t
 // and u. A value that is the mean of n measurements has σ/√n in place of σ.
 //
@@ -19,8 +19,8 @@ namespace lacuna {
 
 struct SeriesLayout {
   int series = 0;             // number of series
-  std::vector<double> times;  // s, of the frames, ascending
-  std::vector<int> count;     // series × frames: n of the mean; 0 where nothing was observed
+  std::vector<double> times;  // s, times of the frames, ascending
+  std::vector<int> count;     // series × frames: n of each mean; 0 where nothing was observed
   // (series/3) × frames: F at the point whose coordinates are three consecutive series. Empty: the
   // offset is constant and the series are independent.
   std::vector<Eigen::Matrix3d> deformation;

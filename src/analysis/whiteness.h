@@ -26,7 +26,7 @@ double ChiSquareTail(double statistic, int degrees_of_freedom);
 // distribution would require independent rows and is inaccurate in the far tail. Every call uses
 // the same orders.
 struct TimeWhiteness {
-  int lags = 0;                 // h; 0: fewer than 10 frames in every row, and all below is NaN
+  int lags = 0;                 // h; 0: fewer than 10 frames in every row, then all below is NaN
   double statistic = kUnknown;  // Q
   double lag_one = kUnknown;    // ρ_1, pooled over the rows
   // The lag, in frames, at which the pooled ρ has decreased to 1/e, interpolated linearly. About
@@ -45,7 +45,7 @@ struct PointPair {
 };
 struct SpaceWhiteness {
   std::vector<PointPair> pairs;
-  double mean_correlation = kUnknown;  // over the pairs
+  double mean_correlation = kUnknown;  // mean over the pairs
   // The length ℓ (m) of the correlation exp(−d/ℓ), by least squares over the pairs. 0 if it is
   // below a tenth of the smallest distance, infinite if it is above ten times the largest.
   double correlation_length = kUnknown;

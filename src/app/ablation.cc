@@ -19,7 +19,7 @@ int RunAblation(const Table1Arguments& arguments) {
   Progress progress;
   const Table1Result result = RunTable1(study, options, &progress);
   WriteAblation(study, result, options.output);
-  fmt::print("{}\nThe table lies in {}: ablation.txt, ablation.json and ablation.csv\n",
+  fmt::print("{}\nThe table was written to {}: ablation.txt, ablation.json and ablation.csv\n",
              AblationText(study, result), options.output.string());
   return ExitCode(result);
 }
@@ -28,11 +28,11 @@ int RunAblation(const Table1Arguments& arguments) {
 
 void AddAblation(CLI::App* app, std::function<int()>* command) {
   CLI::App* ablation = app->add_subcommand(
-      "ablation", "The outer search with one thing changed at a time, and what each change does");
+      "ablation",
+      "Repeat the outer search with one setting changed at a time, and report the effect of each");
   ablation->footer(
-      "Each .yaml file in the folder is a row (docs/search.md). Stopped at any evaluation, it "
-      "goes\n"
-      "on from there.");
+      "Each .yaml file in the folder is a row of the table (docs/search.md). An interrupted run\n"
+      "continues at the evaluation where it stopped.");
   auto arguments = std::make_shared<Table1Arguments>();
   arguments->folder = "experiments/ablation";
   Table1Options& options = arguments->options;

@@ -21,10 +21,10 @@ namespace {
 
 [[noreturn]] void Refuse(const std::string& type, const std::string& why) {
   throw InputError(fmt::format(
-      "{} cannot be added by itself: {}; write it into the experiment's `effects`", type, why));
+      "{} cannot be added automatically: {}; write it into the experiment's `effects`", type, why));
 }
 
-// What can be told before the computation.
+// Checks what can be checked before the computation. Throws InputError.
 void RequireAddable(const std::string& type, const PredictionStudy& study) {
   std::vector<std::string> known;
   for (const OwnLaw& law : study.candidates) known.push_back(law.name);
@@ -39,11 +39,11 @@ void RequireAddable(const std::string& type, const PredictionStudy& study) {
       std::any_of(study.effects.begin(), study.effects.end(),
                   [&](const auto& effect) { return effect->Card().type == type; });
   if (is_there && !entry->card->repeatable)
-    throw InputError(fmt::format("{}: the model has it already", type));
+    throw InputError(fmt::format("{}: the model already has this effect", type));
   if (entry->make == nullptr)
     throw InputError(fmt::format(
-        "{} is not one effect: write a law of your own into the experiment's `candidates`, and add "
-        "it by its name (docs/expression.md)",
+        "{} stands for any user-defined law: write the law into the experiment's `candidates`, and "
+        "add it by its name (docs/expression.md)",
         type));
 }
 
@@ -52,13 +52,13 @@ const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& 
     if (effect.candidate.type == type) return effect;
   for (const UntriedEffect& effect : ranking.untried)
     if (effect.type == type) Refuse(type, effect.why);
-  Refuse(type, "its size has no null value");
+  Refuse(type, "none of its parameters has a value at which it vanishes");
 }
 
 int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const FittedRun fitted = OpenRun(run);
   RequireAddable(type, fitted.study);
-  // One that cannot be written into is told before the computation, too.
+  // A folder that cannot be written to is reported before the computation, too.
   MakeFolder(std::filesystem::absolute(run / "..").lexically_normal());
   Progress progress;
   std::optional<ScoredEffect> diagnosed = FindDiagnosed(fitted, run, type);
@@ -78,24 +78,26 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   fmt::print("\nbefore\n{}", CalibrationReport(fitted.record));
   fmt::print("\nwith {}\n{}", type, CalibrationReport(record));
   if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
-  fmt::print("\nThe experiment is {}\nThe run lies in {}\n", file.string(), study.output.string());
+  fmt::print("\nThe experiment was written to {}\nThe run was written to {}\n", file.string(),
+             study.output.string());
   return record.usable ? 0 : 1;
 }
 
 }  // namespace
 
 void AddAdd(CLI::App* app, std::function<int()>* command) {
-  CLI::App* add = app->add_subcommand("add", "A fitted model with one more effect, fitted again");
+  CLI::App* add = app->add_subcommand("add", "Add one effect to a fitted model and fit it again");
   add->footer(
-      "Writes an experiment, NAME+EFFECT.yaml for one called NAME, beside RUN, which starts from\n"
-      "RUN's fitted values, and runs it: errors before and after, on fitted and on held-out\n"
-      "frames. EFFECT is of the catalogue or a law of your own among the experiment's\n"
-      "`candidates`. An elasticity law takes the\n"
-      "place of the model's.");
+      "Writes the experiment NAME+EFFECT.yaml beside RUN, whose experiment is called NAME, and "
+      "runs\n"
+      "it from RUN's fitted values. The errors before and after are reported for the fitted and\n"
+      "for the held-out frames. EFFECT is an effect of the catalogue or a user-defined law from\n"
+      "the experiment's `candidates`. An elasticity law replaces that of the model.");
   auto run = std::make_shared<std::string>();
   auto effect = std::make_shared<std::string>();
-  add->add_option("run", *run, "The folder of a finished `lacuna fit`")->required();
-  add->add_option("effect", *effect, "Its name; `lacuna effects` lists the catalogue's")
+  add->add_option("run", *run, "Folder of a finished `lacuna fit`")->required();
+  add->add_option("effect", *effect,
+                  "Name of the effect; `lacuna effects` lists those of the catalogue")
       ->required();
   add->callback(
       [command, run, effect] { *command = [run, effect] { return RunAdd(*run, *effect); }; });

@@ -1,5 +1,5 @@
-// The commands of the program. Each adds itself to the command line and, when it is the one that
-// was given, becomes `*command`, which returns the exit status.
+// The commands of the program. Each function adds one command to the command line. If that command
+// is given, `*command` is set to a function that runs it and returns the exit status.
 #ifndef LACUNA_APP_COMMANDS_H_
 #define LACUNA_APP_COMMANDS_H_
 

@@ -56,7 +56,7 @@ int Compare(const CompareArguments& arguments) {
     return 0;
   }
   Comparison comparison = CompareRun(arguments.run);
-  // The fields of an earlier comparison may show another fit.
+  // Fields that an earlier comparison wrote may belong to another fit.
   for (size_t r = 0; r < comparison.residuals.size(); ++r)
     std::filesystem::remove_all(folder / std::to_string(r));
   Progress progress;

@@ -37,7 +37,7 @@ void PrintStep(const Ledger& ledger) {
   (void)fflush(stdout);
 }
 
-// Every model that could be fitted, with its error in the frames and recordings that were held out.
+// A picture of the held-out error of every model that could be fitted.
 LedgerPicture MakeLedgerPicture(const Ledger& ledger) {
   const LedgerModel& first = ledger.models.front();
   LedgerPicture picture;
@@ -45,12 +45,12 @@ LedgerPicture MakeLedgerPicture(const Ledger& ledger) {
   picture.title = fmt::format("{}: rms error in the {} frames", first.name, frames);
   for (const LedgerModel& model : ledger.models) {
     if (!model.record.usable) continue;
-    picture.models.push_back({picture.models.empty()       ? "model as given"
+    picture.models.push_back({picture.models.empty()       ? "initial model"
                               : picture.models.size() == 1 ? "with " + model.added
                                                            : "and with " + model.added,
                               model.errors.held_out_rms});
   }
-  // A scan's noise is that of its patches, which differs between recordings: no line for it.
+  // The noise of a scan's patches differs between recordings, so that no single line can show it.
   const bool has_scans = std::any_of(first.record.recordings.begin(), first.record.recordings.end(),
                                      [](const auto& recording) { return recording.scan; });
   if (!has_scans) picture.noise = std::sqrt(3.0) * first.record.noise;
@@ -64,11 +64,11 @@ int RunUntilDone(const DiagnoseArguments& arguments) {
   options.most_effects = arguments.most_effects;
   Progress progress;
   const Ledger ledger = ExtendUntilDone(arguments.run, options, &progress, PrintStep);
-  fmt::print("\n{}\n{} holds it, with all numbers in ledger.json\n", LedgerReport(ledger),
-             (std::filesystem::path(arguments.run) / "ledger.txt").string());
+  fmt::print("\n{}\nThis report was written to {}, and all numbers to ledger.json\n",
+             LedgerReport(ledger), (std::filesystem::path(arguments.run) / "ledger.txt").string());
   const std::filesystem::path picture = std::filesystem::path(arguments.run) / "ledger.png";
   const PictureResult drawn = RenderLedgerPng(picture, MakeLedgerPicture(ledger));
-  fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows the errors as a picture"
+  fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows these errors as a picture"
                                       : drawn.message);
   return ledger.IsUsable() ? 0 : 1;
 }
@@ -90,26 +90,25 @@ int RunDiagnose(const DiagnoseArguments& arguments) {
 
 void AddDiagnose(CLI::App* app, std::function<int()>* command) {
   CLI::App* diagnose =
-      app->add_subcommand("diagnose", "Which physical effect a fitted model lacks");
+      app->add_subcommand("diagnose", "Find the physical effect that a fitted model lacks");
   diagnose->footer(
-      "RUN is the folder of a finished `lacuna fit`. Every effect of the catalogue is scored "
-      "along\n"
-      "the fitted motion; the best are fitted, and judged by frames and recordings held out.\n"
-      "With --until-done what is missing is added and the new model diagnosed, until nothing can "
-      "be\n"
-      "named any more; RUN/ledger.txt tells what was tried and what it gained. Run again, it "
-      "resumes.");
+      "RUN is the folder of a finished `lacuna fit`. Every effect of the catalogue is scored by\n"
+      "linearisation along the fitted motion; the best are fitted and judged by the held-out\n"
+      "frames and recordings. With --until-done, the missing effect is added and the new model is\n"
+      "diagnosed in turn, until no effect can be named any more; RUN/ledger.txt lists what was\n"
+      "tried and how much it reduced the error. The same command resumes an interrupted run.");
   auto arguments = std::make_shared<DiagnoseArguments>();
-  diagnose->add_option("run", arguments->run, "The run's folder")->required();
-  diagnose->add_option("--refits", arguments->refits, "How many effects to fit")
+  diagnose->add_option("run", arguments->run, "Folder of the run")->required();
+  diagnose->add_option("--refits", arguments->refits, "How many of the best effects to fit")
       ->check(CLI::Range(1, 50));
-  CLI::Option* until_done = diagnose->add_flag("--until-done", arguments->until_done,
-                                               "Add what is missing, fit, diagnose again");
+  CLI::Option* until_done =
+      diagnose->add_flag("--until-done", arguments->until_done,
+                         "Add the missing effect, fit, diagnose again, and so on");
   diagnose
       ->add_flag("--follow-best", arguments->follow_best,
-                 "Add the best where the verdict is ambiguous; without it, stop there")
+                 "Where the verdict is ambiguous, add the best effect instead of stopping")
       ->needs(until_done);
-  diagnose->add_option("--most", arguments->most_effects, "How many effects to add at most")
+  diagnose->add_option("--most", arguments->most_effects, "Largest number of effects to add")
       ->check(CLI::Range(0, 50))
       ->needs(until_done);
   diagnose->callback(

@@ -20,16 +20,17 @@ int Effects(const std::string& type) {
     for (const CatalogueEntry& entry : Catalogue())
       if (entry.kind == kind) fmt::print("  {:26} {}\n", entry.card->type, entry.card->title);
   }
-  fmt::print("\nlacuna explain NAME tells one in full.\n");
+  fmt::print("\nlacuna explain NAME describes one of them in full.\n");
   return 0;
 }
 
 }  // namespace
 
 void AddEffects(CLI::App* app, std::function<int()>* command) {
-  CLI::App* effects = app->add_subcommand("effects", "List the physics that a model can have");
+  CLI::App* effects =
+      app->add_subcommand("effects", "List the physical effects that a model can have");
   auto type = std::make_shared<std::string>();
-  effects->add_option("name", *type, "Tell this one in full");
+  effects->add_option("name", *type, "Describe this effect in full");
   effects->callback([command, type] { *command = [type] { return Effects(*type); }; });
 }
 

@@ -63,7 +63,7 @@ bool IsDirection(const ParameterCard& parameter, size_t count) {
   return count == 3 && parameter.dimension.SameAs(kDimensionless);
 }
 
-// The card's default of one parameter, or of the `count` of a vector.
+// The default of parameter `k` of the card or, where `count` is 3, of the vector that starts there.
 std::string DefaultText(const CatalogueEntry& entry, size_t k, size_t count) {
   const ParameterCard& first = entry.card->parameters[k];
   if (std::isnan(first.default_value)) {
@@ -82,7 +82,8 @@ std::string DefaultText(const CatalogueEntry& entry, size_t k, size_t count) {
   return "default " + InUnit(count > 1 ? "[" + numbers + "]" : numbers, first.dimension);
 }
 
-// What the three components' meanings begin with: "direction of the pull" of "… along x".
+// The meaning of a vector, from that of its first component: "direction of the pull" from
+// "direction of the pull along x".
 std::string OfWholeVector(const std::string& meaning) {
   std::string common = meaning;
   const std::string component = " along x";
@@ -91,7 +92,7 @@ std::string OfWholeVector(const std::string& meaning) {
   return common;
 }
 
-// Of one parameter, or of the `count` of a vector.
+// Dimension, usual range, default and use in fits of the same parameter or vector.
 std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
   const ParameterCard& parameter = entry.card->parameters[k];
   std::string facts = parameter.dimension.name;
@@ -104,7 +105,7 @@ std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
                     parameter.dimension);
   }
   facts += "; " + DefaultText(entry, k, count);
-  if (parameter.setting) return facts + "; a setting: given, never fitted";
+  if (parameter.setting) return facts + "; a setting, which is given and never fitted";
   facts += "; can be fitted";
   if (parameter.log_scale) facts += ", on a logarithmic scale";
   if (!std::isnan(parameter.null_value))
@@ -115,7 +116,7 @@ std::string Facts(const CatalogueEntry& entry, size_t k, size_t count) {
 void PrintParameters(const CatalogueEntry& entry) {
   const std::vector<ParameterCard>& parameters = entry.card->parameters;
   fmt::print("\nParameters\n");
-  if (parameters.empty()) PrintWrapped("Your own, as docs/expression.md describes.", 2);
+  if (parameters.empty()) PrintWrapped("User-defined, as docs/expression.md describes.", 2);
   for (size_t k = 0; k < parameters.size();) {
     const std::string vector = VectorNameAt(*entry.card, k);
     const size_t count = vector.empty() ? 1 : 3;
@@ -128,12 +129,12 @@ void PrintParameters(const CatalogueEntry& entry) {
 
 std::string Invariances(const EffectCard& card) {
   if (card.conserves_momentum && card.conserves_angular_momentum)
-    return "Internal: its forces and their torques sum to zero, so it neither moves nor turns a "
-           "body that nothing holds.";
+    return "Internal: its forces and torques sum to zero, so it neither moves nor turns a free "
+           "body.";
   if (card.conserves_momentum)
-    return "Its forces sum to zero, so it does not move a body that nothing holds; their torques "
-           "need not.";
-  return "Acts from outside: its forces need not sum to zero.";
+    return "Its forces sum to zero, so it does not move the centre of mass of a free body; its "
+           "torques need not sum to zero.";
+  return "An external load: its forces need not sum to zero.";
 }
 
 // Which variants of the effect a diagnosis tries.
@@ -175,7 +176,7 @@ std::string TriedAtText(const CatalogueEntry& entry) {
   return std::visit(Text(), entry.card->tried_at);
 }
 
-// A value in the middle of the plausible range, in two digits.
+// The default or, where there is none, the middle of the plausible range, rounded to two digits.
 double Typical(const ParameterCard& parameter) {
   if (!std::isnan(parameter.default_value)) return parameter.default_value;
   const double low = parameter.plausible_min, high = parameter.plausible_max;
@@ -183,8 +184,8 @@ double Typical(const ParameterCard& parameter) {
   return std::stod(fmt::format("{:.2g}", middle));
 }
 
-// Lines of YAML with what they come from: the first file of configs/effects about the effect, else
-// typical values.
+// An example in YAML and where it comes from: the first file of configs/effects about the effect
+// or, where there is none, typical parameter values.
 struct Snippet {
   std::string origin;
   std::string yaml;
@@ -208,7 +209,7 @@ Snippet SnippetOf(const CatalogueEntry& entry) {
   for (Eigen::Index k = 0; k < values.size(); ++k) values[k] = Typical(entry.card->parameters[k]);
   const std::string text = FormatEffect(*entry.make(values)).value();
   const bool is_material = entry.kind == CatalogueEntry::Kind::kMaterial;
-  return {"values in the middle of what is usual",
+  return {"with values in the middle of the usual ranges",
           is_material ? "material: " + text + "\n" : "effects:\n  - " + text + "\n"};
 }
 
@@ -223,24 +224,25 @@ int Explain(const std::string& type) {
   PrintSection("Source", card.citation);
   PrintParameters(entry);
   PrintSection("When it is missing", card.residual_when_missing);
-  PrintSection("To tell it apart", card.separating_experiment + ".");
+  PrintSection("How to distinguish it", card.separating_experiment + ".");
   if (const auto look_alikes = LookAlikesOf(card); !look_alikes.empty()) {
-    fmt::print("\nEasily taken for\n");
+    fmt::print("\nEasily mistaken for\n");
     for (const std::string& other : look_alikes)
       fmt::print("  {:22} {}\n", other, FindEntry(other)->card->title);
   }
   PrintSection("In a diagnosis", TriedAtText(entry));
   PrintSection("Invariances",
-               Invariances(card) + (card.repeatable ? " A model may have several of it." : ""));
+               Invariances(card) + (card.repeatable ? " A model may have several of them." : ""));
   const Snippet snippet = SnippetOf(entry);
-  fmt::print("\nTo paste ({})\n{}", snippet.origin, snippet.yaml);
+  fmt::print("\nExample ({})\n{}", snippet.origin, snippet.yaml);
   return 0;
 }
 
 void AddExplain(CLI::App* app, std::function<int()>* command) {
-  CLI::App* explain = app->add_subcommand("explain", "Tell all about one effect");
+  CLI::App* explain = app->add_subcommand("explain", "Describe one effect in full");
   auto type = std::make_shared<std::string>();
-  explain->add_option("effect", *type, "Its name, as `lacuna effects` lists it")->required();
+  explain->add_option("effect", *type, "Name of the effect, as `lacuna effects` lists it")
+      ->required();
   explain->callback([command, type] { *command = [type] { return Explain(*type); }; });
 }
 

@@ -1,4 +1,4 @@
-// An effect in full, for people: `lacuna explain NAME` and `lacuna effects NAME`.
+// The full description of an effect: `lacuna explain NAME` and `lacuna effects NAME`.
 #ifndef LACUNA_APP_EXPLAIN_H_
 #define LACUNA_APP_EXPLAIN_H_
 
@@ -6,8 +6,8 @@
 
 namespace lacuna {
 
-// Prints all that the card of this effect says, and YAML to paste. Throws InputError with the
-// nearest name when there is no such effect. Returns the exit status.
+// Prints the whole card of this effect, and an example in YAML. Throws InputError with the nearest
+// name when there is no such effect. Returns the exit status.
 int Explain(const std::string& type);
 
 }  // namespace lacuna

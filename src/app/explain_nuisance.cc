@@ -27,12 +27,12 @@ std::string InADiagnosis(const NuisanceCard& card) {
   std::string text = card.is_always_in_model
                          ? "Part of every model with which a diagnosis compares effects."
                          : "Enters the model if its evidence clearly exceeds that of every effect; "
-                           "otherwise it is "
-                           "a rival of the effects.";
+                           "otherwise it competes with the effects as an explanation.";
   if (card.acts_on_single_frames)
     text += " It differs from frame to frame, so it predicts nothing for held-out frames.";
   if (card.outgrows_first_order)
-    text += " First order underrates it, so it is a rival with less evidence already.";
+    text +=
+        " A first-order prediction underestimates it, so less evidence suffices for it to count.";
   if (card.shrinks_with_time_step)
     text += " The diagnosis may shorten a time step that the experiment leaves open.";
   return text;

@@ -1,4 +1,4 @@
-// A nuisance in full, for people: `lacuna explain time_jitter`.
+// The full description of a nuisance, for example `lacuna explain time_jitter`.
 #ifndef LACUNA_APP_EXPLAIN_NUISANCE_H_
 #define LACUNA_APP_EXPLAIN_NUISANCE_H_
 

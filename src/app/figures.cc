@@ -31,7 +31,7 @@ bool IsWanted(const Arguments& arguments, int figure) {
          std::find(arguments.only.begin(), arguments.only.end(), figure) != arguments.only.end();
 }
 
-// Tells of the figure; whether it was drawn.
+// Prints the text of the figure and, if it was not drawn, the reason. Returns whether it was drawn.
 bool Told(int figure, const std::string& text, const PictureResult& picture) {
   fmt::print("{}\n", text);
   if (!picture.IsUsable()) fmt::print(stderr, "lacuna: figure {}: {}\n", figure, picture.message);
@@ -44,7 +44,7 @@ bool MakeDrop(const Arguments& arguments, Progress* progress) {
   return Told(1, DropText(runs), WriteDropFigure(study, runs, arguments.output));
 }
 
-// The figures that come from Table 1's recording.
+// Figures 3 to 6, which come from Table 1's recording.
 bool MakeOthers(const Arguments& arguments, Progress* progress) {
   const Table1FigureSettings settings =
       ReadTable1Figures(Config::Load(fs::path(arguments.folder) / "figures3to6.yaml"));
@@ -76,7 +76,7 @@ int RunFigures(const Arguments& arguments) {
   if (IsWanted(arguments, 1)) all = MakeDrop(arguments, &progress);
   const auto wants = [&](int figure) { return IsWanted(arguments, figure); };
   if (wants(3) || wants(4) || wants(5) || wants(6)) all = MakeOthers(arguments, &progress) && all;
-  fmt::print("The figures lie in {}\n", arguments.output);
+  fmt::print("The figures were written to {}\n", arguments.output);
   return all ? 0 : 1;
 }
 
@@ -84,12 +84,13 @@ int RunFigures(const Arguments& arguments) {
 
 void AddFigures(CLI::App* app, std::function<int()>* command) {
   CLI::App* figures = app->add_subcommand(
-      "figures", "The paper's Figures 1 and 3 to 6, and the numbers behind them");
+      "figures", "Draw the paper's Figures 1 and 3 to 6, and write the numbers behind them");
   figures->footer(
       "FOLDER holds figure1.yaml and figures3to6.yaml, which say what is drawn (docs/figures.md).\n"
       "Figure 6 shows the optima of Table 1: run `lacuna table1` before it.");
   auto arguments = std::make_shared<Arguments>();
-  figures->add_option("folder", arguments->folder, "What to draw (experiments/figures)");
+  figures->add_option("folder", arguments->folder,
+                      "Folder of the figures' settings (experiments/figures)");
   figures->add_option("-o,--output", arguments->output, "Folder of the figures (results/figures)");
   figures->add_option("--table1", arguments->table1,
                       "Folder where `lacuna table1` left its results (results/table1)");

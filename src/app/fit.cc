@@ -23,25 +23,25 @@ int Fit(const std::string& file) {
   fmt::print("{}", CalibrationReport(record));
   if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
   fmt::print(
-      "\nThe run lies in {}\n"
-      "  calibration/calibration.json   parameters with intervals, errors\n",
+      "\nThe run was written to {}\n"
+      "  calibration/calibration.json   parameters with intervals, and errors\n",
       study.output.string());
   if (std::filesystem::exists(study.output / "calibration/misfit.csv"))
     fmt::print(
-        "  calibration/misfit.csv         each marker, or patch of a surface, of each frame\n");
+        "  calibration/misfit.csv         residual of each marker, or surface patch, in each "
+        "frame\n");
   return record.usable ? 0 : 1;
 }
 
 }  // namespace
 
 void AddFit(CLI::App* app, std::function<int()>* command) {
-  CLI::App* fit =
-      app->add_subcommand("fit", "Fit a model that predicts to recordings, with intervals");
+  CLI::App* fit = app->add_subcommand(
+      "fit", "Fit the parameters of a predictive model to recordings, with intervals");
   fit->footer(
-      "The experiment names recordings, the model and which of its parameters are unknown;\n"
-      "experiments/silicone_beam.yaml is one. Frames and recordings that are held out are "
-      "predicted\n"
-      "and compared, never fitted. Run again, it resumes by stage.");
+      "The experiment names the recordings, the model and its unknown parameters;\n"
+      "experiments/silicone_beam.yaml is an example. Held-out frames and recordings are predicted\n"
+      "and compared, never fitted. The same command resumes an interrupted run at its stage.");
   auto file = std::make_shared<std::string>();
   fit->add_option("experiment", *file, "The experiment's YAML file")->required();
   fit->callback([command, file] { *command = [file] { return Fit(*file); }; });

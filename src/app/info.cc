@@ -60,7 +60,8 @@ void DescribeRun(const std::filesystem::path& folder) {
   for (const auto& [stage, result] : manifest.stages)
     fmt::print("  stage {:10} {} files\n", stage, result.files.size());
   if (!manifest.finished) return;
-  for (const auto& [stage, result] : manifest.stages) FinishedStage(folder, stage);  // whole?
+  for (const auto& [stage, result] : manifest.stages)
+    FinishedStage(folder, stage);  // throws where it is damaged
   if (manifest.stages.count("calibration") > 0) {
     fmt::print("{}", CalibrationReport(LoadCalibration(folder)));
     const std::filesystem::path diagnosis = folder / "diagnosis" / "diagnosis.json";
@@ -97,7 +98,7 @@ int Info(const std::filesystem::path& path) {
     DescribeTets(path);
   } else {
     throw InputError(SourcePosition{path.string()},
-                     "is neither a recording, a run nor a mesh that Lacuna knows");
+                     "is neither a recording, a run nor a mesh of a known format");
   }
   return 0;
 }
@@ -105,7 +106,7 @@ int Info(const std::filesystem::path& path) {
 }  // namespace
 
 void AddInfo(CLI::App* app, std::function<int()>* command) {
-  CLI::App* info = app->add_subcommand("info", "Tell what a recording, a mesh or a run holds");
+  CLI::App* info = app->add_subcommand("info", "Show what a recording, a mesh or a run contains");
   auto path = std::make_shared<std::string>();
   info->add_option("file", *path, "A recording (its folder or recording.yaml), a mesh, or a run")
       ->required();

@@ -1,4 +1,5 @@
-// lacuna: one small function per command; here the command line and the three kinds of failure.
+// lacuna: the command line, and the exit status of each kind of failure. Each command has a file of
+// its own.
 #include <fmt/format.h>
 #include <glog/logging.h>
 
@@ -56,12 +57,12 @@ int main(int argc, char** argv) {
       "it."};
   app.footer(kFooter);
   app.set_version_flag("--version", lacuna::ProgramVersion());
-  app.allow_extras();  // told below, with what was meant
+  app.allow_extras();  // reported below, with a suggestion
   int threads = 0;
   bool verbose = false;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  app.add_flag("-v,--verbose", verbose, "Log what the stages do");
+  app.add_flag("-v,--verbose", verbose, "Log the progress of the stages in detail");
 
   std::function<int()> command;
   lacuna::AddReconstruct(&app, &command);
@@ -86,8 +87,10 @@ int main(int argc, char** argv) {
   if (!app.remaining(true).empty()) {
     const std::string unexpected = app.remaining(true).front();
     fmt::print(stderr, "lacuna: {}\n",
-               command ? fmt::format("\"{}\" was not expected; --help tells what is", unexpected)
-                       : UnknownCommand(app, unexpected));
+               command
+                   ? fmt::format("unexpected argument \"{}\"; --help lists those that are known",
+                                 unexpected)
+                   : UnknownCommand(app, unexpected));
     return kUnusableInput;
   }
   if (!command) {

@@ -40,7 +40,7 @@ void PrintSummary(const RunRecord& record, const std::filesystem::path& output) 
   for (const auto& [name, value] : record.measures) fmt::print("{:32} {:.6g}\n", name, value);
   for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
   fmt::print(
-      "\nThe run lies in {}\n"
+      "\nThe run was written to {}\n"
       "  results/record.json, frames.csv         the numbers\n"
       "  results/last_frame.png                   the model and the scan\n"
       "  results/body.pvd, surface.pvd, scan.pvd  open in ParaView\n"
@@ -62,13 +62,13 @@ int Reconstruct(const std::string& file) {
 }  // namespace
 
 void AddReconstruct(CLI::App* app, std::function<int()>* command) {
-  CLI::App* reconstruct =
-      app->add_subcommand("reconstruct", "From a recording to a model with per-step forces");
+  CLI::App* reconstruct = app->add_subcommand(
+      "reconstruct", "Reconstruct a moving model with per-step forces from a recording");
   reconstruct->footer(
-      "The experiment file names a recording and says how to mesh, what material, which forces;\n"
-      "experiments/bend.yaml is one with comments. Run again, it resumes by stage. Progress goes "
-      "to\n"
-      "standard error: a line that renews itself on a terminal, JSON lines elsewhere.");
+      "The experiment file names a recording, the mesh settings, the material and the forces;\n"
+      "experiments/bend.yaml is an example with comments. The same command resumes an interrupted\n"
+      "run at its stage. Progress is written to standard error: one line that is updated in place\n"
+      "on a terminal, JSON lines elsewhere.");
   auto file = std::make_shared<std::string>();
   reconstruct->add_option("experiment", *file, "The experiment's YAML file")->required();
   reconstruct->callback([command, file] { *command = [file] { return Reconstruct(*file); }; });

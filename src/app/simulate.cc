@@ -20,7 +20,7 @@ struct Arguments {
   std::string recording;
 };
 
-// The trajectory for ParaView, and the loads as a table.
+// Writes the trajectory for ParaView, and the loads as a table.
 void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& folder) {
   std::vector<TimedFile> series;
   Eigen::MatrixXd loads(static_cast<Eigen::Index>(motion.times.size()), 4);
@@ -46,7 +46,7 @@ void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& fol
 int Simulate(const Arguments& arguments) {
   const Scene scene = ReadScene(Config::Load(arguments.scene));
   if (!arguments.recording.empty() && !scene.scanner)
-    throw InputError(SourcePosition{arguments.scene}, "has no scanner to make a recording with");
+    throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
   const std::filesystem::path output =
       arguments.output.empty() ? "results/" + scene.name + "_simulation" : arguments.output;
   MakeFolder(output);
@@ -66,10 +66,10 @@ int Simulate(const Arguments& arguments) {
                return 1e3 * largest;
              }());
   WriteSimulation(motion, output);
-  fmt::print("The trajectory lies in {}\n", (output / "body.pvd").string());
+  fmt::print("The trajectory was written to {}\n", (output / "body.pvd").string());
   if (!arguments.recording.empty()) {
     WriteSceneRecording(scene, motion, arguments.recording);
-    fmt::print("The recording lies in {}\n", arguments.recording);
+    fmt::print("The recording was written to {}\n", arguments.recording);
   }
   return 0;
 }
@@ -84,7 +84,7 @@ void AddSimulate(CLI::App* app, std::function<int()>* command) {
   simulate->add_option("-o,--output", arguments->output,
                        "Folder for the trajectory (default: results/<name>_simulation)");
   simulate->add_option("--recording", arguments->recording,
-                       "Folder for the scans; an ordinary recording that reconstruct reads");
+                       "Folder for the scans, a recording like any other that `reconstruct` reads");
   simulate->callback(
       [command, arguments] { *command = [arguments] { return Simulate(*arguments); }; });
 }

@@ -17,8 +17,9 @@ int RunTable(const Table1Arguments& arguments) {
   Progress progress;
   const Table1Result result = RunTable1(study, options, &progress);
   WriteTable1(study, result, options.output);
-  fmt::print("{}\nThe table lies in {}: table1.txt, table1.json, traces.svg and a .csv a search\n",
-             Table1Text(study, result), options.output.string());
+  fmt::print(
+      "{}\nThe table was written to {}: table1.txt, table1.json, traces.svg, one .csv per search\n",
+      Table1Text(study, result), options.output.string());
   return ExitCode(result);
 }
 
@@ -26,11 +27,12 @@ int RunTable(const Table1Arguments& arguments) {
 
 void AddTable1(CLI::App* app, std::function<int()>* command) {
   CLI::App* table = app->add_subcommand(
-      "table1", "The paper's Table 1: search (q, v), (y, p) and all four, and say what holds");
+      "table1",
+      "Repeat the paper's Table 1: search (q, v), (y, p) and all four, and check its claims");
   table->footer(
-      "Each .yaml file in the folder is a row: a reconstruction without recording, the scene that\n"
-      "makes one, and a search (docs/search.md). Stopped at any evaluation, it goes on from "
-      "there.");
+      "Each .yaml file in the folder is a row of the table: a reconstruction without a recording,\n"
+      "the scene that makes one, and a search (docs/search.md). An interrupted run continues at\n"
+      "the evaluation where it stopped.");
   auto arguments = std::make_shared<Table1Arguments>();
   arguments->folder = "experiments/table1";
   AddTable1Arguments(table, arguments.get());

@@ -9,13 +9,16 @@ namespace lacuna {
 void AddTable1Arguments(CLI::App* command, Table1Arguments* arguments) {
   Table1Options& options = arguments->options;
   command->add_option("folder", arguments->folder,
-                      fmt::format("The experiment files ({})", arguments->folder));
+                      fmt::format("Folder of the experiment files ({})", arguments->folder));
   command->add_option("-o,--output", options.output,
                       fmt::format("Folder of the results ({})", options.output.string()));
   command
-      ->add_option("--seeds", options.seeds, "Scans, starts and meshes to repeat the searches with")
+      ->add_option("--seeds", options.seeds,
+                   "How often to repeat the searches, each with other scans, starts and meshes")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--turns", options.turns, "Meshes from which to tell the mesh noise")
+  command
+      ->add_option("--turns", options.turns,
+                   "Number of meshes from which to estimate the mesh noise")
       ->check(CLI::Range(0, 1000));
 }
 

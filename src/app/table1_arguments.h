@@ -1,4 +1,4 @@
-// What the commands that repeat Table 1's searches take from the command line.
+// The command-line arguments that `lacuna table1` and `lacuna ablation` share.
 #ifndef LACUNA_APP_TABLE1_ARGUMENTS_H_
 #define LACUNA_APP_TABLE1_ARGUMENTS_H_
 
@@ -13,14 +13,14 @@ class App;
 namespace lacuna {
 
 struct Table1Arguments {
-  std::string folder;  // of the experiment files
+  std::string folder;  // folder of the experiment files
   Table1Options options;
 };
 
-// The folder, --output, --seeds and --turns; what stands in `arguments` are the defaults.
+// Adds the folder, --output, --seeds and --turns. The values in `arguments` are the defaults.
 void AddTable1Arguments(CLI::App* command, Table1Arguments* arguments);
 
-// 0 where every search found something.
+// 0 if every search found a usable result, otherwise 1.
 int ExitCode(const Table1Result& result);
 
 }  // namespace lacuna

@@ -1,4 +1,5 @@
-// lacuna-trials: makes sealed cases, diagnoses them, and tells how often the diagnosis was right.
+// lacuna-trials: makes sealed cases, synthetic recordings with a known missing effect, diagnoses
+// them without knowing it, and reports how often the diagnosis was right.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,19 +23,23 @@ int Report(const std::filesystem::path& folder) {
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app("Sealed cases for the diagnosis: a truth with a hidden effect, a model without it");
+  CLI::App app(
+      "Sealed cases test the diagnosis on recordings simulated with an effect that the model "
+      "lacks");
   app.require_subcommand(1);
   std::string suite, folder;
   int workers = 2;
   CLI::App* make = app.add_subcommand("make", "Make the cases of a suite");
-  make->add_option("suite", suite, "experiments/trials/*.yaml")->required();
-  make->add_option("folder", folder, "Where to")->required();
-  make->add_option("--workers", workers, "Processes at a time")->check(CLI::Range(1, 64));
+  make->add_option("suite", suite, "The suite's YAML file, experiments/trials/*.yaml")->required();
+  make->add_option("folder", folder, "Folder for the cases")->required();
+  make->add_option("--workers", workers, "Number of processes that run at the same time")
+      ->check(CLI::Range(1, 64));
   CLI::App* run = app.add_subcommand("run", "Diagnose the cases that have no outcome yet");
-  run->add_option("folder", folder, "Of the cases")->required();
-  run->add_option("--workers", workers, "Processes at a time")->check(CLI::Range(1, 64));
-  CLI::App* report = app.add_subcommand("report", "How often the diagnosis was right");
-  report->add_option("folder", folder, "Of the cases")->required();
+  run->add_option("folder", folder, "Folder of the cases")->required();
+  run->add_option("--workers", workers, "Number of processes that run at the same time")
+      ->check(CLI::Range(1, 64));
+  CLI::App* report = app.add_subcommand("report", "Report how often the diagnosis was right");
+  report->add_option("folder", folder, "Folder of the cases")->required();
   CLI11_PARSE(app, argc, argv);
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
@@ -43,7 +48,7 @@ int Main(int argc, char** argv) {
   } catch (const InputError& problem) {
     fmt::print(stderr, "{}\n", problem.what());
   } catch (const Interrupted&) {
-    fmt::print(stderr, "stopped; run it again to go on\n");
+    fmt::print(stderr, "stopped; run the same command again to resume\n");
   }
   return 1;
 }

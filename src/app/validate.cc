@@ -25,28 +25,28 @@ int Validate(const std::filesystem::path& path, bool show) {
     const Recording recording = LoadRecording(path);
     for (int frame = 0; frame < recording.FrameCount(); ++frame) LoadFrame(recording, frame);
     for (const std::string& warning : recording.warnings) fmt::print("warning: {}\n", warning);
-    fmt::print("{}: a sound recording of {} frames\n", path.string(), recording.FrameCount());
+    fmt::print("{}: a valid recording of {} frames\n", path.string(), recording.FrameCount());
     resolved = nlohmann::json::parse(recording.resolved);
   } else {
     const Config config = Config::Load(path);
     if (config.Has("bar")) {
       ReadScene(config);
-      fmt::print("{}: a sound scene\n", path.string());
+      fmt::print("{}: a valid scene\n", path.string());
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
       for (const std::string& warning : StudyWarnings(study)) fmt::print("warning: {}\n", warning);
       const ReferenceBody body = MakeReferenceBody(study);
       for (const std::string& note : body.notes) fmt::print("warning: the mesh: {}\n", note);
-      const CalibrationProblem problem(study, body.mesh);  // its recordings on that mesh
+      const CalibrationProblem problem(study, body.mesh);  // checks the recordings on that mesh
       fmt::print(
-          "{}: a sound experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
+          "{}: a valid experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
           path.string(), study.recordings.size(), study.recordings.size() == 1 ? "" : "s",
           body.mesh.NodeCount(), problem.parameters().size());
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
       for (const std::string& warning : study.recording.warnings)
         fmt::print("warning: {}\n", warning);
-      fmt::print("{}: a sound experiment on {} frames of \"{}\"\n", path.string(),
+      fmt::print("{}: a valid experiment on {} frames of \"{}\"\n", path.string(),
                  study.frames.size(), study.recording.name);
     }
     resolved = config.Resolved();
@@ -59,8 +59,7 @@ int Validate(const std::filesystem::path& path, bool show) {
 
 void AddValidate(CLI::App* app, std::function<int()>* command) {
   CLI::App* validate = app->add_subcommand(
-      "validate",
-      "Check an experiment, a scene or a recording: what `fit` would refuse is refused here");
+      "validate", "Check an experiment, a scene or a recording, as `fit` does before it starts");
   auto path = std::make_shared<std::string>();
   auto show = std::make_shared<bool>(false);
   validate->add_option("file", *path, "The YAML file, or a recording's folder")->required();

@@ -9,18 +9,19 @@
 namespace lacuna {
 namespace {
 
-// Share of the fitted time in which the object moves that is fitted first.
+// The short horizon covers this share of the fitted time in which the object moves.
 constexpr double kShortHorizon = 0.25;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-// A fit that may be astray is tried from these parts of the moduli's start values.
+// Where a fit may have ended in a local minimum, it is repeated with the start values of the moduli
+// multiplied by each of these factors.
 constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
-// Of a fit to scans: correspondences are taken anew after so many iterations, as an exact fit to
-// wrong ones is worth nothing, and have settled when no parameter moves by more than this part of
-// its posterior deviation.
+// A fit to scans searches for correspondences again after at most this many iterations, because an
+// exact fit to wrong correspondences is useless. They have settled when no parameter changes by
+// more than `kSettled` times its posterior standard deviation.
 constexpr int kIterationsOfRound = 12;
 constexpr double kSettled = 0.1;
 
-// Of any parameter, in parts of its posterior deviation.
+// The largest change of a parameter, in units of its posterior standard deviation.
 double LargestChange(const std::vector<CalibratedParameter>& parameters,
                      const Calibration& calibration, const Eigen::VectorXd& from) {
   double largest = 0;
@@ -31,18 +32,18 @@ double LargestChange(const std::vector<CalibratedParameter>& parameters,
   return largest;
 }
 
-// s after its start: when the last fitted frame is that hardly differs from the first. Rest tells
-// nothing of what moves. Of scans, whose points are others in every frame, the start.
+// The time, s after the recording's start, of the last fitted frame before the markers move. 0 for
+// scans, whose points differ from frame to frame.
 double BeginningOfMotion(const RecordingModel& model, const std::vector<int>& frames) {
-  constexpr double kHardly = 0.03;  // of the largest difference
+  constexpr double kHardly = 0.03;  // fraction of the largest displacement that counts as rest
   if (model.Markers() == nullptr) return 0;
   const Recording& recording = model.item().recording;
   const Eigen::Matrix3Xd& first = recording.markers.positions[frames.front()];
-  std::vector<double> moved;  // of the marker that moved farthest, m
+  std::vector<double> moved;  // for each frame: m, largest displacement of a marker
   for (const int frame : frames) {
     double most = 0;
     for (const double distance : (recording.markers.positions[frame] - first).colwise().norm())
-      if (distance > most) most = distance;  // not one that was not seen
+      if (distance > most) most = distance;  // false for NaN, a marker that was not observed
     moved.push_back(most);
   }
   const double least = kHardly * *std::max_element(moved.begin(), moved.end());
@@ -69,7 +70,7 @@ class Fitter {
     progress_.Begin(name, 0);
     Calibration calibration =
         problem_.HasScans() ? FitScans(horizon, start, options) : FitOnce(horizon, start, options);
-    progress_.Report(evaluations_, calibration.rms);  // not of the last values tried
+    progress_.Report(evaluations_, calibration.rms);  // replaces that of the last values tried
     progress_.End(calibration.message);
     calibration.predictions = evaluations_;
     return calibration;
@@ -82,7 +83,7 @@ class Fitter {
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
     const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
     Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kLocalMinimumSuspected});
-    // "Before" is where the caller started, not where the first part ended.
+    // The initial error is that at the caller's start values, not at the end of the first part.
     calibration.start_rms = Left(problem_, start);
     return calibration;
   }
@@ -121,7 +122,7 @@ class Fitter {
       const double moved = LargestChange(problem_.parameters(), calibration, values);
       values = calibration.parameters;
       if (moved < kSettled) {
-        // A round need not have converged to the last digit when all of it changed so little.
+        // So small a change is accepted even if the round itself has not converged.
         calibration.usable = true;
         calibration.message.clear();
         return calibration;
@@ -130,9 +131,9 @@ class Fitter {
     }
     calibration.usable = false;
     calibration.message =
-        "scanned points and places of the surface did not settle: start nearer to the solution, "
-        "fit "
-        "less at once, or give scan.reach a smaller value";
+        "the correspondences between scanned points and the surface did not settle: start nearer "
+        "to "
+        "the solution, fit fewer parameters at once, or give scan.reach a smaller value";
     return calibration;
   }
 
@@ -190,8 +191,8 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
       if (problem.parameters()[k].log_scale && fitted[k].unit == "Pa")
         other[static_cast<Eigen::Index>(k)] *= factor;
     if (other == start) return calibration;
-    Calibration first =
-        fitter.Beginning(fmt::format("fit, moduli from {:g} of their start", factor), other);
+    Calibration first = fitter.Beginning(
+        fmt::format("fit, moduli from {:g} times their start values", factor), other);
     const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
     if (left >= least) continue;
     least = left;

@@ -1,8 +1,8 @@
 // Fits of a calibration problem, from a distant start or from near the solution.
 //
 // All fits use the fitted frames of the fitted recordings. The correspondences of scanned points
-// are kept during a fit and found anew after it, until the parameters settle; where they do not
-// settle, the result is not usable. Throw Interrupted.
+// are fixed during a fit and updated after it, until the parameters settle. If they do not settle,
+// the result is not usable. All functions throw Interrupted.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 #define LACUNA_CALIBRATION_CALIBRATION_FITS_H_
 

@@ -15,7 +15,8 @@
 namespace lacuna {
 namespace {
 
-// Correspondences mean nothing where fewer of a frame's points have one, in parts of the best's.
+// A frame is lost where the share of its points with a correspondence is less than this fraction of
+// the share in the best frame.
 constexpr double kFewestMatched = 0.5;
 
 std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& parameters,
@@ -27,7 +28,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<ModelParameter>& par
   return directions;
 }
 
-// Columns of one parameter's places added up.
+// Adds up the columns of the places of each parameter.
 Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
                               const Eigen::MatrixXd& by) {
   Eigen::MatrixXd sum =
@@ -39,13 +40,13 @@ Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
   return sum;
 }
 
-// Why the correspondences of a scan mean nothing; empty: they do.
+// The reason why the correspondences of a scan cannot be used; empty where they can.
 std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
   const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
   if (2 * lost <= misfit.frames.size()) return "";
   return fmt::format(
       "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
-      "surface: start nearer to the solution, or enlarge the reach",
+      "surface: start nearer to the solution, or increase scan.reach",
       lost, misfit.frames.size());
 }
 
@@ -248,7 +249,7 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
   Eigen::Index rows = 0;
   for (const Prediction& part : parts) {
     if (!part.usable) {
-      // The next prediction depends on none that did not reach the end.
+      // The result of the next prediction must not depend on one that has failed.
       known.equilibria = equilibria_before;
       if (seek) known.correspondences.clear();
       return part;
@@ -274,7 +275,7 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     const std::vector<MisfitDirection>& directions, const PredictionHints& hints) const {
   const RecordingModel model = ModelAt(r, values);
   const PredictedRecording& item = model.item();
-  // The clock comes last: its derivative is the speed, with the sign turned.
+  // The clock comes last: the derivative by its delay is minus the speed.
   std::vector<MisfitDirection> wanted;
   if (with_jacobian) wanted = DirectionsFor(model, directions);
   wanted.push_back({MisfitDirection::Kind::kClock});

@@ -1,4 +1,4 @@
-// The least-squares problem of a prediction study: its unknowns, and the residual that they leave.
+// The least-squares problem of a prediction study: its unknowns and its residual.
 //
 // The unknowns are the fitted parameters of the model and the nuisance parameters of each fitted
 // recording (its holding force, its clock, its registration). The residual is predicted minus
@@ -57,15 +57,17 @@ class CalibrationProblem {
 
   // The study's parameters, then the nuisances of each fitted recording.
   const std::vector<CalibratedParameter>& parameters() const { return parameters_; }
-  const std::string& UnitOf(size_t parameter) const { return units_[parameter]; }  // SI
+  const std::string& UnitOf(size_t parameter) const { return units_[parameter]; }  // SI unit
   Eigen::VectorXd Start() const;
   // The standard deviations that whiten the residuals, m: of a marker's coordinate, and of a
-  // scanned point along the surface normal. 0 where no recording has markers, or scans.
+  // scanned point along the surface normal. 0 where no recording has markers or scans,
+  // respectively.
   double noise() const { return noise_; }
   double scan_noise() const { return scan_noise_; }
   // The smallest variance of the noise that residuals of models may imply, relative to noise()².
-  // An estimate from eight frames at rest, or the larger one of two recordings, may be up to 1.4
-  // times too large, while the hundreds of rows of a residual determine σ within a few per cent.
+  // noise() may be up to 1.4 times too large where it was estimated from eight frames at rest, or
+  // where it is the larger estimate of two recordings, while the hundreds of rows of a residual
+  // determine σ within a few per cent.
   double LeastNoiseVariance() const { return estimates_noise_ ? 0.25 : 1; }
   MeasurementErrors ErrorsOf(const RecordingModel& model) const;
   const PredictionStudy& study() const { return study_; }
@@ -88,10 +90,10 @@ class CalibrationProblem {
   // and for scans.
   std::optional<size_t> RecordingWithSamePlaces(size_t recording) const;
 
-  // What one prediction of a fit hands on to the next.
+  // What the predictions of a fit reuse from earlier ones.
   struct FitMemory {
-    // For each recording, what its frames are compared with. Empty: the next prediction that
-    // reaches the end fills it in.
+    // For each recording, what its frames are compared with. If it is empty, the next prediction
+    // that succeeds fills it in.
     std::vector<std::vector<Observed>> correspondences;
     // For each recording, the equilibrium before the motion (3n, m), from which the search for the
     // next one starts.
@@ -100,7 +102,7 @@ class CalibrationProblem {
 
   // The whitened residual over the fitted frames up to `horizon` seconds after the start of each
   // recording, and its Jacobian. Scanned points correspond to the nearest places of the surface in
-  // this prediction or, where `memory` has correspondences, to those. Not usable, with a message,
+  // this prediction, unless `memory` already holds correspondences. Not usable, with a message,
   // where the simulation stops early or most points of a scan have no correspondence. The result
   // depends on the arguments alone, so that several threads may predict at once. Throws
   // Interrupted.
@@ -109,7 +111,7 @@ class CalibrationProblem {
                      FitMemory* memory = nullptr) const;
 
   // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
-  // the same for each recording. `same`: take the correspondences from there. `near`: of a similar
+  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a similar
   // model on the same mesh; the search for the equilibria starts from those there. Throws
   // Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
@@ -118,7 +120,7 @@ class CalibrationProblem {
                              const LinearisedMisfit* near = nullptr) const;
 
  private:
-  // The errors of the marker places as RecordingWithSamePlaces() has them, 3 × markers, m.
+  // The errors of the marker places, 3 × markers, m, estimated from RecordingWithSamePlaces().
   std::optional<Eigen::MatrixXd> PlacesFromFitted(size_t recording,
                                                   const Eigen::VectorXd& values) const;
   // The directions in which a recording's Misfit is differentiated: each place of the study's
@@ -135,7 +137,7 @@ class CalibrationProblem {
   Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
                               double horizon, const PredictionHints& hints, Misfit* misfit) const;
   struct LinearisedRecording {
-    std::string message;  // why it is not usable; empty: it is
+    std::string message;  // the reason why it is not usable; empty where it is
     LinearisedMisfit::Part part;
     Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
@@ -150,10 +152,10 @@ class CalibrationProblem {
   SurfacePatches patches_;
   std::vector<RecordingModel> models_;
   std::vector<CalibratedParameter> parameters_;
-  std::vector<std::string> units_;            // of the parameters
+  std::vector<std::string> units_;            // SI units of the parameters
   std::vector<Eigen::Index> first_nuisance_;  // −1 for a recording that is not fitted
   double noise_ = 0, scan_noise_ = 0;
-  bool estimates_noise_ = false;  // of markers, where there are no scans
+  bool estimates_noise_ = false;  // whether noise_ was estimated; false where there are scans
 };
 
 }  // namespace lacuna

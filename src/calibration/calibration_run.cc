@@ -19,7 +19,7 @@
 namespace lacuna {
 namespace {
 
-// Raised when the stage's code changes so that its result does.
+// Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
 constexpr int kCalibrationVersion = 14;
 
@@ -35,7 +35,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   const CalibrationProblem problem(study, reference.mesh);
   CalibrationStage stage;
   CalibrationRecord& record = stage.record;
-  // So that the folder of runs can be moved together with the experiments.
+  // A relative path, so that the runs can be moved together with the experiments.
   record.experiment =
       std::filesystem::absolute(study.file)
           .lexically_normal()
@@ -86,7 +86,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   return stage;
 }
 
-// Of the recordings' files, by their names in them.
+// Hashes of the recordings' files, by file name.
 std::map<std::string, std::string> InputHashes(const PredictionStudy& study) {
   std::map<std::string, std::string> hashes;
   for (const PredictedRecording& item : study.recordings)
@@ -151,8 +151,8 @@ void RefuseOtherRuns(const std::filesystem::path& run) {
   throw InputError({run.string()},
                    manifest.configuration.contains("recording")
                        ? "is a run of `lacuna reconstruct`, which fits forces until the model "
-                         "follows; needed is a prediction, a run of `lacuna fit`"
-                       : "is no run of `lacuna fit`");
+                         "follows the recording; a prediction is needed, a run of `lacuna fit`"
+                       : "is not a run of `lacuna fit`");
 }
 
 FittedRun OpenRun(const std::filesystem::path& run) {
@@ -167,10 +167,10 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   opened.study = ReadPredictionStudy(Config::Load(experiment));
   const Manifest manifest = LoadManifest(run / "manifest.json");
   const auto changed = [&](const std::string& what) {
-    return InputError(
-        fmt::format("{}: {} has changed since; run `lacuna fit` again", run.string(), what));
+    return InputError(fmt::format("{}: {} has changed since the fit; run `lacuna fit` again",
+                                  run.string(), what));
   };
-  // As text: a bound that is infinite is null in the file.
+  // Compared as text, because JSON writes an infinite bound as null.
   if (opened.study.configuration.dump() != manifest.configuration.dump())
     throw changed(experiment.string());
   const std::map<std::string, std::string> inputs = InputHashes(opened.study);

@@ -20,13 +20,13 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
 // The record of a finished run. Throws InputError where there is none.
 CalibrationRecord LoadCalibration(const std::filesystem::path& run);
 
-// A finished run that was opened again. Its experiment and recordings are read anew and must be
+// A finished run that was opened again. Its experiment and recordings are read again and must be
 // those that were fitted.
 struct FittedRun {
   PredictionStudy study;  // with its effects at the fitted values
   CalibrationRecord record;
   TetMesh mesh;
-  Eigen::VectorXd values;  // of all parameters of the problem
+  Eigen::VectorXd values;  // fitted values of all parameters of the problem
 };
 // Throws InputError when the folder is not that of a `lacuna fit`, the run is not finished or its
 // fit not usable, or when the experiment or a recording has changed since.

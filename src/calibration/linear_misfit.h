@@ -17,8 +17,9 @@ namespace lacuna {
 std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& parameters,
                                      const Eigen::VectorXd& values);
 
-// `values` after such changes, kept within the parameters' bounds. A parameter on a logarithmic
-// scale is multiplied by the exponential of its relative change.
+// `values` changed by `change`, in the units of PriorsAbout(), and kept within the parameters'
+// bounds. A parameter on a logarithmic scale is multiplied by the exponential of its relative
+// change.
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
@@ -30,10 +31,10 @@ Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit
 // The noise level with which hypotheses are compared.
 struct NoiseLevel {
   double correlation_time = 0;  // s
-  double variance = 1;          // of the whitened rows
+  double variance = 1;          // variance of the whitened rows
 };
 
-// The noise level that a residual `left` (rows, m) implies if all of it is noise: its correlation
+// The noise level that the residual `left` (rows, m) implies if all of it is noise: its correlation
 // time and its variance, which is at least `least` times that of the study.
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
                    Eigen::Index parameters, double least);

@@ -14,25 +14,29 @@
 namespace lacuna {
 namespace {
 
-// How much smaller elements are looked at, and how their error, of quadratic ones, goes beside a
-// clamped edge: with their volume to the power of about this.
+// The finer mesh has about kFineElements elements, but the ratio of the element volumes is kept
+// between these limits.
 constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+// Beside a clamped edge the error of quadratic elements is proportional to about this power of
+// their volume.
 constexpr double kVolumePower = 0.7;
-// Parameters are sought with time steps so many times as long on both meshes.
+// To save time, the parameters are sought with time steps that are longer by this factor, on both
+// meshes.
 constexpr double kLongSteps = 3;
 constexpr int kMostSteps = 4;
-constexpr double kSettled = 1;             // of ‖difference‖², σ²: a step gains no more
-constexpr double kShortestStep = 1.0 / 4;  // of a whole one
+constexpr double kSettled = 1;  // σ², smallest reduction of ‖difference‖² by a step
+constexpr double kShortestStep = 1.0 / 4;  // fraction of a full step
 
-// As few times as a study of the mesh needs.
+// The ratio of the element volumes: as small as a study of the mesh allows.
 double RatioFor(const CalibrationProblem& problem) {
   const double elements = static_cast<double>(problem.body()->ElementCount());
   return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
 }
 
-// What a mesh may change of the parameters: about a part of each, or of what is known of it before,
-// as directions that the motion leaves open would go astray; and no farther than `most`, part of
-// the way to its bounds, beside which a body that cannot be compressed moves in no bearable time.
+// Limits to the change of the parameters by a finer mesh. Its prior has a standard deviation
+// proportional to the parameter's value or to that of its own prior, without which directions that
+// the motion does not determine would change arbitrarily. The change is at most `most`, part of the
+// distance to the bounds, near which a nearly incompressible body takes too long to simulate.
 struct ChangePrior {
   std::vector<LinearPrior> priors;
   std::vector<double> most;
@@ -55,12 +59,13 @@ ChangePrior PriorOfChange(const CalibrationProblem& problem, const Eigen::Vector
   return prior;
 }
 
-// With the least ‖left + by (change − at)‖² and prior; what would go too far stays there. `model`:
-// of any residual and `by`.
+// The change that minimises ‖left + by (change − at)‖² plus the prior's term. Components that would
+// exceed their limit are fixed at it. `model` has the Jacobian `by` and any residual.
 Eigen::VectorXd BestChange(const LinearGaussianModel& model, const Eigen::VectorXd& left,
                            const Eigen::MatrixXd& by, const Eigen::VectorXd& at,
                            const ChangePrior& prior) {
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());  // of those that have gone too far
+  // Nonzero for the components that are fixed at their limit.
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(at.size());
   std::vector<int> free(prior.priors.size());
   std::iota(free.begin(), free.end(), 0);
   for (;;) {
@@ -102,7 +107,7 @@ std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStud
   try {
     return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(fine).mesh);
   } catch (const InputError&) {
-    return nullptr;  // a shape that cannot be meshed more finely says nothing about its mesh
+    return nullptr;  // a shape that cannot be meshed more finely gives no estimate
   }
 }
 
@@ -116,7 +121,7 @@ std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
   finer.coarse = CalibrationProblem(study, problem.body()->mesh)
                      .Linearise(values, false, {}, nullptr, &misfit)
                      .residual;
-  // The difference is whitened; empty where it cannot be had.
+  // The difference is whitened; empty where one of the two motions is not available.
   struct Tried {
     Eigen::VectorXd fine, difference;
   };

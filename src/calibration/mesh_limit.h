@@ -22,8 +22,8 @@ namespace lacuna {
 // is nearly the same on both and cancels in the difference, while the simulations of the finer mesh
 // cost a third.
 struct FinerMesh {
-  double ratio = 0;        // by which the volume of the elements is smaller
-  Eigen::VectorXd change;  // of the parameters, against the study's (MovedBy)
+  double ratio = 0;        // volume of the study's elements over that of the finer ones
+  Eigen::VectorXd change;  // change of the parameters from the study's values (MovedBy)
   // Residuals with the longer steps, m, in the rows of the study's linearised misfit: of the
   // study's mesh, and of the finer one with the changed parameters.
   Eigen::VectorXd coarse, fine;
@@ -34,9 +34,9 @@ struct FinerMesh {
   double ToRatio(double other) const;
 };
 
-// `misfit`: at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted frames
-// alone. Returns nothing where there is no finer mesh, as for a mesh that was given, or where it
-// cannot be simulated. Throws Interrupted.
+// `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
+// frames alone. Returns nothing where a finer mesh cannot be made, for example because the mesh was
+// given, or cannot be simulated. Throws Interrupted.
 std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);

@@ -19,8 +19,8 @@ namespace lacuna {
 CsvTable MisfitTable(const CalibrationProblem& problem,
                      const std::vector<RecordingMisfit>& misfits);
 
-// What the record keeps of a recording of scans. `places`: of the patches on the undeformed object,
-// m. `noise`: σ of one scanned point, m.
+// What the record keeps of a recording of scans. `places` are those of the patches on the
+// undeformed object, m. `noise`: σ of one scanned point, m.
 FittedScan DescribeScan(const RecordingMisfit& misfit, const Eigen::Matrix3Xd& places,
                         double noise);
 

@@ -13,7 +13,8 @@ constexpr size_t kMostListed = 6;
 // An estimate that is more standard deviations of its prior away from the prior's mean is a
 // conflict.
 constexpr double kConflict = 3;
-// Of a frame, fewer points than this share of the best frame's were compared: too few.
+// A scan is reported where the share of its points that were compared is less than this fraction of
+// the share in the best frame.
 constexpr double kFewestCompared = 0.85;
 
 void AddNuisanceConflicts(const RecordingModel& model, const RecordingMisfit& misfit,

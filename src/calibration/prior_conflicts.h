@@ -12,8 +12,8 @@ namespace lacuna {
 
 // The estimates that lie more than 3 standard deviations of their prior away from its mean: places
 // of markers, offsets of scanned patches, the recordings' clocks and grips; and scans that are too
-// far from the prediction to be compared. In the order of the recordings. `misfits`: of the fit
-// (MisfitsOf), one per recording.
+// far from the prediction to be compared. In the order of the recordings. `misfits` are those of
+// the fit (MisfitsOf), one per recording.
 std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,
                                               const std::vector<RecordingMisfit>& misfits);
 

@@ -36,7 +36,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   return measure;
 }
 
-// `places`: the markers' offsets, where another recording has determined them.
+// `places` are the offsets of the markers, where another recording has determined them.
 RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
                          const std::optional<Eigen::MatrixXd>& places) {
   const RecordingModel model = problem.ModelAt(r, values);
@@ -47,8 +47,8 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   recording.nuisance =
       item.fitted ? problem.NuisanceOf(r, values) : FitRecordingNuisances(model, errors, places);
   recording.misfit = model.Predict(item.frames, recording.nuisance);
-  // Of a recording that is not fitted, only what it shows before it moves tells the places, where
-  // no fitted one does.
+  // A held-out recording determines the offsets of its places only from the frames before its
+  // motion, and only where no fitted recording determines them.
   std::vector<char> tells_places;
   for (const int frame : recording.misfit.frames) {
     const double time = item.recording.times[frame];
@@ -70,7 +70,7 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values) {
   std::vector<RecordingMisfit> all(problem.models().size());
-  // Those first that tell the others where their markers are.
+  // Recordings that determine the places come before those that take them over.
   for (const bool is_told : {false, true}) {
     std::vector<size_t> some;
     for (size_t r = 0; r < all.size(); ++r)

@@ -12,20 +12,21 @@
 namespace lacuna {
 namespace {
 
-// A step is short enough when its error is below this part of σ, or of what the model leaves.
+// A time step is short enough when its error is less than kOfNoise σ or less than kOfMisfit times
+// the rms residual.
 constexpr double kOfNoise = 0.2, kOfMisfit = 0.05;
-// The next step has this part of the error that is allowed, by the scheme's order; and it is
-// not believed to be so many times shorter before looking again.
+// The next time step aims at this share of the error that is allowed, extrapolated by the order of
+// the scheme. A step is shortened at most kAtOnce times before its error is estimated again.
 constexpr double kAimedAt = 0.8, kAtOnce = 4;
 constexpr int kMostSteps = 8;
 
-// Of a step that could not be checked: half of it may do.
+// The estimated error of a time step; infinite where it could not be estimated.
 struct StepCheck {
-  double error = std::numeric_limits<double>::infinity();  // σ; and what is allowed:
-  double allowed = kOfNoise;
+  double error = std::numeric_limits<double>::infinity();  // σ
+  double allowed = kOfNoise;                               // σ, the largest error that is accepted
   int order = 2;
 
-  // The part of the step that would do.
+  // The factor by which to shorten the step, 1 where it is short enough.
   double Share() const {
     if (!std::isfinite(error)) return 0.5;
     if (error <= allowed) return 1;
@@ -39,7 +40,7 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
   PredictionStudy half = problem.WithEstimatedNoise();
   half.time_step /= 2;
   const CalibrationProblem refined(half, problem.body()->mesh);
-  // Compared with the same points of scans: the difference is that of the predictions.
+  // Both are compared with the same scanned points, so that only the predictions differ.
   constexpr double kWhole = std::numeric_limits<double>::infinity();
   CalibrationProblem::FitMemory same;
   const Prediction now = problem.Predict(values, false, kWhole, &same);
@@ -50,7 +51,7 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
     check.error = RootMeanSquare(Eigen::VectorXd(then.residual - now.residual));
     check.allowed = std::max(kOfNoise, kOfMisfit * RootMeanSquare(now.residual));
   }
-  progress->End(fmt::format("{:.3g} ms, good to {:.2g} σ", 2e3 * half.time_step, check.error));
+  progress->End(fmt::format("{:.3g} ms, error about {:.2g} σ", 2e3 * half.time_step, check.error));
   return check;
 }
 
@@ -61,7 +62,7 @@ SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
   SteppedFit fit;
   Calibration beginning;
   if (study->chooses_time_step) {
-    // A first look at how fast things go.
+    // A first estimate of the step, from the short horizon.
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);

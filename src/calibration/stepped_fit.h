@@ -11,14 +11,14 @@ namespace lacuna {
 
 struct SteppedFit {
   Calibration calibration;
-  // The change of the fitted frames when the step is halved: rms of their components, in σ. It is
-  // three quarters of the step's error for a scheme of second order, half of it for one of first.
+  // The rms change of the fitted frames, σ, when the step is halved. It is three quarters of the
+  // step's error for a second-order scheme and half of it for a first-order scheme.
   double step_error = 0;
 };
 
 // FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
-// step_error is small against the noise or the model's residual, and the fit continues from where
-// it was. `study` receives the step that was chosen. Throws Interrupted.
+// step_error is small against the noise or the model's residual, and the fit is continued
+// each time. `study` receives the step that was chosen. Throws Interrupted.
 SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
 
 }  // namespace lacuna

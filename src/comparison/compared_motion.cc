@@ -18,10 +18,10 @@
 namespace lacuna {
 namespace {
 
-// In σ. A replayed difference may deviate so much from the recorded one: rounding in another order
-// of summation causes far less, another model causes more.
+// A replayed residual may deviate from the recorded one by at most this many σ. Rounding in another
+// order of summation causes far smaller deviations, another model causes larger ones.
 constexpr double kSameMotion = 0.1;
-constexpr double kAnyPlace = 1;  // m: prior deviation of a marker's place of which nothing is known
+constexpr double kAnyPlace = 1;  // m, so wide a prior leaves the places of the markers undetermined
 
 // Whether the motion is the one that was fitted. It then differs from the recorded residuals only
 // by errors of the markers' places, which move with the object and which the fit has subtracted.
@@ -82,7 +82,7 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     const RecordedResiduals& residuals = comparison->residuals[r];
     const RecordingModel model = problem.ModelAt(r, fitted.values);
     if (model.Markers() == nullptr) {
-      note_omission("this is not implemented for scans, of which " + recording.name + " consists");
+      note_omission("this is not implemented for scans, such as those of " + recording.name);
       continue;
     }
     const ReplayedMotion motion = Replay(model, problem.NuisanceOf(r, fitted.values));

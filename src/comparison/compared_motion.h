@@ -1,4 +1,4 @@
-// What a comparison can say only by running the fitted model again.
+// The part of a comparison for which the fitted model must be run again.
 #ifndef LACUNA_COMPARISON_COMPARED_MOTION_H_
 #define LACUNA_COMPARISON_COMPARED_MOTION_H_
 

@@ -1,4 +1,4 @@
-// A comparison while it is made: the record that is kept, and the data behind it.
+// A comparison: the record that is kept, and the data that it was computed from.
 #ifndef LACUNA_COMPARISON_COMPARISON_H_
 #define LACUNA_COMPARISON_COMPARISON_H_
 
@@ -15,7 +15,7 @@ struct Comparison {
   ComparisonRecord record;
   // One entry for each recording of the record, in the same order.
   std::vector<RecordedResiduals> residuals;
-  std::vector<std::optional<UnexplainedForce>> forces;  // absent: the model was not run again
+  std::vector<std::optional<UnexplainedForce>> forces;  // absent where the model was not run again
 };
 
 }  // namespace lacuna

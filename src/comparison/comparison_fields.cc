@@ -64,7 +64,8 @@ int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& 
   const auto file = [&](const char* what, int frame, const char* extension) {
     return folder / "fields" / fmt::format("{}_{:05}.{}", what, residuals.frames[frame], extension);
   };
-  // The first state stands for the last frame before the motion, if there is one.
+  // The first state is the equilibrium before the motion. It is written for the last frame before
+  // the motion, if there is one.
   const int first = motion.state_frame.front() < 0 ? 1 : 0;
   const int states = static_cast<int>(motion.states.size()) - first;
   const int count = std::min(states, kMostFieldFrames);

@@ -10,17 +10,17 @@
 
 namespace lacuna {
 
-// Of the states that a replayed motion keeps, at most this many are written, evenly spread, the
-// first and the last always. Larger: smoother animations, more disk space.
+// At most this many of the states of a replayed motion are written. They are evenly spread and
+// include the first and the last one. Larger: smoother animations, more disk space.
 inline constexpr int kMostFieldFrames = 60;
 
-// Writes two time series and the files that they list to <folder>/fields:
+// Writes two time series to `folder`, and the files that they list to <folder>/fields:
 //   body.pvd     the predicted mesh: displacement_m, velocity_m_per_s and
 //                unexplained_force_N_per_m3 (if usable) at the nodes; strain, the largest principal
 //                Green–Lagrange strain, in the tetrahedra;
-//   markers.pvd  the measured markers: predicted_m, difference_m, difference_over_sigma (length
-//   over
-//                √3 `noise`, m), fitted, marker. Markers that were not observed are left out.
+//   markers.pvd  the measured markers: predicted_m, difference_m,
+//                difference_over_sigma (the length of the difference over √3 `noise`, m), fitted,
+//                marker. Markers that were not observed are left out.
 // Both are in the recording's measuring frame. Returns the number of frames. Throws InputError when
 // a file cannot be written.
 int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,

@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-// How many lengths are known, and the largest of them.
+// The number of lengths that are not NaN, and the largest of them.
 struct KnownLengths {
   int count = 0;
   double largest = kUnknown;
@@ -122,7 +122,7 @@ void SaveComparison(const Comparison& comparison, const std::filesystem::path& r
   }
   const std::filesystem::path force_file = folder / "unexplained_force.csv";
   if (forces.empty()) {
-    std::filesystem::remove(force_file);  // of an earlier comparison
+    std::filesystem::remove(force_file);  // may be left from an earlier comparison
   } else {
     WriteFileAtomically(force_file, kForceTableHeader + forces);
   }

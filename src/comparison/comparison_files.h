@@ -1,4 +1,4 @@
-// Files of a comparison.
+// Writes the files of a comparison.
 #ifndef LACUNA_COMPARISON_COMPARISON_FILES_H_
 #define LACUNA_COMPARISON_COMPARISON_FILES_H_
 

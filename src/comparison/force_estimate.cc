@@ -15,9 +15,9 @@
 namespace lacuna {
 namespace {
 
-constexpr double kLargestWidth = 9.80665;  // m/s², of the amplitudes' prior: that of gravity
+constexpr double kLargestWidth = 9.80665;  // m/s², upper limit of the width s of the prior: gravity
 constexpr int kShapes = SmoothForce::kShapes;
-constexpr int kFewestFrames = 6;  // after the start of the motion
+constexpr int kFewestFrames = 6;  // smallest number of frames after the start of the motion
 // The search has converged when the error along the new motion differs from the linear prediction
 // by less than this share of the prediction, or by less than this many σ. Smaller: more
 // predictions.
@@ -25,7 +25,8 @@ constexpr double kAgreement = 0.1;
 constexpr double kAgreementOverSigma = 0.5;
 constexpr double kShortestStep = 0.2;  // a step that does not reduce the error is halved down to it
 constexpr int kMostPredictions = 8;
-// Share of the error. A search that has not converged is used only if it leaves less than this.
+// A search that has not converged is used only if the remaining error is less than this fraction of
+// the error without the force.
 constexpr double kWorthwhile = 0.5;
 // Candidates for the prior: how much the force varies over the object relative to its mean, and
 // over how many knots it stays correlated.
@@ -52,18 +53,18 @@ std::vector<Eigen::MatrixXd> PriorShapes(int knots) {
   return shapes;
 }
 
-// The force that has been reached, and the motion with it.
+// The current force, and the motion with it.
 struct SearchState {
   ReplayedMotion motion;
-  Eigen::VectorXd amplitudes;                 // of the field, column by column
-  std::optional<AmplitudeEstimate> estimate;  // that the amplitudes come from; none: no force yet
+  Eigen::VectorXd amplitudes;                 // amplitudes of the field, column by column
+  std::optional<AmplitudeEstimate> estimate;  // source of the amplitudes; absent at first
 };
 
-// Where one Gauss–Newton step leads according to the linear model.
+// The result of a full Gauss–Newton step according to the linear model.
 struct ForceStep {
   AmplitudeEstimate estimate;
   Eigen::VectorXd nuisance;
-  double rms_before = 0, expected_rms = 0;  // of the whitened residual
+  double rms_before = 0, expected_rms = 0;  // rms of the whitened residual
 };
 
 ForceStep LinearStep(const LinearisedForce& at, const SearchState& state,
@@ -84,8 +85,8 @@ ForceStep LinearStep(const LinearisedForce& at, const SearchState& state,
   return step;
 }
 
-// Goes as far along the step as the error of the nonlinear model decreases. False: no such part of
-// the step was found, and the state is unchanged.
+// Shortens the step until the error of the nonlinear model decreases. Returns false, and leaves the
+// state unchanged, where no such step was found.
 bool TakeStep(const RecordingModel& recording, const ForceLinearisation& linearisation,
               const LinearisedForce& at, const ForceStep& step, SearchState* state,
               SmoothForce* field, ForceFitSummary* fit) {
@@ -111,7 +112,8 @@ bool TakeStep(const RecordingModel& recording, const ForceLinearisation& lineari
   return false;
 }
 
-// From the motion without a force. Returns why the search had to stop; empty: it ended by itself.
+// Searches for the force, starting from the motion without one. Returns the reason why the search
+// failed, empty where it did not.
 std::string Search(const RecordingModel& recording, const ForceLinearisation& linearisation,
                    SearchState* state, SmoothForce* field, ForceFitSummary* fit) {
   std::vector<Eigen::MatrixXd> priors = PriorShapes(field->KnotCount());
@@ -145,7 +147,8 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
   const int moving = static_cast<int>(
       std::count_if(recording.item().frames.begin(), recording.item().frames.end(),
                     [&](int frame) { return times[frame] - motion.delay > start; }));
-  if (moving < kFewestFrames) return Unusable(force, "there are too few frames of the motion");
+  if (moving < kFewestFrames)
+    return Unusable(force, "there are too few frames after the start of the motion");
   SmoothForce& field = force.field;
   field = MakeSmoothForce(recording.model(), start, end, std::min(kMostForceKnots, moving));
   const ForceLinearisation linearisation(recording, motion, field, errors);
@@ -158,9 +161,10 @@ UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,
 
   const bool helps = fit.rms_over_sigma_with < kWorthwhile * fit.rms_over_sigma_without;
   if (!state.estimate || (!fit.converged && !helps)) {
-    return Unusable(force, fit.rms_over_sigma_without > kFarFromTruth
-                               ? "the model is so far off that no small force brings it closer"
-                               : "no small, smooth force brings the model closer to the markers");
+    return Unusable(
+        force, fit.rms_over_sigma_without > kFarFromTruth
+                   ? "the model is so far from the markers that no small force reduces the error"
+                   : "no small, smooth force reduces the error enough");
   }
   field.amplitudes.reshaped() = state.amplitudes;
   fit.noise_scale = state.estimate->noise;

@@ -5,10 +5,10 @@
 // (holding force, clock, registration) minimise
 //   ½ |r(a, n)|²/v + ½ aᵀ (s² L Lᵀ)⁻¹ a + ½ nᵀ P⁻¹ n,
 // where r is the residual, whitened as in the fit, and the fitted parameters of the model stay
-// fixed. Gauss–Newton steps: the Jacobian is computed along the motion without the force, then
-// along the motion with it (force_linearisation.h). The width s and the shape L of the prior, that
-// is how uniform the force is over the object and how slowly it changes, and the variance v are
-// chosen by their marginal likelihood (analysis/amplitude_estimate.h).
+// fixed. They are found by Gauss–Newton steps: the Jacobian is computed along the motion without
+// the force, then along the motion with it (force_linearisation.h). The width s and the shape L of
+// the prior (how uniform the force is over the object and how slowly it changes) and the variance v
+// are chosen by their marginal likelihood (analysis/amplitude_estimate.h).
 #ifndef LACUNA_COMPARISON_FORCE_ESTIMATE_H_
 #define LACUNA_COMPARISON_FORCE_ESTIMATE_H_
 
@@ -22,8 +22,8 @@ namespace lacuna {
 // faster in long recordings, and the estimate takes more time and memory.
 inline constexpr int kMostForceKnots = 60;
 
-// `motion` is the recording's, replayed to its last frame with the fitted model and without the
-// force. `errors` are those that the fit assumed. Takes up to eight further predictions. If the
+// `motion` is that of the recording, replayed to its last frame with the fitted model and without
+// the force. `errors` are those that the fit assumed. Takes up to eight further predictions. If the
 // motion is too short, or no such force reduces the error enough, the record is not usable and its
 // message says why.
 UnexplainedForce EstimateUnexplainedForce(const RecordingModel& recording,

@@ -7,7 +7,8 @@ namespace lacuna {
 namespace {
 
 constexpr int kShapes = SmoothForce::kShapes;
-// Entries of the force's Jacobian. More: finer in time for long recordings, and more memory.
+// Largest number of entries of the force's Jacobian. Larger: finer resolution in time for long
+// recordings, more memory.
 constexpr double kMostEntries = 25e6;
 
 int FrameStride(int frames, int markers, int knots) {

@@ -17,7 +17,7 @@ namespace lacuna {
 // Whitened residual, predicted minus measured, and its Jacobians. Rows are x, y, z of each marker
 // of each frame that is used, frames outermost; rows of a marker that was not observed are 0.
 struct LinearisedForce {
-  int coordinates = 0;  // that were observed
+  int coordinates = 0;  // number of coordinates that were observed
   Eigen::VectorXd residual;
   Eigen::MatrixXd force_jacobian;     // columns: SmoothForce::amplitudes column by column
   Eigen::MatrixXd nuisance_jacobian;  // columns: RecordingModel::nuisances()
@@ -25,7 +25,8 @@ struct LinearisedForce {
 };
 
 // The derivatives come from the tangent-linear model along a motion, projected on a small basis
-// (fem/reduced_response.h). Where a recording has very many frames, some are left out evenly.
+// (fem/reduced_response.h). Where a recording has very many frames, an evenly spread subset is
+// used.
 class ForceLinearisation {
  public:
   // The recording's model and the field must outlive this. `errors` whitens the residual; errors of
@@ -55,10 +56,10 @@ class ForceLinearisation {
   const RecordingModel& recording_;
   const SmoothForce& field_;
   MeasurementErrors errors_;
-  Eigen::MatrixXd shapes_;  // 3n × k: of the field, then of the holding forces
+  Eigen::MatrixXd shapes_;  // 3n × k, nodal shapes of the field, then of the holding forces
   Eigen::VectorXd prior_deviations_;
-  std::vector<Eigen::Index> held_shape_;  // of each nuisance its column in shapes_; −1: no force
-  std::vector<int> frames_;               // that are used, as columns of the motion
+  std::vector<Eigen::Index> held_shape_;  // for each nuisance: column in shapes_, −1: no force
+  std::vector<int> frames_;               // frames that are used, as columns of the motion
   std::vector<Eigen::Matrix3d> deformation_;  // markers × used frames
 };
 

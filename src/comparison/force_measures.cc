@@ -11,8 +11,8 @@ namespace {
 constexpr double kStandardGravity = 9.80665;  // m/s²
 constexpr int kShapes = SmoothForce::kShapes;
 
-// A quantity that is linear in the amplitudes at one time (`jacobian`: rows × 6), as a function of
-// the amplitudes at all knots (rows × 6·knots).
+// The Jacobian by the amplitudes at all knots (rows × 6·knots) of a quantity whose Jacobian by the
+// amplitudes at one time is `jacobian` (rows × 6).
 Eigen::MatrixXd JacobianOverKnots(const SmoothForce& force, const Eigen::MatrixXd& jacobian,
                                   double time) {
   const SmoothForce::KnotWeight at = force.At(time);
@@ -22,11 +22,12 @@ Eigen::MatrixXd JacobianOverKnots(const SmoothForce& force, const Eigen::MatrixX
   return all;
 }
 
-// Standard deviations of what is linear in amplitudes with that covariance.
+// Standard deviations of quantities that depend linearly, by `jacobian`, on amplitudes with this
+// covariance.
 Eigen::VectorXd Deviations(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd deviations(jacobian.rows());
   for (Eigen::Index k = 0; k < jacobian.rows(); ++k) {
-    // At one time all but 12 entries are 0.
+    // A quantity at one time has at most 12 nonzero entries.
     std::vector<Eigen::Index> active;
     for (Eigen::Index c = 0; c < jacobian.cols(); ++c)
       if (jacobian(k, c) != 0) active.push_back(c);
@@ -44,7 +45,7 @@ double CorrelationOver(const Eigen::Matrix3Xd& force, const Eigen::Matrix3Xd& mo
   return product > 0 ? a.cwiseProduct(b).sum() / product : 0;
 }
 
-// The net force and the torque about `centre` as functions of the amplitudes, 3 × 6 each.
+// The Jacobians of the net force and of the torque about `centre` by the amplitudes, 3 × 6 each.
 struct Resultants {
   Eigen::MatrixXd force = Eigen::MatrixXd::Zero(3, kShapes);
   Eigen::MatrixXd torque = Eigen::MatrixXd::Zero(3, kShapes);
@@ -62,7 +63,7 @@ Resultants ResultantsOf(const Eigen::MatrixXd& shapes, const Eigen::VectorXd& po
   return resultants;
 }
 
-// The weight, s, of each state in an integral over time by the trapezoidal rule.
+// The weight, s, of state `k` in an integral over time by the trapezoidal rule.
 double TrapezoidalWeight(const ReplayedMotion& motion, Eigen::Index k) {
   const Eigen::Index count = static_cast<Eigen::Index>(motion.states.size());
   const double from = motion.states[std::max<Eigen::Index>(k - 1, 0)].time;
@@ -122,7 +123,8 @@ void MeasureHistory(const Model& model, const ReplayedMotion& motion,
                         Deviations(work_jacobian, covariance)[0], work / duration};
 }
 
-// With the displacement, velocity and acceleration of the centre of mass of the part that moves.
+// Correlations of the force with the displacement, velocity and acceleration of the centre of mass
+// of the moving part.
 std::vector<ForceCorrelation> CorrelationsWithMotion(const Model& model,
                                                      const ReplayedMotion& motion,
                                                      const Eigen::VectorXd& moving_mass,
@@ -177,8 +179,9 @@ void MeasurePlace(const Model& model, const ReplayedMotion& motion, UnexplainedF
         std::max(place.largest_grip_distance, distance(body.mesh.nodes.col(i)));
 }
 
-// Thresholds in standard deviations, and of the natural log of the likelihood ratio. Larger: fewer
-// forces that noise alone has made are reported, and fewer small forces that are real.
+// The thresholds are standard deviations of the force and the work, and the natural logarithm of a
+// likelihood ratio. Larger: fewer forces that are only noise are reported, and fewer small forces
+// that are real.
 bool IsSignificant(const UnexplainedForceRecord& force) {
   constexpr double kClearForce = 2, kClearWork = 3, kClearEvidence = 5;
   if (!(force.fit.log_evidence > kClearEvidence)) return false;

@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-// Fills the history, and of the record the net force, work, place, correlations and significance,
-// from force->field and from the evidence in force->record.fit. `motion` is the motion with the
-// force, at least two states. `covariance` is that of the field's amplitudes, (m/s²)², in the order
-// of SmoothForce::amplitudes column by column. Means over time use the trapezoidal rule.
+// Fills the history, and the record's net force, work, place, correlations and significance, from
+// force->field and from the evidence in force->record.fit. `motion` is the motion with the
+// force, at least two states. `covariance` is that of the field's amplitudes, (m/s²)², in
+// column-major order of SmoothForce::amplitudes. Means over time use the trapezoidal rule.
 void MeasureForce(const Model& model, const ReplayedMotion& motion,
                   const Eigen::MatrixXd& covariance, UnexplainedForce* force);
 

@@ -1,4 +1,4 @@
-// The noise of a recording of markers as the recording itself shows it, without a model.
+// The noise of a recording of markers, estimated from the recording itself without a model.
 #ifndef LACUNA_COMPARISON_NOISE_FLOOR_H_
 #define LACUNA_COMPARISON_NOISE_FLOOR_H_
 
@@ -7,10 +7,10 @@
 
 namespace lacuna {
 
-// The white part from second differences, the scatter about a straight line in the periods in which
-// the markers rest, and the larger of the two (analysis/residual_statistics.h). `sigma`, m, is the
-// noise that the fit assumed; it decides what counts as rest where the white part is unknown. What
-// cannot be determined is NaN.
+// The white part of the noise from second differences, the scatter about a straight line in the
+// periods in which the markers rest, and the larger of the two (analysis/residual_statistics.h).
+// `sigma`, m, is the noise that the fit assumed; it decides what counts as rest where the white
+// part is unknown. What cannot be determined is NaN.
 NoiseFloor MeasureNoiseFloor(const RecordedResiduals& residuals, double sigma);
 
 }  // namespace lacuna

@@ -10,7 +10,7 @@ namespace lacuna {
 namespace {
 
 constexpr int kBins = 10;
-constexpr int kFewestFramesOfPeriod = 3;  // bad frames that make a period
+constexpr int kFewestFramesOfPeriod = 3;  // smallest number of bad frames that form a period
 constexpr double kLargestGap = 0.05;      // share of the frames that may be good within a period
 
 MeanDifference MeanDifferenceOver(const Eigen::MatrixXd& difference, int first, int last) {
@@ -18,7 +18,7 @@ MeanDifference MeanDifferenceOver(const Eigen::MatrixXd& difference, int first, 
   return {mean.mean, mean.agreement};
 }
 
-// `difference` and `lengths` are of the range alone.
+// `difference` and `lengths` contain only the columns of the range.
 ErrorSize MeasureError(const Eigen::MatrixXd& difference, const Eigen::MatrixXd& lengths,
                        const Eigen::VectorXd& times, const ComparedRecording& recording) {
   ErrorSize error;
@@ -82,9 +82,10 @@ std::optional<WorstPeriod> FindWorstPeriod(const Eigen::MatrixXd& difference,
                      MeanDifferenceOver(difference, span.first, span.last)};
 }
 
-// First over the points of a frame, then over the frames (and the reverse for the distance from the
-// grip): if frames and points were pooled, differences between points would look like a trend in
-// time, because points at the grip neither move nor err.
+// The trends over frames use the rms over the points of each frame, and the trend with the
+// distance from the grip uses the rms over the frames of each point. If frames and points were
+// pooled, differences between points would look like a trend in time, because points near the grip
+// have small displacements and small errors.
 std::vector<ErrorTrend> Trends(const RecordedResiduals& residuals, const FrameRange& range,
                                const ComparedRecording& recording, const Eigen::MatrixXd& lengths,
                                const Eigen::VectorXd& point_rms) {

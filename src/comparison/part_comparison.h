@@ -1,5 +1,5 @@
 // The error of the fitted or of the held-out frames of one recording: how large it is, whether it
-// is noise, where and when it is largest, and with what it grows.
+// is noise, where and when it is largest, and with which quantities it grows.
 #ifndef LACUNA_COMPARISON_PART_COMPARISON_H_
 #define LACUNA_COMPARISON_PART_COMPARISON_H_
 
@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-// `recording` gives the noise that the fit assumed, the noise floor and the points' distances from
-// the grip (a trend is made of them where they are known). The statistics are those of
+// `recording` gives the noise that the fit assumed, the noise floor and, where they are known, the
+// points' distances from the grip. The statistics are those of
 // analysis/residual_statistics.h and analysis/whiteness.h.
 ComparedPart ComparePart(const RecordedResiduals& residuals, const FrameRange& range,
                          const ComparedRecording& recording);

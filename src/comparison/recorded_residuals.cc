@@ -48,7 +48,7 @@ RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
         column_of.emplace(number, static_cast<Eigen::Index>(result.frames.size())).second;
     if (!is_new) continue;
     if (!times.empty() && time[row] <= times.back())
-      throw InputError({file.string()}, "its frames are not in the order of time");
+      throw InputError({file.string()}, "its frames are not in chronological order");
     result.frames.push_back(number);
     times.push_back(time[row]);
     result.fitted.push_back(fitted[row] != 0);

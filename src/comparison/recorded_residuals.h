@@ -1,4 +1,4 @@
-// Measured and predicted places of one recording's points, as a fit left them in misfit.csv.
+// Measured and predicted places of one recording's points, as a fit wrote them to misfit.csv.
 #ifndef LACUNA_COMPARISON_RECORDED_RESIDUALS_H_
 #define LACUNA_COMPARISON_RECORDED_RESIDUALS_H_
 
@@ -11,13 +11,13 @@
 namespace lacuna {
 
 // m points over n frames. Matrices are 3m × n, m, in the measuring frame: x, y, z of a point in
-// three rows, frames in the order of time in the columns, NaN where a point was not observed.
+// three rows, frames in chronological order in the columns, NaN where a point was not observed.
 struct RecordedResiduals {
   std::vector<int> frames;     // n, numbers of the recording's frames
   Eigen::VectorXd times;       // n, s, ascending
   std::vector<char> fitted;    // n; 0: held out
-  Eigen::MatrixXd measured;    // places; of a patch the mean of its scanned points
-  Eigen::MatrixXd difference;  // predicted − measured; of a patch along its normal
+  Eigen::MatrixXd measured;    // measured places; for a patch the mean of its scanned points
+  Eigen::MatrixXd difference;  // predicted − measured; for a patch along its normal
 
   int PointCount() const { return static_cast<int>(measured.rows() / 3); }
   // 3 × m: the mean of each point's measured places over all frames.
@@ -25,20 +25,20 @@ struct RecordedResiduals {
 };
 
 // Reads the rows of recording number `recording`. Throws InputError naming `file` when a column is
-// absent, a point's number is negative or frames are not in the order of time. A recording without
-// rows has no frames.
+// absent, a point's number is negative or frames are not in chronological order. A recording
+// without rows has no frames.
 RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
                                 const std::filesystem::path& file);
 
-// Columns first to last, both inclusive, which are all fitted or all held out.
+// A range of columns, first to last inclusive, that are all fitted or all held out.
 struct FrameRange {
   bool fitted = true;
   int first = 0, last = 0;
   int Count() const { return last - first + 1; }
 };
 
-// The longest such ranges, in the order of time: the fitted frames of a recording come before those
-// that are held out.
+// The longest such ranges in chronological order: the fitted frames of a recording come before
+// those that are held out.
 std::vector<FrameRange> FittedAndHeldOutRanges(const RecordedResiduals& residuals);
 
 }  // namespace lacuna

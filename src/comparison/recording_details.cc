@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-// Distance, m, of each place from the nearest node that the recording holds or moves. Empty if it
+// Distance, m, of each place from the nearest node that the recording fixes or moves. Empty if it
 // has no grip.
 Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
                               const Eigen::Matrix3Xd& nodes) {

@@ -1,5 +1,5 @@
-// What only the recordings themselves know: the names of the markers and their distance from the
-// grip.
+// Details that must be read from the recordings themselves: the names of the markers and their
+// distance from the grip.
 #ifndef LACUNA_COMPARISON_RECORDING_DETAILS_H_
 #define LACUNA_COMPARISON_RECORDING_DETAILS_H_
 

@@ -19,8 +19,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kLargestDelay = 0.1;  // s, between the clocks of two repeats beyond their release
-constexpr double kSameRate = 0.01;     // relative difference of two frame rates that count as equal
+// s; largest delay that is sought between two repeats after alignment at their releases.
+constexpr double kLargestDelay = 0.1;
+constexpr double kSameRate = 0.01;  // largest relative difference of equal frame rates
 
 double MeanTimeStep(const RecordedResiduals& residuals) {
   const Eigen::Index frames = residuals.times.size();
@@ -28,7 +29,8 @@ double MeanTimeStep(const RecordedResiduals& residuals) {
                     : kUnknown;
 }
 
-// When the motion of each recording begins: at the release of its hold, or with its first frame. s
+// The time, s, at which the motion of each recording begins: the release of its hold or, without a
+// hold, its first frame.
 std::vector<double> StartTimes(const json& configuration,
                                const std::vector<RecordedResiduals>& residuals) {
   std::vector<double> starts;
@@ -43,8 +45,9 @@ std::vector<double> StartTimes(const json& configuration,
   return starts;
 }
 
-// Recordings that could be repeats of each other: the same frame rate and the same number of
-// markers. Patches of scans are not compared, as they are not measured along the surface.
+// Compares recordings that may be repeats of each other, which have the same frame rate and the
+// same number of markers. Patches of scans are not compared, because they are not measured along
+// the surface.
 void ComparePairs(const json& configuration, Comparison* comparison) {
   const std::vector<double> starts = StartTimes(configuration, comparison->residuals);
   const std::vector<ComparedRecording>& recordings = comparison->record.recordings;
@@ -72,8 +75,8 @@ ComparedRecording DescribeRecording(const FittedRecording& fitted, const Calibra
   recording.name = fitted.name;
   recording.noise = record.noise;
   if (fitted.scan) {
-    // The places of a patch's points differ along the surface, which is not noise. The floor of a
-    // patch therefore follows from the noise of its points.
+    // The measured places of a patch also scatter along the surface, which is not noise. The noise
+    // floor of a patch is therefore derived from the noise of its points.
     recording.is_scan = true;
     recording.noise = fitted.scan->patch_noise;
     recording.noise_floor.floor = fitted.scan->patch_noise * fitted.noise / record.scan_noise;
@@ -99,7 +102,7 @@ Comparison CompareRun(const std::filesystem::path& run) {
   for (size_t r = 0; r < record.recordings.size(); ++r) {
     RecordedResiduals residuals = ReadResiduals(table, static_cast<int>(r), file);
     if (residuals.frames.empty())
-      throw InputError({file.string()}, "has no row of recording " + record.recordings[r].name);
+      throw InputError({file.string()}, "has no row for recording " + record.recordings[r].name);
     comparison.record.recordings.push_back(
         DescribeRecording(record.recordings[r], record, residuals.PointCount()));
     comparison.residuals.push_back(std::move(residuals));

@@ -24,19 +24,20 @@ struct SmoothForce {
   Eigen::MatrixXd amplitudes;  // 6 × knots (at least 2), m/s²
 
   int KnotCount() const { return static_cast<int>(amplitudes.cols()); }
-  // A time between two knots: `knot` has the weight 1 − next, the one after it `next`.
+  // The weights of the knots at a time between two knots: 1 − next for `knot`, and `next` for the
+  // one after it.
   struct KnotWeight {
     int knot;
     double next;
   };
   KnotWeight At(double time) const;
-  // 6 × 1, m/s².
+  // The amplitudes at a time, 6 × 1, m/s².
   Eigen::VectorXd AmplitudesAt(double time) const;
-  // g at the nodes, 3 × n, N/m³.
+  // The force density g at the nodes, 3 × n, N/m³.
   Eigen::Matrix3Xd DensityAt(double time) const;
-  // Nodal forces per unit of each amplitude, 3n × 6, N per m/s².
+  // Nodal forces per unit of each amplitude, 3n × 6, N/(m/s²).
   Eigen::MatrixXd Shapes() const;
-  // The force as effects of a model. They hold a copy of this force.
+  // The force as effects of a model, which hold a copy of this force.
   EffectList Effects() const;
 };
 

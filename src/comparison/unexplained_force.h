@@ -9,19 +9,19 @@
 
 namespace lacuna {
 
-// The force over the motion that includes it. One entry or column for each state of that motion;
-// vectors are in the model's frame, deviations are standard deviations of the components.
+// The force over time, with one entry or column for each state of the motion that includes it.
+// Vectors are in the model's frame; deviations are standard deviations of the components.
 struct ForceHistory {
   Eigen::VectorXd times;                      // s, on the recording's clock
   Eigen::Matrix3Xd force, force_deviation;    // N, net force
   Eigen::Matrix3Xd torque, torque_deviation;  // N m, about the centroid of the undeformed object
   Eigen::VectorXd power;                      // W
-  Eigen::Matrix3Xd centroid;  // m, of the force density's magnitude, on the undeformed object
+  Eigen::Matrix3Xd centroid;  // m, centroid of the density's magnitude, undeformed object
 };
 
 struct UnexplainedForce {
   UnexplainedForceRecord record;
-  ForceHistory history;  // empty unless record.usable
+  ForceHistory history;  // empty if the record is not usable
   SmoothForce field;     // over model time, which is the recording's time minus `delay`
   double delay = 0;      // s
 };

@@ -17,7 +17,7 @@ constexpr double kNotSeen = std::numeric_limits<double>::quiet_NaN();
 
 bool IsHeldOut(Eigen::Index row, int every) { return every > 0 && row % every == every - 1; }
 
-// Splits tracked points into those that may be used and those kept for the check.
+// Splits tracked points into those that may be used and those that are held out.
 void SplitTracked(const Frame& frame, int hold_out_every, FrameState* state) {
   const Eigen::Matrix3Xd points = PointsByRow(frame);
   std::vector<Eigen::Index> used, held_out;
@@ -121,7 +121,7 @@ double EstimateNoise(const Eigen::Matrix3Xd& points) {
     local.colwise() -= local.rowwise().mean().eval();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(local * local.transpose(),
                                                               Eigen::EigenvaluesOnly);
-    // A plane takes three of the sixteen degrees of freedom.
+    // A plane has three of the sixteen degrees of freedom.
     deviation[static_cast<size_t>(j)] =
         std::sqrt(std::max(0.0, axes.eigenvalues()[0]) / (kNeighbours - 3));
   }

@@ -18,9 +18,9 @@ namespace lacuna {
 struct FrameState {
   double time = 0;   // s
   PointCloud cloud;  // cleaned, with normals where they can be oriented
-  TriMesh surface;   // closed; without triangles where the frame has none
-  // For tracked recordings, the material point of each row; columns of NaN were not seen. Held-out
-  // points are in `held_out` and neither in `cloud` nor in `tracked`.
+  TriMesh surface;   // closed; empty where the frame has none
+  // For tracked recordings, the material point of each row; columns are NaN where it was not seen.
+  // Held-out points are in `held_out` and neither in `cloud` nor in `tracked`.
   Eigen::Matrix3Xd tracked;
   Eigen::Matrix3Xd held_out;
 };
@@ -36,11 +36,11 @@ PointCloud StatePoints(const FrameState& state);
 struct FrameStateOptions {
   FilterOptions filter;
   SurfaceOptions surface;
-  bool surfaces = true;    // reconstruct a Poisson surface; false: the points represent it
+  bool surfaces = true;  // reconstruct a Poisson surface; otherwise the points represent the state
   int hold_out_every = 0;  // hold out every k-th tracked point; 0: none
 };
-// Processes one frame of the recording. Throws InputError, naming the frame, where it cannot be
-// read or has no closed surface.
+// Processes one frame of the recording. Throws InputError, which names the frame, where it cannot
+// be read or has no closed surface.
 FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
 
 // The files of a run directory: arrays in .npy format, one set per frame.

@@ -34,7 +34,7 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
 
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
     : recording_(recording), model_(*model) {
-  std::map<int, std::string> holder;  // by node: the region's name
+  std::map<int, std::string> holder;  // for each held node, the name of its region
   const auto nodes_in = [&](const Region& region) {
     return NamingWhere(recording.file.string(), [&] {
       const Eigen::VectorXi nodes = NodesIn(region, reference.nodes);
@@ -46,7 +46,7 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
       }
       if (holder.size() == static_cast<size_t>(reference.nodes.cols()))
         throw InputError(fmt::format(
-            "region \"{}\" holds all of the object: nothing is left to move", region.name));
+            "region \"{}\" holds the whole object: no part is free to move", region.name));
       return nodes;
     });
   };
@@ -62,11 +62,11 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
       const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, track->markers);
       track->span = FitRigidMotion(places, places).span;
       if (grip.deforms && track->span < 2)
-        throw InputError(fmt::format("{}: \"{}\" is to deform with its markers, which {}",
-                                     recording.file.string(), grip.region.name,
-                                     track->span < 0
-                                         ? "are placed nowhere"
-                                         : "span no plane: three or more, not on a line"));
+        throw InputError(fmt::format(
+            "{}: \"{}\" is to deform with its markers, which {}", recording.file.string(),
+            grip.region.name,
+            track->span < 0 ? "have no marker_places"
+                            : "do not span a plane: three or more are needed, not on a line"));
     }
     tracks_.push_back(track);
     model->grips.push_back({track->nodes, [track](double time) -> Eigen::Matrix3Xd {

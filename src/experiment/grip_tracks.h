@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-// The markers that a grip follows, by their order in the recording.
+// The indices, in the recording, of the markers that a grip follows.
 std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording);
 
 // Fixed regions do not move. A gripped region moves as a rigid body or, where the recording says
@@ -21,15 +21,15 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
-  // when a region holds no node, two hold the same, or all are held.
+  // when a region holds no node, two regions hold the same node, or all nodes are held.
   GripTracks(const Recording& recording, const TetMesh& reference, Model* model);
 
-  // Sets all grips to their rest positions at this time.
+  // Places all grips at their rest positions at this time.
   void Begin(double time);
   // Adds the positions of the grips at `time`. `before` and `moved` (3 × nodes) are the model's
   // nodes and the places to which the registered motion of the scan carries them; `markers` (3 × m)
-  // are the frame's markers. A grip is not placed where so few of its markers are seen that they do
-  // not determine its motion; one such grip is returned, else null.
+  // are the frame's markers. A grip is not placed where too few of its markers are seen to
+  // determine its motion; one such grip is returned, otherwise null.
   const RecordedGrip* Extend(double time, const Eigen::Matrix3Xd& before,
                              const Eigen::Matrix3Xd& moved, const Eigen::Matrix3Xd& markers);
   // Sets the gripped nodes of a stacked position (3n) to their positions at `time`.
@@ -42,7 +42,7 @@ class GripTracks {
     Eigen::Matrix3Xd rest;                      // rest positions of the nodes
     std::vector<int> markers;                   // columns of the marker tracks
     int span = 0;                               // dimension of their places (geometry/rigid_fit.h)
-    std::map<double, Eigen::Matrix3Xd> places;  // by time; empty for a given path
+    std::map<double, Eigen::Matrix3Xd> places;  // positions by time; empty for a given path
   };
   const Recording& recording_;
   const Model& model_;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr char kMark[] = "scene.key";
 
-// The mark of a folder as it is.
+// The content of scene.key for the current files of a folder.
 std::string MarkOf(const fs::path& folder, const std::string& key) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))

@@ -22,7 +22,7 @@ EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_bo
     if (nodes.empty())
       throw InputError(where + " acts on no boundary node: its region is too small");
     if (std::all_of(nodes.begin(), nodes.end(), [&](int node) { return gripped[node]; }))
-      throw InputError(where + " acts only where the object is held, and would move nothing");
+      throw InputError(where + " acts only on nodes that are held, where it has no effect");
     const Eigen::VectorXi chosen =
         Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
     loads.push_back(std::make_shared<PrescribedForce>(

@@ -1,4 +1,4 @@
-// The forces that a recording has measured, as loads on the body.
+// The measured forces of a recording, as external loads on the body.
 #ifndef LACUNA_EXPERIMENT_KNOWN_LOADS_H_
 #define LACUNA_EXPERIMENT_KNOWN_LOADS_H_
 
@@ -12,7 +12,7 @@ namespace lacuna {
 
 // One load for each measured force of the recording, spread over the boundary nodes of its region.
 // Throws InputError when a region contains no boundary node, or only nodes that a grip holds, where
-// the force would move nothing.
+// the force has no effect.
 EffectList MakeKnownForces(const Recording& recording, const Model& grips_and_body);
 
 }  // namespace lacuna

@@ -40,22 +40,23 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
   for (const Config& item : config.Items("candidates")) {
     const std::string type = item.Text("type");
     if (FindEntry(type) != nullptr && FindEntry(type)->make != nullptr)
-      item.Fail("type", fmt::format("a diagnosis tries {} anyway; candidates are laws of your own, "
+      item.Fail("type", fmt::format("a diagnosis tries {} anyway; candidates are user-defined laws "
                                     "of type expression",
                                     type));
     const OwnLaw law{item.Text("name", ""), MakeEffect(item, material)};
     if (!Expression::IsName(law.name))
-      item.Fail("name", "a candidate's is of letters, digits and underscores");
-    if (FindEntry(law.name) != nullptr) item.Fail("name", "is that of an effect of the catalogue");
+      item.Fail("name", "must consist of letters, digits and underscores");
+    if (FindEntry(law.name) != nullptr)
+      item.Fail("name", "is the name of an effect of the catalogue");
     for (const OwnLaw& other : laws)
-      if (other.name == law.name) item.Fail("name", "is that of another candidate");
+      if (other.name == law.name) item.Fail("name", "is the name of another candidate");
     laws.push_back(law);
   }
   return laws;
 }
 
 std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
-  constexpr double kFar = 10;  // times beyond the plausible range
+  constexpr double kFar = 10;  // factor beyond the limits of the plausible range
   std::vector<std::string> warnings;
   for (const auto& effect : effects) {
     const EffectCard& card = effect->Card();

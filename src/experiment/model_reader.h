@@ -15,8 +15,8 @@
 
 namespace lacuna {
 
-// `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`. The first two are q and v of the
-// paper; the order is that of the elements, 1 or 2.
+// The settings `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`. The first two are q
+// and v of the paper; the order is that of the elements, 1 or 2.
 struct MeshSettings {
   TetOptions tets;
   int order = 1;
@@ -26,9 +26,9 @@ MeshSettings ReadMeshSettings(const Config& config);
 // Reads `material: {law: …}` and `effects: [{type: …}]`. The material comes first.
 EffectList ReadEffects(const Config& config);
 
-// A force law of the user's own (docs/expression.md) that the model may lack.
+// A user-defined force law (docs/expression.md) that the model may lack.
 struct OwnLaw {
-  std::string name;  // under which it is ranked and added: letters, digits and underscores
+  std::string name;  // consists of letters, digits and underscores
   std::shared_ptr<const Effect> effect;
 };
 // Reads `candidates: [{type: expression, name: magnet, …}]`, the laws that a diagnosis tries
@@ -41,7 +41,7 @@ std::vector<std::string> ImplausibleParameters(const EffectList& effects);
 // Reads `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);
 
-// A number that varies with time, linearly between given points and constant outside of them.
+// A number as a function of time, linear between given points and constant outside of them.
 struct Profile {
   std::vector<double> times;   // s, ascending
   std::vector<double> values;  // dimensionless

@@ -16,32 +16,32 @@ namespace lacuna {
 // The observation matrix W, in compressed rows: y = W x for node positions x (3n) or their Jacobian
 // (3n × k).
 struct ObservationMatrix {
-  std::vector<int> begin{0};   // of row i's entries; rows + 1
-  std::vector<int> column;     // of 3n
+  std::vector<int> begin{0};   // for each row, index of its first entry; rows + 1 entries
+  std::vector<int> column;     // for each entry, 0 to 3n − 1
   std::vector<double> weight;  // ∂y/∂x
 
   int Count() const { return static_cast<int>(begin.size()) - 1; }
   Eigen::MatrixXd operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const;
 };
 
-// One frame. Predicted minus measured is W x − target, in m; row components·i + c is component c of
-// point i.
+// The measurements of one frame. Predicted minus measured is W x − target, in m; row
+// components·i + c is component c of point i.
 struct Observed {
   std::shared_ptr<const ObservationMatrix> rows;
   Eigen::VectorXd target;
-  Eigen::VectorXi count;      // for each point: measurements that it is the mean of; 0: not seen
+  Eigen::VectorXi count;      // for each point: number of measurements averaged; 0: not seen
   Eigen::Matrix3Xd measured;  // 3 × points, m, the measured places; NaN where not seen
-  // For points of three components, the deformation gradient F = ∂x/∂X of the model at each point:
-  // an error of a point's place on the object is multiplied by it. Empty: the error is the same in
-  // all frames.
+  // For points of three components, the deformation gradient F = ∂x/∂X of the model at each point,
+  // by which an error of the point's place on the object is multiplied. If it is empty, the error
+  // is the same in all frames.
   std::vector<Eigen::Matrix3d> deformation;
   // For points of one component, the unit direction of the measurement: 3 × points; else 3 × 0.
   Eigen::Matrix3Xd normal;
   int offered = 0, used = 0;  // scanned points in the frame, and how many of them were compared
 };
 
-// Compares the model with the frames of one recording. A function of its arguments: several threads
-// may use it at once.
+// Compares the model with the frames of one recording. Its results depend on the arguments alone,
+// so that several threads may use it at once.
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -49,22 +49,22 @@ class Observer {
   virtual int Components() const = 0;  // per point: 3, or 1 along the surface normal
   // The places of the points on the undeformed object, 3 × points, m.
   virtual const Eigen::Matrix3Xd& Places() const = 0;
-  // Frame `frame` compared with a model whose nodes are near `position` (3n): the correspondence of
-  // a scanned point depends on where the model is.
+  // Compares frame `frame` with a model whose nodes are near `position` (3n), on which the
+  // correspondences of scanned points depend.
   virtual Observed Observe(int frame, const Eigen::VectorXd& position) const = 0;
 };
 
 // Compares markers, which are embedded in the mesh at their places.
 class MarkerObserver : public Observer {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive the observer.
   MarkerObserver(const Recording& recording, const TetMesh& mesh);
   int PointCount() const override { return static_cast<int>(recording_.markers.places.cols()); }
   int Components() const override { return 3; }
   const Eigen::Matrix3Xd& Places() const override { return recording_.markers.places; }
   Observed Observe(int frame, const Eigen::VectorXd& position) const override;
   const Embedding& places_in_mesh() const { return places_; }
-  // W: x, y and z of each marker from the nodes.
+  // The matrix W, with rows x, y and z of each marker.
   const ObservationMatrix& rows() const { return *rows_; }
   // F at each marker, with the model's nodes at `position` (3n).
   std::vector<Eigen::Matrix3d> DeformationAt(const Eigen::VectorXd& position) const;

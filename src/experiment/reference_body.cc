@@ -38,7 +38,8 @@ TriMesh ReferenceSurface(const ReferenceRequest& request, std::vector<std::strin
   return request.first_surface != nullptr ? *request.first_surface : TriMesh{};
 }
 
-// Regions that list nodes mean the file's numbers; a reader that dropped nodes changed them.
+// Regions that list nodes use the numbers in the file, which change when the reader drops unused
+// nodes.
 void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile& given) {
   bool renumbered = false;
   for (Eigen::Index i = 0; i < given.node_in_file.size(); ++i)
@@ -67,7 +68,7 @@ MeshRecord Describe(const TetMesh& mesh) {
           .largest_radius_edge_ratio = quality.radius_edge_ratio.max};
 }
 
-// Told before the memory is gone.
+// Throws InputError for a mesh that would not fit into memory.
 void RefuseTooManyTets(const ReferenceRequest& request, const TriMesh& surface) {
   constexpr double kMost = 2e7;
   if (request.mesh.tets.max_volume == 0) return;

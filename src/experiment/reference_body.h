@@ -15,24 +15,24 @@
 namespace lacuna {
 
 struct ReferenceBody {
-  TetMesh mesh;  // of the order that the study asks for, in the world frame, m
+  TetMesh mesh;  // with the order of elements that was asked for; world frame, m
   MeshRecord quality;
   std::vector<std::string> notes;
 };
 
 // What the undeformed body is made from. The members must outlive the request.
 struct ReferenceRequest {
-  const std::string& name;  // of the study, for messages
+  const std::string& name;  // name of the study, for messages
   const Recording& recording;
   const MeshSettings& mesh;
   int sheet_layers = 1;
   int first_frame = 0;
-  const TriMesh* first_surface = nullptr;  // the surface of that frame; null: there is none
+  const TriMesh* first_surface = nullptr;  // surface of that frame; null where there is none
   // Regions of the study, besides those of the recording, that may list nodes of a given mesh.
   std::vector<Region> regions = {};
 };
 
-// Throws InputError when the shape cannot be meshed, with the reason.
+// Throws InputError with the reason when the shape cannot be meshed.
 ReferenceBody MakeReferenceBody(const ReferenceRequest& request);
 
 // The files of a run directory: body.msh and notes.txt.

@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-// The `count` points whose random numbers are least, in their old order.
+// A random subset of `count` points, in their original order.
 PointCloud Thinned(const PointCloud& cloud, int count) {
   if (cloud.Size() <= count) return cloud;
   std::vector<Eigen::Index> order(static_cast<size_t>(cloud.Size()));

@@ -22,13 +22,13 @@ struct ScannedPoints {
   Eigen::Index in_files = 0;  // finite points before filtering and thinning
 };
 
-// Reads a frame when it is first asked for and keeps it. Copies of a study share it; several
-// threads may ask at once.
+// Reads each frame when it is first needed, and keeps it. Copies of a study share this object;
+// several threads may use it at once.
 class ScanFrames {
  public:
   ScanFrames(Recording recording, const ScanSettings& settings);
 
-  // Throws InputError, naming the frame.
+  // Throws InputError, which names the frame.
   const ScannedPoints& At(int frame) const;
   const Recording& recording() const { return recording_; }
 

@@ -19,19 +19,21 @@ constexpr double kMinNormalAgreement = 0.5;  // cos 60°
 constexpr int kFewestPoints = 50;
 constexpr int kMostIterations = 40;
 constexpr int kFullSteps = 5;
-// The median distance of points from the part may be so many times the noise, and this share of the
-// part's radius more, which turns it by about as much (rad).
+// The median distance of the points from the part may be at most kMostNoise times the noise plus
+// kMostMisfit times the part's radius, which corresponds to a rotation error of about kMostMisfit
+// rad.
 constexpr double kMostNoise = 1.5;
 constexpr double kMostMisfit = 0.01;
-// The least share of a unit motion, in any direction, that shows along the normals (its square).
+// The smallest mean square displacement along the normals that a unit motion in any direction must
+// cause.
 constexpr double kLeastShown = 0.005;
 
 using Twist = Eigen::Matrix<double, 6, 1>;
 
-// The triangles all of whose corners are gripped, and which of their edges lie on the rim.
+// The triangles whose corners are all gripped, and which of their edges lie on the rim.
 struct Part {
   TriMesh surface;
-  std::vector<std::array<bool, 3>> rim;  // of each triangle: the edge opposite that corner
+  std::vector<std::array<bool, 3>> rim;  // for each triangle: is the edge opposite corner i on it
   Eigen::Matrix3Xd normals;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   double radius = 0;
@@ -50,7 +52,7 @@ Part MakePart(const BoundarySurface& boundary, const ScannedGrip& grip) {
   }
   if (chosen.empty())
     throw InputError(fmt::format(
-        "{} follows the scan, but holds no face of the surface: enlarge its region", grip.name));
+        "{} follows the scan, but contains no face of the surface: enlarge its region", grip.name));
   Part part;
   part.surface = {boundary.surface.vertices, boundary.surface.triangles(Eigen::all, chosen)};
   part.normals = TriangleNormals(part.surface);
@@ -82,11 +84,11 @@ bool IsOnRim(const Part& part, int triangle, const Eigen::Vector3d& barycentric)
   return false;
 }
 
-// One linearised fit of the part, at its place after `motion`, to the points. Rotations are about
-// the centre and in units of the radius, so that all six components are lengths.
+// The result of one linearised fit of the part to the points. Rotations are about the centre and in
+// units of the radius, so that all six components are lengths.
 struct Fit {
   int points = 0;
-  double shown = 0;  // the least eigenvalue of the mean of J Jᵀ
+  double shown = 0;  // smallest eigenvalue of the mean of J Jᵀ
   Twist step = Twist::Zero();
   double median = 0;  // m, distance of the points from the part
 };
@@ -159,23 +161,24 @@ std::vector<Eigen::Isometry3d> FollowGrip(const ScanFrames& scans, const std::ve
                                kFewestPoints));
       if (fit.shown < kLeastShown)
         throw fail(
-            "does not tell all of its motion: what is seen of it is flat or round and could "
-            "slide unseen");
+            "does not determine all of its motion: the part that is seen is flat or round and "
+            "could slide unnoticed");
       const bool is_last = iteration + 1 == kMostIterations;
       if (is_last && fit.step.norm() > 2 * std::max(fit.median, scan.noise))
-        throw fail("could not be followed: the fit does not settle");
-      // Points that change triangles keep the steps from vanishing; their mean does.
+        throw fail("could not be followed: the fit does not converge");
+      // Points that move from one triangle to another keep the full steps from vanishing, so that
+      // later steps are averaged.
       const double gain = iteration < kFullSteps ? 1 : 1.0 / (iteration - kFullSteps + 2);
       motion = motion * MotionOf(part, gain * fit.step);
       const bool settled = gain * fit.step.norm() < std::max(1e-3 * scan.noise, 1e-9);
       const double allowed = kMostNoise * scan.noise + kMostMisfit * part.radius;
       if ((settled || is_last) && fit.median > allowed)
         throw fail(fmt::format(
-            "lies {:.2f} mm off its surface, more than the {:.2f} mm that noise and a fine mesh "
-            "would leave: the undeformed surface is too coarse or wrong there",
+            "is {:.2f} mm away from its surface, more than the {:.2f} mm expected from noise and "
+            "a fine mesh: the undeformed surface is too coarse or wrong there",
             1e3 * fit.median, 1e3 * allowed));
       if (settled) break;
-      // What is far from the part after a few steps is not its own.
+      // Points that are still far away after a few steps do not belong to the part.
       if (iteration + 1 == kFullSteps)
         reach = std::min(grip.reach, 6 * std::max(fit.median, scan.noise));
     }

@@ -31,7 +31,7 @@ BarShape ReadBar(const Config& config) {
                                     bar.edge_length);
   bar.axis = ReadAxis(config, bar.axis);
   bar.angle = config.Quantity("angle", kAngle, kAnyValue, bar.angle);
-  // Not told of a bar at rest, so that results kept under the hash of an older scene stay valid.
+  // Left out for a bar at rest, so that results kept under the hash of an older scene stay valid.
   if (config.Has("velocity")) bar.velocity = config.Vector("velocity", kVelocity);
   return bar;
 }
@@ -80,7 +80,7 @@ Scene::Scanner ReadScanner(const Config& config, const BarShape& bar, uint64_t s
   return scanner;
 }
 
-// The nodes of a grip at a time: turned and shifted from where they rest.
+// The positions of the nodes of a grip as a function of time.
 std::function<Eigen::Matrix3Xd(double)> Motion(const SceneGrip& grip,
                                                const Eigen::Matrix3Xd& rest) {
   return [grip, rest](double time) {

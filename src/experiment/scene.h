@@ -1,8 +1,8 @@
 // A synthetic scene: a soft bar that is held, loaded, moved or dropped, and a virtual scanner.
 //
-// Scenes make recordings whose truth is known. A reconstruction must not explain data with the code
-// path that made them: a scene uses a finer mesh, elements of higher order and shorter steps, its
-// result is an ordinary recording, and the truth lies in a folder of its own.
+// Scenes make recordings whose truth is known. A reconstruction should not explain data with the
+// discretisation that made them. A scene therefore uses a finer mesh, elements of higher order and
+// shorter steps. Its result is an ordinary recording, and the truth is kept in a separate folder.
 #ifndef LACUNA_EXPERIMENT_SCENE_H_
 #define LACUNA_EXPERIMENT_SCENE_H_
 
@@ -23,8 +23,8 @@ struct BarShape {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();         // m
   Eigen::Vector3d size = Eigen::Vector3d(0.1, 0.03, 0.03);  // m
   double edge_radius = 0.004;                               // m
-  double edge_length = 0.006;  // of the surface triangles, m; smaller: finer and slower
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // of its rotation about its centre
+  double edge_length = 0.006;  // m, surface triangles; smaller: finer and slower
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  // axis of its rotation about its centre
   double angle = 0;                                 // rad
   // The velocity of all points at the start, m/s: √(2gh) downwards after a fall from height h.
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
@@ -33,9 +33,9 @@ struct BarShape {
 // A force spread over the boundary nodes of a region in proportion to area.
 struct SceneLoad {
   Region region;
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, in total
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N, total force
   Profile profile;
-  bool measured = false;  // whether the recording contains it, as if measured by a load cell
+  bool measured = false;  // the recording contains it, as if from a load cell
 };
 
 // Nodes that are held, or moved as a rigid body: a rotation about an axis and a translation, both
@@ -61,7 +61,7 @@ struct Scene {
   double frame_rate = 30;   // 1/s
   int frames = 1;           // the first one at time 0
   int steps_per_frame = 4;  // larger: more accurate in time, slower
-  // Absent: the scene is simulated but not recorded.
+  // If it is absent, the scene is simulated but not recorded.
   struct Scanner {
     CameraRing ring;
     ScannerOptions options;
@@ -80,16 +80,16 @@ struct SceneMotion {
   std::vector<double> times;                 // s, one per frame
   std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, one per frame
   std::vector<Eigen::Matrix3Xd> velocities;  // m/s
-  std::vector<Eigen::Vector3d> load;         // N, the total of the loads, one per frame
+  std::vector<Eigen::Vector3d> load;         // N, total of the loads, one per frame
   bool IsUsable() const { return status == Status::kFinished; }
 };
 
-// A mesh or a step that fails is told by the status. Throws Interrupted.
+// A mesh or a step that fails is reported by the status. Throws Interrupted.
 SceneMotion SimulateScene(const Scene& scene, Progress* progress);
 
 // Writes what the scanner sees as a recording into `folder`, and the true surfaces into its
-// subfolder truth (scan/scan_writer.h). The recording names the regions that are held but not those
-// that move. Throws InputError when it cannot be written.
+// subfolder truth (scan/scan_writer.h). The recording names the regions that are fixed but not
+// those that move. Throws InputError when it cannot be written.
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder);
 

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kMinNormalAgreement = 0.5;  // cos 60°
 constexpr double kOutlier = 4;               // standard deviations from a patch's median
-constexpr int kFewestPoints = 3;             // of a patch that is seen
+constexpr int kFewestPoints = 3;             // fewest points with which a patch counts as seen
 
-// A scanned point and the place of the surface that it goes with.
+// The correspondence of a scanned point to a place of the surface.
 struct Match {
-  int patch = -1;  // −1: with none
+  int patch = -1;  // −1: none
   FacePoint place;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double error = 0;  // m, n · (x − p)
@@ -29,14 +29,14 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-// Those of `points` whose errors agree with most, in their order.
+// Those of `points` whose errors are not outliers, in the same order.
 std::vector<int> Agreeing(const std::vector<Match>& matches, const std::vector<int>& points,
                           double noise) {
   std::vector<double> errors;
   for (const int j : points) errors.push_back(matches[j].error);
   const double median = MedianOf(errors);
   for (double& error : errors) error = std::abs(error - median);
-  constexpr double kDeviationOfMedian = 1.4826;  // of a normal distribution
+  constexpr double kDeviationOfMedian = 1.4826;  // σ over median deviation, normal distribution
   const double widest = kOutlier * std::max(noise, kDeviationOfMedian * MedianOf(errors));
   std::vector<int> kept;
   for (const int j : points)
@@ -44,7 +44,7 @@ std::vector<int> Agreeing(const std::vector<Match>& matches, const std::vector<i
   return kept;
 }
 
-// Adds up weights by column, and forgets them column by column.
+// Accumulates a sparse row of weights. Clearing it takes time proportional to its entries.
 class RowSum {
  public:
   explicit RowSum(Eigen::Index columns) : sum_(columns, 0.0), is_there_(columns, 0) {}
@@ -53,7 +53,7 @@ class RowSum {
     is_there_[column] = 1;
     sum_[column] += weight;
   }
-  // The row, over `count`, in the order of its columns.
+  // Appends the row, divided by `count`, with ascending columns, and clears it.
   void Flush(double count, ObservationMatrix* rows) {
     std::sort(touched_.begin(), touched_.end());
     for (const int column : touched_) {

@@ -16,13 +16,14 @@ namespace lacuna {
 // surface, which is curved where the mesh is quadratic, and to the patch of that place. The row of
 // a patch is the mean over its points of
 //   n_j · (x_j − p_j),  n_j the surface's outward normal at x_j,
-// linear in the nodes' positions while ξ_j and n_j are kept (point-to-plane: Chen & Medioni, Image
-// and Vision Computing 10, 1992). Motion of the surface within itself leaves the row unchanged, as
-// scans contain no information about it.
+// which is linear in the nodes' positions for fixed ξ_j and n_j (point-to-plane: Chen & Medioni,
+// Image and Vision Computing 10, 1992). Motion of the surface within itself leaves the row
+// unchanged, as scans contain no information about it.
 //
-// Points are left out that are farther away than the reach, whose own normal is more than 60° from
-// that of the surface, or that differ from the median of their patch by more than four times its
-// spread (and the noise). A patch with fewer than three remaining points is not seen.
+// Points are left out if they are farther away than the reach, if their normal deviates by more
+// than 60° from that of the surface, or if they differ from the median of their patch by more than
+// four times its spread (or the noise, if that is larger). A patch with fewer than three remaining
+// points is not seen.
 class SurfaceObserver : public Observer {
  public:
   SurfaceObserver(std::shared_ptr<const ScanFrames> scans, std::shared_ptr<const Body> body,
@@ -38,7 +39,7 @@ class SurfaceObserver : public Observer {
   std::shared_ptr<const Body> body_;
   SurfacePatches patches_;
   double reach_ = 0;
-  double depth_ = 0;  // m, of the scanned surface below the model's: half the thickness of a sheet
+  double depth_ = 0;  // m, depth of the scanned surface below the model's: half a sheet's thickness
 };
 
 }  // namespace lacuna

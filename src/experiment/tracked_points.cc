@@ -15,11 +15,11 @@
 namespace lacuna {
 namespace {
 
-// So many tell of a smooth motion what there is to tell; a correlated image has thousands, whose
-// derivatives by every hypothesis would not fit into memory.
+// So many points suffice for a smooth motion. Image correlation gives thousands, whose derivatives
+// with respect to every hypothesis would not fit into memory.
 constexpr size_t kMostPoints = 400, kMostOfGrip = 40;
 
-// At most so many of the points, each as far as can be from those before it.
+// At most `most` of the points, each as far as possible from those before it.
 std::vector<int> EvenlySpread(const Eigen::Matrix3Xd& points, const std::vector<int>& from,
                               size_t most) {
   if (from.size() <= most) return from;
@@ -42,7 +42,7 @@ void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* re
     if (places.col(row).allFinite()) seen.push_back(row);
   if (seen.empty())
     throw InputError(
-        fmt::format("{}: frame {}, the first that is used, shows no point: choose `from`",
+        fmt::format("{}: frame {}, the first that is used, shows no point: change `from`",
                     recording->file.string(), frames.front()));
   const std::vector<int> spread = EvenlySpread(places, seen, kMostPoints);
   std::set<int> chosen(spread.begin(), spread.end());
@@ -50,8 +50,8 @@ void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* re
     if (grip.motion != GripMotion::kFollowsScan) continue;
     if (std::holds_alternative<NodeRegion>(grip.region.shape))
       throw InputError(
-          fmt::format("{}: \"{}\" lists nodes, which do not tell the tracked points that "
-                      "it follows: describe it by a shape, or give a `path`",
+          fmt::format("{}: \"{}\" lists nodes, which do not determine the tracked points "
+                      "that it follows: describe it by a shape, or give a `path`",
                       recording->file.string(), grip.region.name));
     const std::vector<int> inside = NamingWhere(recording->file.string(), [&] {
       const Eigen::Matrix3Xd shown = places(Eigen::all, seen);

@@ -12,8 +12,8 @@ namespace lacuna {
 // Fills in the recording's markers ("p0", "p1", … by row) and their places, which are their
 // positions in the first of `frames`, where the object must be undeformed. Points that this frame
 // does not show are left out; of more than some hundred points an evenly spread subset is used. A
-// grip that follows the scan then follows the points in its region. Throws InputError, naming the
-// file, where a region shows no point, and whatever LoadFrame throws.
+// grip that follows the scan then follows the points in its region. Throws InputError, which names
+// the file, where a region contains no visible point, and whatever LoadFrame throws.
 void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording);
 
 }  // namespace lacuna

@@ -7,8 +7,8 @@
 
 namespace lacuna {
 
-// Made from the reference shape of the first recording; where that shape is a scan, from the first
-// frame that the study uses. Throws InputError when the shape cannot be meshed.
+// Makes it from the reference shape of the first recording or, where that shape is a scan, from the
+// first frame that the study uses. Throws InputError when the shape cannot be meshed.
 ReferenceBody MakeReferenceBody(const PredictionStudy& study);
 
 }  // namespace lacuna

@@ -19,13 +19,14 @@ namespace {
 
 using Of = MisfitDirection::Kind;
 
-constexpr double kFewestSeen = 0.05;  // of the patches, that a scan of the object shows
+constexpr double kFewestSeen = 0.05;  // smallest share of the patches in the first scan
 
 double ShareUsed(const Observed& observed) {
   return observed.offered > 0 ? static_cast<double>(observed.used) / observed.offered : 0;
 }
 
-// Where the scans carry the nodes of grips that follow them: frame by frame, 3 × nodes.
+// For each frame, the positions (3 × nodes) of all nodes, with those of grips that follow the scan
+// moved by their grip.
 std::vector<Eigen::Matrix3Xd> FollowGrips(const PredictedRecording& item, double reach,
                                           bool tells_the_shape, const TetMesh& mesh,
                                           const BoundarySurface& boundary) {
@@ -54,11 +55,12 @@ void MoveGrips(const PredictedRecording& item, double reach, bool tells_the_shap
     const RecordedGrip* lost =
         grips->Extend(item.recording.times[frame], mesh.nodes, is_scan ? moved[k] : mesh.nodes,
                       is_scan ? Eigen::Matrix3Xd(3, 0) : item.recording.markers.positions[frame]);
-    // Between two frames a grip moves evenly, before the first and after the last it would stand.
+    // A grip's motion is interpolated across frames that do not show it, but cannot be extrapolated
+    // before the first frame or after the last.
     if (lost != nullptr && (k == 0 || k + 1 == item.frames.size()))
       throw InputError(fmt::format(
           "{}: frame {}, the {} that is used, shows too few of the markers that \"{}\" follows: "
-          "choose `{}`",
+          "change `{}`",
           item.recording.file.string(), frame, k == 0 ? "first" : "last", lost->region.name,
           k == 0 ? "from" : "to"));
   }
@@ -73,13 +75,13 @@ void RequireStartAtRest(const PredictedRecording& item) {
   constexpr double kNoise = 4;  // standard deviations of one point
   if (step > 0.25 * whole && step > kNoise * first.noise) {
     throw InputError(fmt::format(
-        "{}: the object moves already between its first two frames, by {:.2f} mm; a prediction "
-        "starts from rest: give `from:`, or `hold:`",
+        "{}: the object already moves between its first two frames, by {:.2f} mm; a prediction "
+        "starts from rest: give `from:` or `hold:`",
         item.recording.file.string(), 1e3 * step));
   }
 }
 
-// Stacked vectors, in columns.
+// Rotates the vectors that are stacked in the columns of `stacked`.
 template <typename Stacked>
 void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
   if (stacked->size() == 0) return;
@@ -106,7 +108,8 @@ Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) con
 
 namespace {
 
-// A place that is half of the object's size away from it is none on it.
+// Throws InputError where a marker's place is farther from the object than half of the object's
+// size.
 void RequireMarkersNear(const Recording& recording, const TetMesh& mesh) {
   constexpr double kFar = 0.5;
   const Eigen::AlignedBox3d box(mesh.nodes.rowwise().minCoeff(), mesh.nodes.rowwise().maxCoeff());
@@ -141,7 +144,7 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
     RequireThatScansShowTheObject();
     MoveGrips(item_, reach, tells_the_shape, mesh, model_.body->boundary, &grips);
   } else {
-    // The body has the elements of the mesh in an order of its own.
+    // The elements of the body are in another order than those of `mesh`.
     RequireMarkersNear(item_.recording, mesh);
     observer_ = std::make_unique<MarkerObserver>(item_.recording, model_.body->mesh);
     MoveGrips(item_, 0, tells_the_shape, mesh, model_.body->boundary, &grips);
@@ -178,7 +181,7 @@ void RecordingModel::AddHold(const TetMesh& mesh) {
   if (areas(chosen).sum() == 0)
     throw InputError(where + " touches no boundary node: its region is too small");
   const Eigen::VectorXd share = BoundaryShares(*model_.body, chosen);
-  const double weight = 10 * model_.body->node_mass.sum();  // N, about that of the object
+  const double weight = 10 * model_.body->node_mass.sum();  // N, about the weight of the object
   for (int axis = 0; axis < 3; ++axis) {
     MisfitDirection direction;
     Eigen::VectorXd& force = direction.perturbation.held_force;
@@ -189,7 +192,7 @@ void RecordingModel::AddHold(const TetMesh& mesh) {
 }
 
 void RecordingModel::RequireThatScansShowTheObject() {
-  // A frame that cannot be read is told before the long computation, not by it.
+  // Reads all frames, so that one that cannot be read is reported before the long computation.
   for (const int frame : item_.frames) item_.scans->At(frame);
   const Observed first =
       observer_->Observe(item_.frames.front(), model_.body->mesh.nodes.reshaped());
@@ -216,7 +219,7 @@ PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const
   options.start_time = item_.StartTime();
   options.time_step = study_.time_step;
   options.step.scheme = study_.scheme;
-  // Far below the steps' own error; tighter ones cost a quarter more.
+  // Far below the error of the time steps. Smaller tolerances take a quarter more time.
   options.step.relative_tolerance = 1e-6;
   options.step.linear.relative_tolerance = 1e-4;
   options.held_force = Eigen::VectorXd::Zero(3 * model_.body->NodeCount());
@@ -277,7 +280,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   std::vector<double> times;
   for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
 
-  // Clock and registration need no tangent: a later clock sees the motion earlier.
+  // The derivatives by clock and registration follow from velocity and position, without a tangent.
   std::vector<Perturbation> perturbations;
   std::vector<Eigen::Index> column;
   for (const MisfitDirection& direction : directions) {

@@ -19,12 +19,11 @@ namespace lacuna {
 // surface; it has three components, or one along the surface normal (Observer). Rows are ordered
 // component within point within frame. Rows of a point that was not seen are 0.
 struct Misfit {
-  std::vector<int> frames;   // of the recording, as far as the prediction came
-  int points = 0;            // in each frame
+  std::vector<int> frames;   // frames of the recording that the prediction reached
+  int points = 0;            // number of points in each frame
   Eigen::VectorXd residual;  // components·points·frames
-  Eigen::MatrixXd jacobian;  // ∂residual/∂(direction); no columns where none was asked for
-  std::vector<int>
-      count;  // points × frames: how many measurements each is the mean of; 0: not seen
+  Eigen::MatrixXd jacobian;  // ∂residual/∂(direction), one column per direction
+  std::vector<int> count;    // points × frames: number of measurements averaged; 0: not seen
   // points × frames: the deformation gradient F (Observed), rotated into the measuring frame; empty
   // for scans.
   std::vector<Eigen::Matrix3d> deformation;
@@ -39,23 +38,23 @@ struct Misfit {
   Eigen::VectorXd ResidualWithout(const Eigen::MatrixXd& place_offset) const;
 };
 
-// What one column of a Misfit's Jacobian is the derivative by.
+// The variable by which one column of a Misfit's Jacobian is the derivative.
 struct MisfitDirection {
-  // A parameter of the model, or one of the recording: the time, s, by which its clock is late; the
-  // translation, m, or rotation, rad, of its measuring frame along an axis.
+  // A parameter of the model, or a nuisance parameter of the recording: the delay, s, of its clock,
+  // or the translation, m, or rotation, rad, of its measuring frame along or about an axis.
   enum class Kind { kModel, kClock, kShift, kTurn };
   Kind kind = Kind::kModel;
   int axis = 0;
   Perturbation perturbation = {};  // for kModel
 };
 
-// What similar predictions have found already.
+// Results of similar predictions, which save time.
 struct PredictionHints {
-  // What each of the frames is compared with; null: what the observer makes of a frame at the
-  // predicted positions.
+  // What each of the frames is compared with. If it is null, the observer compares each frame with
+  // the predicted positions.
   const std::vector<Observed>* observed = nullptr;
-  // 3n, m: from where the search for the equilibrium before the motion starts, which costs a tenth
-  // of a search from the rest shape (null). The result is the same within the tolerance of that
+  // 3n, m: start of the search for the equilibrium before the motion; null: the rest shape, from
+  // which the search takes ten times as long. The result is the same within the tolerance of that
   // equilibrium.
   const Eigen::VectorXd* near_equilibrium = nullptr;
 };
@@ -88,13 +87,13 @@ class RecordingModel {
   };
   const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
-  // The same with other values of the study's effects, which come first in model().effects;
-  // `effects` has the same types in the same order.
+  // This model with `effects` in place of the study's effects, which come first in model().effects
+  // and have the same types in the same order.
   RecordingModel With(const EffectList& effects) const;
 
   // The misfit in the chosen `frames` (ascending) with `nuisance` in the order of nuisances(), and
   // its Jacobian in these directions. The result depends on the arguments and this model alone, so
-  // that several threads may predict at once. A simulation that stops early is told by
+  // that several threads may predict at once. A simulation that stops early is reported in
   // Misfit::summary. Throws Interrupted.
   Misfit Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                  const std::vector<MisfitDirection>& directions = {},
@@ -102,14 +101,14 @@ class RecordingModel {
 
   std::vector<int> FittedFrames() const;
 
-  // The options of a prediction with these nuisances, and the time, s, by which the recording's
-  // clock is late.
+  // The options of a prediction with these nuisance parameters, and the delay, s, of the
+  // recording's clock.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
-  // From the fixture's frame, in which the model is, to the recording's measuring frame: a rotation
-  // about the mean of the markers' places, then a translation.
+  // The transform from the fixture's frame, which is the model's, to the recording's measuring
+  // frame: a rotation about the mean of the markers' places, then a translation.
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
-  // ∂(a place in the measuring frame)/∂(a translation or a small rotation).
+  // The derivative of a place in the measuring frame by a translation or a small rotation.
   Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
                                  const Eigen::Isometry3d& registration,
                                  const Eigen::Vector3d& place) const;

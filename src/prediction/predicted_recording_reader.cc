@@ -31,13 +31,13 @@ Hold ReadHold(const Config& config, const Recording& recording) {
   }
   if (hold.release < recording.times.front()) {
     config.Fail("release", fmt::format("lies before the recording's first frame, at {:g} s: no "
-                                       "frame shows the object held",
+                                       "frame shows the object while it is held",
                                        recording.times.front()));
   }
   return hold;
 }
 
-// Of the markers that are seen in both.
+// The largest displacement, m, of a marker that is seen in both frames.
 double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   double largest = 0;
   for (Eigen::Index m = 0; m < from.cols(); ++m) {
@@ -47,9 +47,9 @@ double LargestMove(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
   return largest;
 }
 
-// Without a hold the first frame must be an equilibrium. A body that already moves is not: its
-// first step is a good part of all its motion, and more than the least step of any two frames,
-// which is noise or a turning point.
+// Without a hold the first frame must be an equilibrium. The object is taken to move already where
+// its displacement between the first two frames is a large part of its whole motion, and well above
+// the smallest displacement between any two frames, which shows the noise.
 void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
   constexpr double kLarge = 0.25, kBeyondNoise = 3;
   const Recording& recording = item.recording;
@@ -65,25 +65,26 @@ void RequireStartAtRest(const Config& config, const PredictedRecording& item) {
   }
   if (step > kLarge * farthest && step > kBeyondNoise * least)
     config.Fail("recording",
-                "the object moves already between its first two frames; a prediction starts from "
-                "rest: give `from:`, or `hold:`");
+                "the object already moves between its first two frames; a prediction starts from "
+                "rest: give `from:` or `hold:`");
 }
 
-// What markers must be told with, and scans.
+// Checks that the recording contains what a prediction of markers or of scans needs.
 void CheckObserved(const Config& config, const PredictedRecording& item, bool tells_the_shape) {
   const Recording& recording = item.recording;
   const bool of_first_frame = recording.reference.source == ReferenceSource::kFirstFrame;
   const bool is_tracked = HasTrackedPoints(recording);
   if (is_tracked && item.hold)
-    config.Fail("hold",
-                "tracked points sit on the object where the first frame shows them, so it may not "
-                "be held out of shape there");
+    config.Fail(
+        "hold",
+        "the places of tracked points are taken from the first frame, so the object may not "
+        "be held in a deformed shape there");
   if (item.scans == nullptr) {
     if (!recording.markers.places.allFinite())
       config.Fail("recording",
-                  "lacks marker_places: where each marker sits on the undeformed object");
+                  "lacks marker_places: the place of each marker on the undeformed object");
     if (of_first_frame && !is_tracked)
-      config.Fail("recording", "has no reference shape: markers alone do not tell it");
+      config.Fail("recording", "has no reference shape: markers alone do not determine it");
     for (const RecordedGrip& grip : recording.object.grips)
       if (grip.motion == GripMotion::kFollowsScan)
         config.Fail("recording",
@@ -94,14 +95,13 @@ void CheckObserved(const Config& config, const PredictedRecording& item, bool te
   }
   for (const RecordedGrip& grip : recording.object.grips)
     if (grip.deforms)
-      config.Fail("recording",
-                  fmt::format("{} is to deform with the scan, whose points are not told "
-                              "apart: only markers and tracked points tell that",
-                              grip.region.name));
+      config.Fail("recording", fmt::format("{} is to deform with the scan, whose points are not "
+                                           "identified: this needs markers or tracked points",
+                                           grip.region.name));
   if (tells_the_shape && of_first_frame && item.hold) {
     config.Fail("hold",
                 "the recording's reference shape is its first frame, in which the object is held "
-                "out of shape: give a `reference` mesh");
+                "in a deformed shape: give a `reference` mesh");
   }
 }
 
@@ -134,7 +134,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
   if (const auto registration = config.OptionalChild("registration")) {
     if (item.scans != nullptr)
-      config.Fail("registration", "is known for markers only, not for scans");
+      config.Fail("registration", "is implemented for markers only, not for scans");
     item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
     item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
   }
@@ -142,7 +142,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   for (const Config& effect : config.Items("effects"))
     item.effects.push_back(MakeEffect(effect, material));
 
-  // An equilibrium tells of itself; a motion does with two steps.
+  // One equilibrium can be fitted; a motion needs two steps.
   const size_t fewest = scheme == TimeScheme::kQuasiStatic ? 1 : 3;
   if (item.frames.size() < fewest) {
     config.Fail("recording",
@@ -155,7 +155,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   CheckObserved(config, item, tells_the_shape);
   if (scheme == TimeScheme::kQuasiStatic) {
     if (item.hold)
-      config.Fail("hold", "what is let go of swings: motion.scheme may not be quasi_static");
+      config.Fail("hold", "a released object vibrates, so motion.scheme may not be quasi_static");
   } else {
     RequireStartAtRest(config, item);
   }
@@ -164,7 +164,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     const double first = item.recording.times[item.frames.front()];
     const double last = item.recording.times[item.frames.back()];
     if (!force.region)
-      config.Fail("recording", "does not tell where " + force.name + " acts (its region)");
+      config.Fail("recording", "does not say where " + force.name + " acts (its region)");
     const Eigen::Index end = force.times.size() - 1;
     if (!force.file.empty() && (force.times[0] > first || force.times[end] < last))
       config.Fail("recording",

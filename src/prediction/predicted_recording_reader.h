@@ -11,7 +11,7 @@
 namespace lacuna {
 
 // Loads the recording that the entry names and checks that a prediction can be compared with it.
-// `tells_the_shape`: it is the first recording of the study, whose reference shape is meshed.
+// `tells_the_shape` is true for the first recording of the study, whose reference shape is meshed.
 // Throws InputError with the position of the entry's key.
 PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
                                       const ScanSettings& scan, TimeScheme scheme,

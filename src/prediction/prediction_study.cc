@@ -39,7 +39,7 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
                    : repeat > 1 ? fmt::format("{}#{}.{}", card.type, repeat, entry.name)
                                 : card.type + "." + entry.name;
       prior.start = value;
-      // Open bounds are kept at a distance that no estimate reaches.
+      // The parameter must stay strictly inside an open bound.
       const double margin = 1e-6 * (entry.plausible_max - entry.plausible_min);
       prior.min = entry.bounds.min + (entry.bounds.open_min ? margin : 0);
       prior.max = entry.bounds.max - (entry.bounds.open_max ? margin : 0);

@@ -1,6 +1,6 @@
-// An experiment that predicts. The loads are known, the motion of the grips is measured, everything
-// else is simulated and compared with one or several recordings of the same object.
-// docs/prediction.md lists the keys.
+// An experiment with a prediction. The external loads are known and the motion of the grips is
+// measured; everything else is simulated and compared with one or several recordings of the same
+// object. docs/prediction.md lists the keys.
 #ifndef LACUNA_PREDICTION_PREDICTION_STUDY_H_
 #define LACUNA_PREDICTION_PREDICTION_STUDY_H_
 
@@ -25,7 +25,7 @@
 
 namespace lacuna {
 
-// Until its release the object is held at rest by a force of unknown size and direction on a
+// Until its release the object is held at rest by a force of unknown magnitude and direction on a
 // region.
 struct Hold {
   Region region;
@@ -37,19 +37,19 @@ struct Hold {
 struct PredictedRecording {
   std::string name;
   Recording recording;
-  std::shared_ptr<const ScanFrames> scans;  // its scans; null: it has markers or tracked points
-  std::vector<int> frames;                  // ascending
-  bool fitted = true;                       // false: only predicted
+  std::shared_ptr<const ScanFrames> scans;  // null for markers or tracked points
+  std::vector<int> frames;                  // frames that are used, ascending
+  bool fitted = true;                       // false where it is only predicted
   // Frames after this time, s, are held out: they are predicted but not fitted.
   double fit_until = std::numeric_limits<double>::infinity();
   std::optional<Hold> hold;
   // Standard deviation (prior) of the difference between the recording's clock and the model's, s;
-  // 0: they agree.
+  // 0 where they agree.
   double clock_deviation = 0;
   // Standard deviations (priors, for each axis) of the translation, m, and the rotation, rad,
-  // between the measuring frame and the fixture; 0: they agree.
+  // between the measuring frame and the fixture; 0 where they agree.
   double shift_deviation = 0, turn_deviation = 0;
-  EffectList effects;  // that act in this recording only, such as a mass that was hung on
+  EffectList effects;  // effects in this recording only, such as an attached mass
 
   // The time, s, until which the object is at rest.
   double StartTime() const { return hold ? hold->release : recording.times[frames.front()]; }
@@ -57,16 +57,17 @@ struct PredictedRecording {
 
 // A parameter of the model that may be fitted, with its prior.
 struct ModelParameter {
-  // The effects that have it, by their place in PredictionStudy::effects, and its index on their
-  // cards. There are several where an effect shares a modulus with the material.
+  // An effect that has the parameter, by its index in PredictionStudy::effects, and the parameter's
+  // index on the effect's card. There are several where an effect shares a modulus with the
+  // material.
   struct Place {
     size_t effect = 0;
     int index = 0;
     bool operator==(const Place&) const = default;
   };
   std::vector<Place> places;
-  CalibratedParameter prior;  // name "young_modulus" of the material, "gravity.acceleration_z"
-  std::string unit;           // SI
+  CalibratedParameter prior;  // named "young_modulus" (material) or "gravity.acceleration_z"
+  std::string unit;           // SI unit
 };
 // All parameters of these effects except settings, with the bounds and priors of their cards.
 std::vector<ModelParameter> ModelParameters(const EffectList& effects);
@@ -76,7 +77,7 @@ EffectList WithValues(const EffectList& effects, const std::vector<ModelParamete
                       const Eigen::VectorXd& values);
 
 struct PredictionStudy {
-  std::filesystem::path file;  // the experiment
+  std::filesystem::path file;  // the experiment's YAML file
   std::string name;
   std::filesystem::path output;
   MeshSettings mesh;
@@ -86,7 +87,7 @@ struct PredictionStudy {
   TimeScheme scheme = TimeScheme::kTwoStep;
   double time_step = 0.005;         // s; quasi-static steps may be shorter
   bool chooses_time_step = false;   // the fit shortens the step as far as the recordings require
-  double noise = 0;                 // m, σ of a marker's coordinate; 0: to be estimated
+  double noise = 0;                 // m, σ of a marker's coordinate; 0: estimate it
   bool noise_is_estimated = false;  // whether `noise` is an estimate
   // m, σ of a marker's place on the object, an error that is the same in all frames.
   double place_deviation = 0.001;
@@ -95,9 +96,9 @@ struct PredictionStudy {
   // given where predictions with different meshes are compared.
   SurfacePatches patches;
   std::vector<ModelParameter> fitted;
-  std::vector<OwnLaw> candidates;  // the user's laws, which a diagnosis tries beside the catalogue
+  std::vector<OwnLaw> candidates;  // user-defined laws, which a diagnosis tries too
   std::vector<PredictedRecording> recordings;
-  nlohmann::json configuration;  // resolved, SI
+  nlohmann::json configuration;  // with defaults resolved, in SI units
 };
 
 // The time that the used frames span, s, in the longest recording.

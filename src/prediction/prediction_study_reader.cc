@@ -14,7 +14,8 @@
 namespace lacuna {
 namespace {
 
-// Markers that rest where they sit on the undeformed object tell nothing.
+// Throws InputError where all markers rest at their places on the undeformed object, because such
+// recordings determine no parameter.
 void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
   if (!IsAtRest(study)) return;
   double deformation = 0;
@@ -29,8 +30,8 @@ void RequireSomethingToFit(const Config& config, const PredictionStudy& study) {
                           1e3 * deformation, 1e3 * study.place_deviation));
 }
 
-// What is known of a parameter before: `mean`, the start unless it is given, and `deviation`; of
-// one on a logarithmic scale a small one, or the scale's part of it.
+// Reads the prior of a parameter: `mean`, by default the start value, and `deviation`, which is
+// divided by the mean for a parameter on a logarithmic scale.
 void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParameter* prior) {
   if (!item.Has("deviation")) {
     if (item.Has("mean")) item.Fail("mean", "needs a `deviation` beside it");
@@ -43,7 +44,8 @@ void ReadPrior(const Config& item, const ParameterCard& card, CalibratedParamete
   prior->prior_deviation = prior->log_scale ? deviation / prior->prior_mean : deviation;
 }
 
-// `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`; absent: the material's.
+// Reads `fit: {parameters: [{name: young_modulus, min: 1 kPa}, …]}`. If it is absent, the
+// parameters of the material are fitted.
 std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& effects) {
   const std::vector<ModelParameter> known = ModelParameters(effects);
   const auto fit = config.OptionalChild("fit");
@@ -76,10 +78,10 @@ std::vector<ModelParameter> ReadFitted(const Config& config, const EffectList& e
   return fitted;
 }
 
-constexpr double kLongestStep = 0.005;  // s, to begin with
+constexpr double kLongestStep = 0.005;  // s, largest initial time step
 constexpr double kMostSteps = 1e6;
 
-// Mean distance of the frames that are used, s, of the recording where it is least.
+// The smallest mean time between used frames, s, of any recording.
 double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const PredictedRecording& item : recordings) {
@@ -91,15 +93,15 @@ double ShortestSpacing(const std::vector<PredictedRecording>& recordings) {
   return shortest;
 }
 
-// What the fit begins with. Steps of quasi-static motions end at the frames in any case.
+// The initial time step, s, of the fit. Quasi-static steps end at the frames in any case.
 double FirstStep(const PredictionStudy& study) {
   const double spacing = ShortestSpacing(study.recordings);
   if (study.scheme != TimeScheme::kQuasiStatic) return std::min(kLongestStep, 0.5 * spacing);
   return std::isfinite(spacing) ? spacing : kLongestStep;
 }
 
-// A step of the order of the recording follows no motion, and with millions of them a fit would not
-// end.
+// Throws InputError where the time step is too large to resolve the motion, or so small that a fit
+// would take too long.
 void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
   constexpr double kFewest = 10;
   const double duration = Duration(study), steps = duration / study.time_step;
@@ -107,7 +109,7 @@ void RequireSoundStep(const Config& motion, const PredictionStudy& study) {
   if (steps < fewest || steps > kMostSteps)
     motion.Fail("time_step",
                 fmt::format("makes {:.3g} steps of the {:g} s that are predicted; {:g} to {:g} are "
-                            "sound",
+                            "allowed",
                             steps, duration, fewest, kMostSteps));
 }
 
@@ -144,8 +146,8 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
                            /*tells_the_shape=*/study.recordings.empty());
     for (const PredictedRecording& other : study.recordings)
       if (other.name == recording.name)
-        item.Fail("name", fmt::format("\"{}\" is that of another recording already; without one, "
-                                      "an entry has its recording's",
+        item.Fail("name", fmt::format("\"{}\" is already the name of another recording; an entry "
+                                      "without a name has that of its recording",
                                       recording.name));
     study.recordings.push_back(std::move(recording));
   }
@@ -161,7 +163,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   if (study.chooses_time_step && Duration(study) > kMostSteps * study.time_step)
     config.Fail(
         "recordings",
-        fmt::format("last {:g} s, which a motion with inertia takes millions of steps for: give "
+        fmt::format("last {:g} s, for which a motion with inertia takes millions of steps: give "
                     "`motion: {{scheme: quasi_static}}`, a shorter `to`, or a time_step",
                     Duration(study)));
   const auto& density = study.recordings.front().recording.object.density;

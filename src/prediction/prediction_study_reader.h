@@ -1,4 +1,4 @@
-// Reads an experiment that predicts. docs/prediction.md lists the keys.
+// Reads an experiment with a prediction. docs/prediction.md lists the keys.
 #ifndef LACUNA_PREDICTION_PREDICTION_STUDY_READER_H_
 #define LACUNA_PREDICTION_PREDICTION_STUDY_READER_H_
 

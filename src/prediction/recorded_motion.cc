@@ -12,13 +12,14 @@
 namespace lacuna {
 namespace {
 
-// Markers rest where their distances stay within this many times those of noise, so many frames.
+// Markers rest where their distances stay within this many times those caused by noise, for at
+// least kFewestAtRest frames.
 constexpr double kRestThreshold = 2.5;
 constexpr int kFewestAtRest = 8;
 
-// Standard deviations of the white noise beyond which a coordinate's scatter is motion. That of the
-// largest of a hundred coordinates at rest is below 1.5, of noise that is correlated from frame to
-// frame somewhat larger.
+// A coordinate moves where its scatter exceeds this many standard deviations of the white noise.
+// The largest scatter of a hundred coordinates at rest is below 1.5, and somewhat larger if the
+// noise is correlated from frame to frame.
 constexpr double kMoves = 2;
 
 std::vector<int> FittedFrames(const PredictedRecording& item) {
@@ -53,7 +54,7 @@ Spread SpreadOf(const PredictedRecording& item, const std::vector<int>& frames, 
 bool IsAtRest(const PredictedRecording& item) {
   if (item.scans != nullptr) return false;
   const std::vector<int> frames = FittedFrames(item);
-  // Rounding of the mean square must not look like motion where there is no noise.
+  // Without noise, rounding of the mean square must not be mistaken for motion.
   constexpr double kRounding = 1e-9;  // m
   const double least = kMoves * EstimateRecordingNoise(item, frames) + kRounding;
   for (Eigen::Index marker = 0; marker < item.recording.markers.places.cols(); ++marker)
@@ -74,25 +75,24 @@ std::string RestWarning(const PredictionStudy& study) {
                                           return !item.fitted || FittedFrames(item).size() == 1;
                                         });
   return fmt::format(
-      "{} of stiffness and of constant loads, but not of mass, damping, drag or anything else that "
-      "needs motion",
-      is_one_frame ? "a single frame of each recording is fitted: it tells"
-                   : "nothing moves in the frames that are fitted: they tell");
+      "{} stiffness and constant loads, but not mass, damping, drag or anything else that needs "
+      "motion",
+      is_one_frame ? "a single frame of each recording is fitted: it determines"
+                   : "nothing moves in the frames that are fitted: they determine");
 }
 
 namespace {
 
 std::string SlownessWarning(const PredictedRecording& item, const PredictionStudy& study) {
-  constexpr double kMany = 50;  // for one frame
+  constexpr double kMany = 50;  // time steps per frame
   const std::vector<double>& times = item.recording.times;
   const double steps = (times[item.frames.back()] - times[item.frames.front()]) / study.time_step;
   if (study.scheme == TimeScheme::kQuasiStatic ||
       steps <= kMany * static_cast<double>(item.frames.size()))
     return "";
   return fmt::format(
-      "{}: takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in each "
-      "of "
-      "them, `motion: {{scheme: quasi_static}}` takes as many as there are frames",
+      "{}: takes {:.0f} steps of {:.3g} ms for {} frames: if the object is in equilibrium in every "
+      "frame, `motion: {{scheme: quasi_static}}` takes one step for each",
       item.name, steps, 1e3 * study.time_step, item.frames.size());
 }
 
@@ -148,7 +148,7 @@ double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<
   Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
-  // A body that has almost come to rest makes a span's deviation larger, never smaller.
+  // The smallest deviation is used, because a body that is not quite at rest makes it larger.
   double least = std::numeric_limits<double>::infinity();
   for (const StaticSpan& rest :
        StaticSpans(times, rows, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))

@@ -13,7 +13,7 @@ namespace lacuna {
 // Whether the markers stay in place within their noise over the fitted frames. False for scans,
 // whose points differ from frame to frame.
 bool IsAtRest(const PredictedRecording& item);
-// Whether this holds for all recordings that are fitted.
+// Whether this is true of all fitted recordings.
 bool IsAtRest(const PredictionStudy& study);
 // A warning where nothing moves; empty otherwise.
 std::string RestWarning(const PredictionStudy& study);

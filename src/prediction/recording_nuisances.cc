@@ -8,9 +8,9 @@
 namespace lacuna {
 namespace {
 
-// Share of the time of a recording that is only predicted, over which its own nuisances are found.
+// The nuisance parameters are fitted to this share of the recording's time.
 constexpr double kNuisanceHorizon = 0.1;
-// Of a scan, the correspondences are taken anew so often for it.
+// For scans, the number of times that correspondences are searched for.
 constexpr int kRounds = 3;
 
 }  // namespace
@@ -34,7 +34,7 @@ Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementEr
   Eigen::VectorXd values;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Observed> kept;
-    Eigen::VectorXd equilibrium;  // of the last prediction
+    Eigen::VectorXd equilibrium;  // found by the last prediction
     const Calibration fitted = Calibrate(own, [&](const Eigen::VectorXd& at, bool with_jacobian) {
       Misfit misfit =
           model.Predict(beginning, at, with_jacobian ? directions : std::vector<MisfitDirection>{},

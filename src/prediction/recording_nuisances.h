@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-// Fits them to the first tenth of the recording, with the model as it is. `place_offset`: the
-// errors of its markers' places (3 × markers, m) where another recording has determined them.
+// Fits them to the first tenth of the recording while the model is kept fixed. `place_offset` holds
+// the errors of its markers' places (3 × markers, m) where another recording has determined them.
 // Returns an empty vector where the model cannot be simulated.
 Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementErrors errors,
                                       const std::optional<Eigen::MatrixXd>& place_offset);

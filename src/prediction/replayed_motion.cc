@@ -17,7 +17,7 @@ void FindUp(const Model& model, ReplayedMotion* motion) {
   motion->up_from_gravity = true;
 }
 
-// The memory of the effects along a trajectory, from one visited state to the next.
+// The internal variables of the effects along a trajectory, from one visited state to the next.
 class EffectMemory {
  public:
   explicit EffectMemory(const Model& model) : model_(model) {
@@ -28,7 +28,8 @@ class EffectMemory {
     }
   }
 
-  // The memory at a state that follows the last one after `time_step` s (0 for the equilibrium).
+  // The internal variables at a state that follows the last one after `time_step` s (0 for the
+  // equilibrium).
   const std::vector<Eigen::VectorXd>& Advance(const PredictedState& at, double time_step) {
     const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(at.position.size());
     for (size_t j = 0; j < state_.size(); ++j) {
@@ -46,7 +47,7 @@ class EffectMemory {
   std::vector<Eigen::VectorXd> state_;
 };
 
-// The motion and deformation of the markers in one frame. Frames must be stored in their order.
+// Stores the motion and deformation of the markers in one frame. Frames must be stored in order.
 void StoreMarkers(const RecordingModel& recording, const PredictedState& state, int frame,
                   ReplayedMotion* motion) {
   const MarkerObserver& observer = *recording.Markers();
@@ -86,7 +87,7 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
   motion.registration = recording.Registration(nuisance);
   FindUp(model, &motion);
 
-  // The start of the motion is visited too, between the frames before it and those after it.
+  // The start of the motion is visited too; it comes after the frames at rest.
   std::vector<double> times;
   for (const int frame : frames)
     times.push_back(recording.item().recording.times[frame] - motion.delay);

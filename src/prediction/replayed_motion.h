@@ -18,9 +18,10 @@ namespace lacuna {
 struct ReplayedMotion {
   // Where it is not usable, only the frames that were reached are filled.
   PredictionSummary summary;
-  double delay = 0;          // s, delay of the recording's clock: model time = time − delay
+  double delay = 0;  // s, delay of the recording's clock; model time is recorded time − delay
   Eigen::VectorXd nuisance;  // values of RecordingModel::nuisances()
-  // From the model's frame to the measuring frame. Places, velocities and F are in the latter.
+  // The transform from the model's frame to the measuring frame. Places, velocities and F are in
+  // the latter.
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   Eigen::MatrixXd predicted;                 // 3m, m, places of the markers
   Eigen::MatrixXd velocity;                  // 3m, m/s
@@ -32,18 +33,18 @@ struct ReplayedMotion {
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   bool up_from_gravity = false;
   Eigen::MatrixXd height;  // m, of each marker along `up`
-  // The equilibrium before the motion, then at most kMostStates − 1 frames of the motion, evenly
-  // spread, the last frame always. More: finer derivatives along the motion, more memory.
+  // The equilibrium before the motion, then at most kMostStates − 1 evenly spread frames of the
+  // motion, which include the last one. Larger: finer derivatives along the motion, more memory.
   static constexpr int kMostStates = 200;
   std::vector<TrajectoryState> states;
-  // The column of each state. That of the equilibrium is the last frame before the motion, or −1 if
-  // there is none.
+  // The column of each state. For the equilibrium it is that of the last frame before the motion,
+  // or −1 if there is none.
   std::vector<int> state_frame;
 };
 
 // Predicts the recording of markers (CHECK) with the model's effects, with `further` effects that
-// have no memory, and with these values of the recording's nuisance parameters. A prediction that
-// stops early is reported in the summary.
+// have no internal variables, and with these values of the recording's nuisance parameters. A
+// prediction that stops early is reported in the summary.
 ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
                       const EffectList& further = {});
 

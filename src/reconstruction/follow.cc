@@ -32,15 +32,15 @@ Eigen::VectorXd Stacked(const Eigen::Matrix3Xd& points) {
 double NoiseOf(const ReconstructionStudy& study, const std::vector<FrameState>& states) {
   if (study.follow.noise > 0) return study.follow.noise;
   const double estimated = EstimateNoise(states.front().cloud.points);
-  // Exact data would ask for an exact fit, which no mesh gives.
+  // Without a lower limit, noise-free data would require an exact fit, which no mesh allows.
   const double floor = 1e-5 * BoundingBoxDiagonal(states.front().cloud.points);
   return std::max(estimated, floor);
 }
 
-// Where points of the body are in the state, by CPD.
+// The places of points of the body in a recorded state, found by CPD.
 struct Correspondence {
   Eigen::Matrix3Xd target;  // 3 × n
-  Eigen::VectorXd sigma;    // m, of a target across the surface
+  Eigen::VectorXd sigma;    // m, of each target, tangential to the surface
 };
 
 class Follower {
@@ -68,7 +68,7 @@ class Follower {
     previous_velocity_ = Eigen::Matrix3Xd::Zero(3, motion_.body->NodeCount());
   }
 
-  // The reference frame itself: nothing has moved yet.
+  // Adds the reference frame, in which the body is undeformed.
   void RecordRest() {
     FollowedFrame frame;
     frame.time = states_.front().time;
@@ -82,12 +82,12 @@ class Follower {
     grips_->Begin(history_.time);
   }
 
-  // False when the frame could not be followed; its record says why.
+  // Returns false when the frame could not be followed; its record says why.
   bool Follow(size_t k) {
     frame_ = k;
     const FrameState& state = states_[k];
     const Body& body = *motion_.body;
-    // In statics every frame is an equilibrium of its own, without a step from the last one.
+    // In quasi-static motion every frame is an equilibrium, independent of the previous frame.
     const bool is_static = study_.follow.scheme == TimeScheme::kQuasiStatic;
     const double time_step = is_static || k == 0 ? 0 : state.time - states_[k - 1].time;
 
@@ -100,7 +100,7 @@ class Follower {
     if (lost != nullptr)
       throw InputError(
           fmt::format("{}: at {:g} s too few of the markers that \"{}\" follows are seen, or their "
-                      "marker_places are not told",
+                      "marker_places are missing",
                       study_.recording.file.string(), state.time, lost->region.name));
 
     Eigen::VectorXd start = Stacked(before + shift);
@@ -118,10 +118,10 @@ class Follower {
         ThrowIfInterrupted();
         const Observations seen = Observe(AsPoints(start), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
-        // Free forces are expected to go on as they were. Coefficients are expected to be small: as
-        // a random walk, what the scans do not see of them would drift away.
+        // The prior of free forces is centred at those of the last frame, and that of coefficients
+        // at 0: as a random walk, coefficients that the scans do not determine would drift.
         ForceFitOptions options = study_.follow.fit;
-        // Correspondences that will be taken anew need no exact fit.
+        // Correspondences that will be searched for again do not need an exact fit.
         const bool is_last = round + 1 == study_.follow.alignment_rounds;
         if (!is_last) options.function_tolerance = std::max(options.function_tolerance, 1e-2);
         fit = fitter.Fit(seen, {force_, {}}, options);
@@ -138,8 +138,8 @@ class Follower {
       fit.force = Eigen::VectorXd::Zero(3 * body.NodeCount());
     }
 
-    // The forces, not the fitted places, are the result: what stands in the record is where an
-    // ordinary step under these forces leads.
+    // The result of a frame is its forces. The recorded positions are those that an ordinary step
+    // under these forces leads to, rather than the fitted ones.
     MotionHistory after = from;
     if (time_step == 0 && fit.IsUsable()) after.position = fit.position;
     const StepSummary step = time_step > 0 ? stepper_->Step(time_step, fit.force, &after)
@@ -180,14 +180,14 @@ class Follower {
   }
 
   // The motion of `nodes` from state k − 1 to state k (the paper's displacement field between
-  // consecutive surfaces). Before the first state stands the simulated surface.
+  // consecutive surfaces). The simulated surface takes the place of a state before the first.
   Eigen::Matrix3Xd RegisteredShift(size_t k, const Eigen::Matrix3Xd& nodes) {
     if (tracked_ != nullptr) {
       const Eigen::Matrix3Xd& rest = motion_.body->mesh.nodes;
       return tracked_->DisplacementAt(k, rest) - tracked_->DisplacementAt(k - 1, rest);
     }
     const PointCloud from = k > 0 ? StatePoints(states_[k - 1]) : SimulatedSurface(nodes);
-    // Motions go on: the last one is where the search for the next begins.
+    // The search starts from the last motion, because motions are continuous.
     last_motion_ = Registered(from, StatePoints(states_[k]), &last_motion_).field;
     if (last_motion_.IsEmpty()) return Eigen::Matrix3Xd::Zero(3, nodes.cols());
     return last_motion_.Evaluate(nodes);
@@ -198,8 +198,8 @@ class Follower {
     return rest + tracked_->DisplacementAt(frame_, rest);
   }
 
-  // A registration that has not quite settled still guides, with a warning; one that failed moves
-  // nothing, and what depends on it shows.
+  // Registers two clouds. A result that has not converged is used with a warning. One that failed
+  // is replaced by zero displacements with an infinite standard deviation.
   Alignment Registered(const PointCloud& source, const PointCloud& target,
                        const DisplacementField* previous = nullptr) const {
     if (previous != nullptr && previous->IsEmpty()) previous = nullptr;
@@ -215,7 +215,7 @@ class Follower {
     return alignment;
   }
 
-  // v = d/dt, α = dv/dt, F = m α.
+  // The pseudo-force m α of the paper, with v = d/dt and α = dv/dt.
   Eigen::Matrix3Xd PseudoForce(const Eigen::Matrix3Xd& shift, double time_step) {
     if (time_step <= 0) return Eigen::Matrix3Xd::Zero(3, shift.cols());
     const Eigen::Matrix3Xd velocity = shift / time_step;
@@ -225,7 +225,7 @@ class Follower {
     return acceleration * motion_.body->node_mass.asDiagonal();
   }
 
-  // Where the step has led (3n, N).
+  // The known forces (3n, N) at the end of the step.
   Eigen::VectorXd KnownForces() const {
     Eigen::VectorXd known = Eigen::VectorXd::Zero(history_.position.size());
     const Eigen::VectorXd no_memory, at_rest = Eigen::VectorXd::Zero(known.size());
@@ -237,8 +237,8 @@ class Follower {
     return known;
   }
 
-  // What stands for the model in a registration: the places of the tracked points on it, so that a
-  // side which is never seen takes no part, or its whole surface.
+  // The points that represent the model in a registration: the places of the tracked points on it,
+  // which exclude sides that are never seen, or its whole surface.
   PointCloud RegistrationPoints(const Eigen::Matrix3Xd& nodes) const {
     if (tracks_.Count() == 0) return SimulatedSurface(nodes);
     return {PointsAt(tracks_, motion_.body->boundary, nodes), {}};
@@ -271,8 +271,8 @@ class Follower {
                             motion_.noise);
     }
     const double size = BoundingBoxDiagonal(motion_.body->mesh.nodes);
-    // Across the surface CPD is all there is; along its normal the scanned points say more where
-    // there are any, so there CPD only guides.
+    // Tangential to the surface only CPD contains information. Along its normal the scanned points
+    // are more accurate where there are any, so that CPD gets a larger standard deviation there.
     const double slip =
         study_.follow.tangential_noise > 0 ? study_.follow.tangential_noise : 0.03 * size;
     const Eigen::VectorXd tangent = correspondence.sigma.cwiseMax(std::max(motion_.noise, slip));
@@ -284,7 +284,7 @@ class Follower {
     return Concatenate(registered, scanned);
   }
 
-  // align(p, S) − p of Eq. 1.
+  // The residual displacements align(p, S) − p of Eq. 1.
   Eigen::Matrix3Xd ResidualDisplacement(const Eigen::Matrix3Xd& nodes,
                                         const FrameState& state) const {
     const Eigen::Matrix3Xd vertices = BoundaryAt(motion_.body->boundary, nodes).vertices;
@@ -298,15 +298,15 @@ class Follower {
   const std::vector<FrameState>& states_;
   const TrackedFrames* tracked_;
   FollowedMotion& motion_;
-  size_t frame_ = 0;  // the one being followed
+  size_t frame_ = 0;  // frame that is being followed
   Model model_;
   std::unique_ptr<GripTracks> grips_;
   ForceModel forces_;
   EffectList known_forces_;
   MotionHistory history_;
   std::unique_ptr<Stepper> stepper_;
-  std::unique_ptr<FollowedSensitivity> sensitivity_;  // where it is asked for
-  SurfaceTracks tracks_;  // of tracked points; empty where there are none
+  std::unique_ptr<FollowedSensitivity> sensitivity_;  // null if it was not asked for
+  SurfaceTracks tracks_;                              // tracked points; empty where there are none
   Eigen::Matrix3Xd previous_velocity_;
   DisplacementField last_motion_;
   Eigen::VectorXd force_, coefficients_;

@@ -24,8 +24,8 @@ struct FollowedFrame {
   // Standard deviation of the resultant of the fitted forces, N; NaN where the forces are not
   // coefficients of a basis.
   Eigen::Vector3d force_deviation = Eigen::Vector3d::Constant(kNotMeasured);
-  // The initial guess of the paper, N: m α, with v = d/dt and α = dv/dt from the registered
-  // displacements, and m the masses of the nodes or 1 kg.
+  // The initial guess of the paper, m α in N, with v = d/dt and α = dv/dt from the registered
+  // displacements, and with m the masses of the nodes or 1 kg.
   Eigen::Matrix3Xd pseudo_force;
   // align(p, S) − p of Eq. 1 after the step: from each boundary vertex to its place in the state.
   Eigen::Matrix3Xd residual;  // 3 × boundary vertices, m
@@ -46,10 +46,10 @@ struct FollowedMotion {
 
 // Simulates the body from frame to frame. Each frame takes three steps: register the simulated
 // surface to the next state by CPD, fit the forces to the registered displacements and the scanned
-// points (Eq. 1), and advance the body under them. `tracked`: registrations of the same states that
-// replace CPD; only for scans whose first frame is the reference shape (CHECK). `moduli`: the
-// parameters of the first effect by which the motion is differentiated; only with `tracked` and
-// without fitted forces (CHECK), as correspondences have no derivative. Throws InputError and
+// points (Eq. 1), and advance the body under them. `tracked` holds registrations of the same states
+// that replace CPD, for scans whose first frame is the reference shape (CHECK). `moduli` lists the
+// parameters of the first effect by which the motion is differentiated. They require `tracked` and
+// no fitted forces (CHECK), because correspondences have no derivative. Throws InputError and
 // Interrupted; a frame that cannot be followed ends the motion.
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
                             const std::vector<FrameState>& states, Progress* progress,

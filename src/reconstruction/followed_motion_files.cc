@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-// JSON has no NaN: null stands for it.
+// NaN, which JSON does not have, is written as null.
 nlohmann::json ToJson(const Eigen::Vector3d& v) {
   return v.hasNaN() ? nlohmann::json() : nlohmann::json{v.x(), v.y(), v.z()};
 }

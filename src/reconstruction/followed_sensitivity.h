@@ -1,9 +1,9 @@
 // The derivative of a followed motion by the moduli of its material, from the tangent-linear model
 // along it (fem/tangent_linear.h). It exists where no forces are fitted.
 //
-// Fitted forces depend on the moduli, and so do the correspondences that they are fitted to, which
-// are the nearest points of scans and found anew as the body moves. A derivative through the forces
-// with fixed correspondences does not agree with finite differences (docs/search.md).
+// Fitted forces depend on the moduli. So do the correspondences that they are fitted to, because
+// these are the nearest points of the scans and change as the body moves. A derivative through the
+// forces with fixed correspondences does not agree with finite differences (docs/search.md).
 #ifndef LACUNA_RECONSTRUCTION_FOLLOWED_SENSITIVITY_H_
 #define LACUNA_RECONSTRUCTION_FOLLOWED_SENSITIVITY_H_
 
@@ -16,7 +16,7 @@
 
 namespace lacuna {
 
-// Whether the derivative exists: there are no forces, or they are known.
+// Whether the derivative exists, which requires that there are no forces or that they are known.
 bool HasModulusSensitivity(const ForceSettings& forces);
 
 class FollowedSensitivity {

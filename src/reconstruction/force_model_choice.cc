@@ -27,8 +27,8 @@ ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_a
   if (nodes.empty() && fits_forces) {
     throw InputError(fmt::format("{}: forces: no free node of the boundary {}", study.name,
                                  settings.region
-                                     ? "lies in their region"
-                                     : "is left to act on: the recording's grips hold all of it"));
+                                     ? "is in their region"
+                                     : "is left: the recording's grips hold all of them"));
   }
   const Eigen::VectorXi where =
       Eigen::Map<const Eigen::VectorXi>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));

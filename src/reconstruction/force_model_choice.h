@@ -9,7 +9,7 @@
 namespace lacuna {
 
 // The force model that the settings describe. It acts on the boundary nodes of the region except
-// those that a grip holds, where a force would move nothing. Throws InputError when no node is
+// those that a grip holds, where a force has no effect. Throws InputError when no node is
 // left.
 ForceModel MakeForceModel(const ReconstructionStudy& study, const Model& grips_and_body);
 

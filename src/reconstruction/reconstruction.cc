@@ -19,13 +19,13 @@
 namespace lacuna {
 namespace {
 
-// Raised when the stage's code changes so that its result does.
+// Incremented whenever a change of the code changes the result of the stage.
 constexpr int kStatesVersion = 1;
 constexpr int kReferenceVersion = 1;
 constexpr int kMotionVersion = 2;
 constexpr int kResultsVersion = 2;
 
-// What is hashed so that a changed input is noticed.
+// Hashes of the recording's files, by file name, so that changes of the input are noticed.
 std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
   std::map<std::string, std::string> hashes;
   for (const std::filesystem::path& file : RecordingFiles(study.recording))

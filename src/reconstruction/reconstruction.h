@@ -1,4 +1,4 @@
-// From a recording to a model with per-step forces that follows it: the paper's pipeline.
+// The paper's pipeline, from a recording to a model with per-step forces that follows it.
 //
 //   points → surface → registered frames → tet mesh → trajectory with forces → measures → files
 #ifndef LACUNA_RECONSTRUCTION_RECONSTRUCTION_H_
@@ -10,8 +10,8 @@
 
 namespace lacuna {
 
-// Runs what is not yet in the run directory. Throws InputError for input that turns out unusable
-// (file and frame named) and Interrupted; numerical outcomes stand in the record.
+// Runs the stages that are not yet in the run directory. Throws Interrupted, and InputError, which
+// names file and frame, for unusable input. Numerical failures are reported in the record.
 RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress);
 
 }  // namespace lacuna

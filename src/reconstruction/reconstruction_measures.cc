@@ -27,7 +27,7 @@ size_t FirstFollowed(const ReconstructionStudy& study) {
   return FirstFrameIsReference(study) ? 1 : 0;
 }
 
-// Root mean square distance between columns that are both known.
+// Root mean square distance between those columns that are known in both.
 double RmsError(const Eigen::Matrix3Xd& found, const Eigen::Matrix3Xd& truth) {
   return Summarise((found - truth).colwise().norm().transpose()).rms;
 }
@@ -133,7 +133,8 @@ void MeasureTrueForces(const ReconstructionStudy& study, const FollowedMotion& m
   record->measures["true_force_median_error"] = errors[errors.size() / 2];
 }
 
-// The model's surface at the last frame that was followed, coloured by |D|, with the scan's points.
+// Draws the model's surface at the last frame that was followed, coloured by |D|, with the scan's
+// points.
 void DrawLastFrame(const ReconstructionStudy& study, const std::vector<FrameState>& states,
                    const FollowedMotion& motion, const std::filesystem::path& file) {
   size_t last = motion.frames.size();

@@ -16,16 +16,16 @@
 namespace lacuna {
 
 // Computes |D| (Eq. 1) and distances for each frame, |D_anim| (Eq. 2), and the errors against
-// held-out points and known truths where the study names them. RunRecord::measures holds, beside
-// the values of the frames:
+// held-out points and known truths where the study names them. RunRecord::measures contains,
+// besides the values of the frames:
 //   noise_m                        σ of a scanned point, as used by the fit
 //   residual_per_point_m           mean of |D| per point over the frames
 //   surface_distance_mean_m        mean over the frames after the reference
 //   held_out_rms_max_m             largest rms error of the held-out points in a frame
 //   held_out_spacing_m             their mean distance to the nearest other tracked point
-//   true_surface_distance_mean_m   distance of the true surface's vertices from the simulated
-//   surface,
-//                                  over all frames after the reference; ..._max_m: the worst frame
+//   true_surface_distance_mean_m   mean distance of the true surface's vertices from the simulated
+//                                  surface over all frames after the reference
+//   true_surface_distance_max_m    the same for the worst frame
 //   true_position_mean_error       mean error of the true points over the largest displacement
 //   true_force_median_error        median over the frames of |F − F_true| / |F_true|
 RunRecord MeasureRun(const ReconstructionStudy& study, const ReferenceBody& reference,

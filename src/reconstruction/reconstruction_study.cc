@@ -54,7 +54,8 @@ ForceSettings ReadForces(const Config& config, const std::filesystem::path& data
       config.Choice<bool>("pseudo_mass", {{"lumped", false}, {"unit", true}}, "lumped");
   forces.hold_net_force = config.Flag("hold_net_force", forces.hold_net_force);
   if (forces.hold_net_force && forces.kind == Kind::kFree)
-    config.Fail("hold_net_force", "goes with smooth forces; free ones have no basis to restrict");
+    config.Fail("hold_net_force",
+                "needs smooth forces; free forces have no basis that could be restricted");
   return forces;
 }
 
@@ -107,8 +108,8 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
   validation->true_mesh = entry->Path("true_mesh", "");
   validation->true_forces = entry->Path("true_forces", "");
   if (validation->true_positions.empty() != validation->true_mesh.empty())
-    entry->Fail("true_positions", "and true_mesh go together");
-  // Told now rather than after the computation that they would be compared with.
+    entry->Fail("true_positions", "needs true_mesh, and the reverse");
+  // Missing files are reported before the computation rather than after it.
   const auto require = [&entry](const char* key, const std::filesystem::path& path) {
     if (!path.empty() && !std::filesystem::exists(path))
       entry->Fail(key, "there is no " + path.string());
@@ -119,7 +120,7 @@ void ReadValidation(const Config& config, ValidationSettings* validation) {
   require("true_forces", validation->true_forces);
 }
 
-// Known forces need a place and must cover the frames; others are told apart from them.
+// Known forces need a region and must cover the frames. Warns where measured forces are not used.
 void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
   Recording& recording = study->recording;
   if (study->follow.forces.kind != ForceSettings::Kind::kKnown) {
@@ -137,8 +138,8 @@ void CheckMeasuredForces(const Config& config, ReconstructionStudy* study) {
   const double slack = 1e-9 * (last - first);
   for (const MeasuredForce& force : recording.object.forces) {
     if (!force.region)
-      forces.Fail("model", fmt::format("the recording does not tell where {} acts (its region)",
-                                       force.name));
+      forces.Fail("model",
+                  fmt::format("the recording does not say where {} acts (its region)", force.name));
     const bool is_constant = force.file.empty();
     const double from = force.times[0], to = force.times[force.times.size() - 1];
     if (!is_constant && (from > first + slack || to < last - slack)) {
@@ -188,7 +189,7 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   config.RefuseUnknownKeys();
   if (study.frames.size() < 2 && study.recording.reference.source == ReferenceSource::kFirstFrame) {
     config.Fail("recording",
-                "has one frame, which would be the reference shape and the motion at once; give a "
+                "has one frame, which would be both the reference shape and the motion; give a "
                 "reference shape or more frames");
   }
   CheckMeasuredForces(config, &study);
@@ -196,8 +197,8 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
     study.recording.warnings.push_back(warning);
   if (study.recording.object.gravity && !GravityOf(study.effects)) {
     study.recording.warnings.push_back(
-        "the recording was made in gravity, the model has none; sound where the reference shape "
-        "was scanned in the same gravity");
+        "the recording was made under gravity, but the model has none; this is valid if the "
+        "reference shape was scanned under the same gravity");
   }
   study.configuration = config.Resolved();
   return study;

@@ -1,5 +1,5 @@
-// An experiment that reconstructs: one recording, and the settings of every stage of the paper's
-// pipeline. docs/experiment.md lists the keys.
+// An experiment with a reconstruction: one recording, and the settings of every stage of the
+// paper's pipeline. docs/experiment.md lists the keys.
 #ifndef LACUNA_RECONSTRUCTION_RECONSTRUCTION_STUDY_H_
 #define LACUNA_RECONSTRUCTION_RECONSTRUCTION_STUDY_H_
 
@@ -25,11 +25,11 @@ namespace lacuna {
 // Where unknown forces may act and how they may vary (fit/force_model.h).
 struct ForceSettings {
   enum class Kind { kNone, kKnown, kFree, kSmooth, kFootprint, kNodal };
-  Kind kind = Kind::kSmooth;     // kKnown: the measured forces of the recording, nothing is fitted
-  std::optional<Region> region;  // absent: the whole boundary; a footprint needs a region
-  double length = 0;             // m, of smooth forces; 0: a quarter of the object's diagonal
-  double traction_scale = 0;     // Pa, of smooth forces; 0: a tenth of Young's modulus
-  double force_scale = 1;        // N, of a footprint or of each node
+  Kind kind = Kind::kSmooth;     // kKnown: measured forces, nothing is fitted
+  std::optional<Region> region;  // absent: whole boundary; needed for a footprint
+  double length = 0;             // m, smooth forces; 0: a quarter of the object's diagonal
+  double traction_scale = 0;     // Pa, smooth forces; 0: a tenth of Young's modulus
+  double force_scale = 1;        // N, footprint or each node
   bool hold_net_force = false;   // restrict the forces to zero net force and net torque
   // The masses in the initial guess F = m α: 1 kg at each node, as in the paper, or the lumped
   // masses of the FEM.
@@ -48,30 +48,31 @@ struct FollowSettings {
   // own deviation suggests. 0: 3 % of the object's size. Larger: forces along the surface become
   // smaller.
   double tangential_noise = 0;
-  int alignment_rounds =
-      3;  // how often correspondences are found anew; more: slower, more accurate
+  // How often correspondences are searched for. More: slower, more accurate.
+  int alignment_rounds = 3;
   // Scanned points farther than this from the simulated surface do not belong to the object, as a
-  // fraction of its size. Larger: worse starts are tolerated, more foreign points are used.
+  // fraction of its size. Larger: worse start values are tolerated, and more points of other
+  // objects are used.
   double reach = 0.1;
   // For tracked points and markers: whether row i is the same material point in every frame.
   // Otherwise correspondences are found by CPD.
   bool use_identity = true;
 };
 
-// Independent knowledge that a reconstruction is checked against. None of it enters the fit.
+// Independent data that a reconstruction is checked against. They do not enter the fit.
 struct ValidationSettings {
   int hold_out_every = 0;                // hold out every k-th tracked point from the fit; 0: none
   std::filesystem::path true_surfaces;   // the truth/ folder of a virtual scan
   std::filesystem::path true_positions;  // .npy, frames × points × 3, m
-  std::filesystem::path true_mesh;       // the tet mesh whose nodes these points are
-  std::filesystem::path true_forces;     // .npy, frames × 3, N, the resultant
+  std::filesystem::path true_mesh;       // the tet mesh with these points as nodes
+  std::filesystem::path true_forces;     // .npy, frames × 3, N, resultant force
 };
 
 struct ReconstructionStudy {
   std::string name;
   std::filesystem::path output;
   Recording recording;
-  std::vector<int> frames;  // of the recording, ascending
+  std::vector<int> frames;  // frames of the recording, ascending
   uint64_t seed = 1;
   FilterOptions filter;
   SurfaceOptions surface;
@@ -84,13 +85,13 @@ struct ReconstructionStudy {
   EffectList effects;
   FollowSettings follow;
   ValidationSettings validation;
-  nlohmann::json configuration;  // resolved, SI
+  nlohmann::json configuration;  // with defaults resolved, in SI units
 };
 
 // Reads and checks everything that can be checked before the computation. Throws InputError.
 ReconstructionStudy ReadReconstruction(const Config& config);
-// The same for a given recording, which `config` then does not name. Keys that the caller has read
-// before are not reported as unknown.
+// The same for a given recording, in place of one that `config` names. Keys that the caller has
+// read before are not reported as unknown.
 ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording);
 
 }  // namespace lacuna

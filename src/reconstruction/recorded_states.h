@@ -12,15 +12,15 @@
 
 namespace lacuna {
 
-// One state per frame of the study, in its order. Throws InputError, naming the frame, and
-// Interrupted.
+// One state per frame of the study, in the same order. Throws InputError, which names the frame,
+// and Interrupted.
 std::vector<FrameState> LoadFrameStates(const ReconstructionStudy& study, Progress* progress);
 
 // `first` is the state of the study's first frame. Throws InputError when the shape cannot be
 // meshed.
 ReferenceBody MakeReferenceBody(const ReconstructionStudy& study, const FrameState& first);
 
-// Whether the first frame is the reference shape itself, so that there is nothing to follow in it.
+// Whether the first frame is the reference shape itself, so that it need not be followed.
 bool FirstFrameIsReference(const ReconstructionStudy& study);
 
 }  // namespace lacuna

@@ -2,7 +2,7 @@
 // meshes.
 //
 // S_0 is registered to every S_k once, independent of any simulation. The displacement is a field
-// over the undeformed space, from which the vertices of any mesh of S_0 read their places. In
+// over the undeformed space, at which the vertices of any mesh of S_0 can be evaluated. In
 // contrast to registration in the loop, align(p, S) of Eq. 1 does not depend on the simulated
 // shape, so that it retains the error of CPD along the surface.
 #ifndef LACUNA_RECONSTRUCTION_TRACKED_FRAMES_H_
@@ -30,8 +30,9 @@ struct TrackedFrames {
   Eigen::VectorXd DeviationAt(size_t k, const Eigen::Matrix3Xd& at_rest) const;
 };
 
-// Each registration starts from the result of the one before. The first of the states, represented
-// by its StatePoints, is S_0. Throws InputError where a state has no points, and Interrupted.
+// Each registration starts from the result of the previous one. The first of the states,
+// represented by its StatePoints, is S_0. Throws InputError where a state has no points, and
+// Interrupted.
 TrackedFrames TrackFrames(const ReconstructionStudy& study, const std::vector<FrameState>& states,
                           Progress* progress);
 

@@ -27,10 +27,10 @@ struct FittedParameter {
   std::optional<double> with_finest_mesh;
 };
 
-// What is particular to a recording of surface scans.
+// Additional data of a recording of surface scans.
 struct FittedScan {
-  Eigen::Matrix3Xd places;  // m, of the patches on the undeformed object
-  double patch_noise = 0;   // m, rms over all patches of the noise of a patch's mean in one frame
+  Eigen::Matrix3Xd places;  // m, places of the patches on the undeformed object
+  double patch_noise = 0;   // m, noise of a patch's mean in one frame, rms over all patches
   double used = 0;          // share of the scanned points that were compared
 };
 
@@ -52,17 +52,17 @@ struct FittedRecording {
 };
 
 struct CalibrationRecord {
-  std::filesystem::path experiment;  // relative to the run's folder
+  std::filesystem::path experiment;  // relative path from the run's folder
   bool usable = false;
   std::string message;  // why it is not usable
-  // m, the σ that residuals were weighted with: of one coordinate of a marker, and of a scanned
-  // point along the surface normal. 0 where there are no markers or no scans.
+  // m, the standard deviations that whiten the residuals: of one coordinate of a marker, and of a
+  // scanned point along the surface normal. 0 where there are no markers or no scans.
   double noise = 0, scan_noise = 0;
-  double time_step = 0;   // s, of the simulation
+  double time_step = 0;   // s, time step of the simulation
   double step_error = 0;  // change of the prediction with half the step, in σ; 0: step given
-  double start_rms = 0, rms = 0;            // of the whitened residuals, before and after the fit
+  double start_rms = 0, rms = 0;            // whitened residuals, before and after the fit
   int predictions = 0;                      // number of simulations of all recordings
-  std::vector<FittedParameter> parameters;  // the model's, then the recordings'
+  std::vector<FittedParameter> parameters;  // model's, then the recordings'
   std::vector<FittedRecording> recordings;
   std::vector<PriorConflict> prior_conflicts;
   // Known only after RunCalibration: they are not in the file.

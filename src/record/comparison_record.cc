@@ -18,7 +18,8 @@ using nlohmann::json;
 constexpr int kSchemaVersion = 2;
 constexpr const char* kLongerThanData = "longer than the data";
 
-// A correlation time or length; JSON has no infinity.
+// Writes a correlation time or length, with a string in place of infinity, which JSON does not
+// have.
 json ScaleToJson(double value) {
   return std::isinf(value) ? json(kLongerThanData) : NumberOrNull(value);
 }

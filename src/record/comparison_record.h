@@ -1,5 +1,5 @@
 // Plain data of a comparison: where, when and by how much the predictions of a fitted model differ
-// from its recordings, as <run>/comparison/comparison.json holds it.
+// from its recordings. It is stored in <run>/comparison/comparison.json.
 //
 // Everything that report/comparison_report.h prints is here, so that a stored comparison can be
 // printed again without the model, its experiment or its recordings. An error is a length in m,
@@ -31,12 +31,12 @@ struct MeanDifference {
   double agreement = kNotMeasured;
 };
 
-// The size of the error over some frames. Lengths in m.
+// The size of the error over some frames. Lengths are in m.
 struct ErrorSize {
-  int points = 0;  // observed, summed over the frames
+  int points = 0;  // number of observed points, summed over the frames
   double rms = kNotMeasured;
-  double rms_over_sigma = kNotMeasured;  // rms over what noise of the fit's σ alone would give
-  double rms_over_floor = kNotMeasured;  // the same with the recording's own noise floor for σ
+  double rms_over_sigma = kNotMeasured;  // rms over that of noise with the fit's σ
+  double rms_over_floor = kNotMeasured;  // the same with the recording's noise floor
   // rms² = steady² + changing²: each point's mean error over the frames, and the deviation from it.
   double steady = kNotMeasured, changing = kNotMeasured;
   double largest = kNotMeasured;
@@ -47,7 +47,7 @@ struct ErrorSize {
 
 // Whether the error is white in time (Ljung & Box, Biometrika 65, 1978; analysis/whiteness.h).
 struct TimeCorrelation {
-  int lags = 0;                     // 0: there are too few frames, and all below is NaN
+  int lags = 0;                     // 0: too few frames; then all below is NaN
   double statistic = kNotMeasured;  // Ljung–Box Q
   double lag_one = kNotMeasured;    // correlation of neighbouring frames
   double time = kNotMeasured;       // s, correlation time; infinite: longer than the data
@@ -62,7 +62,7 @@ struct PointCorrelation {
 
 // Whether the errors of different points are independent (analysis/whiteness.h).
 struct SpaceCorrelation {
-  double mean = kNotMeasured;    // over all pairs of points
+  double mean = kNotMeasured;    // mean over all pairs of points
   double length = kNotMeasured;  // m, correlation length; infinite: longer than the object
   double p_value = kNotMeasured;
   std::vector<PointCorrelation> pairs;  // left out for a scan, which has too many
@@ -71,7 +71,7 @@ struct SpaceCorrelation {
 // The longest period in which the error is above average and above noise.
 struct WorstPeriod {
   int first_frame = 0, last_frame = 0;  // numbers of the recording's frames, both inclusive
-  int frames = 0;                       // from the first to the last
+  int frames = 0;                       // number of frames from first to last
   double from = 0, to = 0;              // s
   double rms = kNotMeasured;            // m
   MeanDifference mean_difference;
@@ -79,15 +79,15 @@ struct WorstPeriod {
 
 // One bin of an ErrorTrend.
 struct ErrorBin {
-  double low = 0, high = 0, mean = 0;  // of the quantity
-  int count = 0;                       // frames, or points where the quantity belongs to points
+  double low = 0, high = 0, mean = 0;  // in the unit of the quantity
+  int count = 0;                       // number of frames, or of points for "grip_distance_m"
   double rms = 0;                      // m
 };
 
 // The rms error of a frame (or of a point, for "grip_distance_m") as a function of one quantity.
 struct ErrorTrend {
-  std::string quantity;                    // with its unit: "speed_m_per_s"
-  double rank_correlation = kNotMeasured;  // Spearman's
+  std::string quantity;                    // name with unit: "speed_m_per_s"
+  double rank_correlation = kNotMeasured;  // Spearman's coefficient
   std::vector<ErrorBin> bins;              // ascending, with about as many entries each
 };
 
@@ -97,8 +97,8 @@ struct ComparedPart {
   int frames = 0;
   double from = 0, to = 0;  // s, times of the first and last frame
   ErrorSize error;
-  Eigen::VectorXd point_rms;  // m, of each point; NaN where it was never observed
-  int worst_point = -1;       // the one with the largest rms; −1: no point was observed
+  Eigen::VectorXd point_rms;  // m, for each point; NaN where it was never observed
+  int worst_point = -1;       // point with the largest rms; −1: no point was observed
   TimeCorrelation in_time;
   SpaceCorrelation in_space;
   std::optional<WorstPeriod> worst_period;
@@ -108,12 +108,12 @@ struct ComparedPart {
 // A period in which the object rests, and how its markers scatter there about a straight line.
 struct RestPeriod {
   double from = 0, to = 0;          // s
-  double deviation = kNotMeasured;  // m, of a coordinate about the line
+  double deviation = kNotMeasured;  // m, scatter of a coordinate about the line
   double drift = kNotMeasured;      // m/s, rms slope of the line
 };
 
-// Noise of a recording as the recording itself shows it, without a model. Lengths in m, standard
-// deviations of a coordinate (of a patch along its normal for a scan).
+// The noise of a recording, estimated from the recording itself without a model. Values are
+// standard deviations, m, of a coordinate of a marker or of a patch along its normal.
 struct NoiseFloor {
   double floor = kNotMeasured;           // the larger of the next two
   double white = kNotMeasured;           // white part, from second differences
@@ -125,30 +125,30 @@ struct ComparedRecording {
   std::string name;
   bool is_scan = false;                  // its points are patches, measured along their normal
   double noise = 0;                      // m, σ of a component of a point, as assumed in the fit
-  std::vector<std::string> point_names;  // numbers where the recording is not available
-  Eigen::VectorXd grip_distance;  // m, of each point on the undeformed object; empty: unknown
+  std::vector<std::string> point_names;  // numbers if the recording is not available
+  Eigen::VectorXd grip_distance;         // m, undeformed object; empty: unknown
   NoiseFloor noise_floor;
-  std::vector<ComparedPart> parts;  // in the order of time: fitted frames, then held-out ones
-  // The following needs the model to be run again.
-  bool height_by_gravity = false;               // false: heights are along z
-  int field_frames = 0;                         // frames written for ParaView
-  std::optional<UnexplainedForceRecord> force;  // absent: not computed
+  std::vector<ComparedPart> parts;  // in chronological order: fitted, then held-out frames
+  // The following is known only if the model was run again.
+  bool height_by_gravity = false;               // height is measured against gravity, else along z
+  int field_frames = 0;                         // number of frames written for ParaView
+  std::optional<UnexplainedForceRecord> force;  // absent if not computed
 
   // The rms length that noise of standard deviation σ per component would give: √3 σ for a marker,
   // σ for a patch.
   double RmsOfNoise(double sigma) const;
 };
 
-// Two recordings with the same frame rate, compared with each other as they were measured.
+// A comparison of the measurements of two recordings with the same frame rate.
 struct ComparedPair {
   std::string first, second;
-  int frames = 0;                  // of the first that the second covers
-  double delay = kNotMeasured;     // s, of the second; chosen so that the distance is smallest
-  double distance = kNotMeasured;  // m, rms, each marker's mean difference left out
+  int frames = 0;                  // frames of the first that the second covers
+  double delay = kNotMeasured;     // s, delay of the second with the smallest distance
+  double distance = kNotMeasured;  // m, rms, without each marker's mean difference
 };
 
 struct ComparisonRecord {
-  double noise = 0;  // m, σ of a marker's coordinate that the fit assumed; 0: there are no markers
+  double noise = 0;  // m, σ of a marker's coordinate assumed by the fit; 0: no markers
   std::vector<ComparedRecording> recordings;
   std::vector<ComparedPair> pairs;
   std::vector<std::string> notes;  // what could not be computed, and why

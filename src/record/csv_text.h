@@ -1,4 +1,4 @@
-// Quoting of text in a table of comma-separated values.
+// Quoting of text in CSV files.
 #ifndef LACUNA_RECORD_CSV_TEXT_H_
 #define LACUNA_RECORD_CSV_TEXT_H_
 

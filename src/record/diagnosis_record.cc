@@ -17,7 +17,7 @@ using nlohmann::json;
 constexpr int kSchemaVersion = 9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// has_held_out is common to all models of a diagnosis, and stands once in the file.
+// has_held_out is the same for all models of a diagnosis and is written only once.
 json ErrorsToJson(const ModelErrors& errors) {
   return {{"in_fit_rms_m", errors.in_fit_rms},
           {"held_out_rms_m", errors.held_out_rms},

@@ -1,9 +1,8 @@
 // The result of a diagnosis as plain data: diagnosis/diagnosis.json in the run's folder.
 //
 // It holds everything that the report needs, so that a diagnosis can be explained without its model
-// and its recordings. Evidence is the natural logarithm of the odds against the model as it is,
-// with the price of having tried many hypotheses taken off. σ is the standard deviation of the
-// noise.
+// and its recordings. Evidence is the natural logarithm of the odds against the unchanged model,
+// reduced by a penalty for having tried many hypotheses. σ is the standard deviation of the noise.
 #ifndef LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 #define LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 
@@ -22,76 +21,77 @@ struct RecordedInterval {
   double value = 0, low = 0, high = 0;
 };
 
-// One of the parameters that make an effect's size, in its unit (SI).
+// One of the parameters that define the size of an effect, in its unit (SI).
 struct RecordedSize {
   std::string parameter, unit;
-  // Expected to first order, with its standard deviation; infinite where the data do not
+  // The first-order estimate and its standard deviation, which is infinite where the data do not
   // determine it.
   double expected = 0, deviation = 0;
-  double detectable = 0;                     // the smallest size that would have been noticed
+  double detectable = 0;                     // the smallest detectable size
   std::optional<RecordedInterval> refitted;  // after a usable refit; absent for a pilot hypothesis
 };
 
-// Another parameter of a refitted effect (its place, its time), in its unit (SI).
+// Another parameter of a refitted effect, such as a place or a time, in its unit (SI).
 struct RecordedValue {
   std::string parameter, unit;
   RecordedInterval found;
 };
 
-// What a first-order prediction says about an effect.
+// The first-order prediction for an effect.
 struct RecordedScore {
   double evidence = 0;
   double explained = 0;  // share of the squared misfit
-  // Share of the effect's influence that the fitted parameters can compensate for. 1: invisible.
+  // Share of the effect's influence that the fitted parameters can compensate for; 1: undetectable.
   double absorbed = 1;
   double held_out_rms_over_sigma = 0;  // expected error of the held-out frames
 };
 
-// What remains beside a refitted effect: the best other effect, and the best nuisance.
+// The best explanations of what remains after the refit of an effect: another effect, and a
+// nuisance.
 struct RecordedRemainder {
-  std::string effect;  // empty: no other effect has evidence
+  std::string effect;  // empty where no other effect has evidence
   double evidence = 0, nuisance_evidence = 0;
 };
 
-// The model fitted again with an effect.
+// The fit of the model with an additional effect.
 struct RecordedRefit {
-  std::string message;  // why it is not usable; empty: it is usable
+  std::string message;  // the reason why it is not usable; empty where it is
   double evidence = 0;
-  double held_out_evidence = 0;  // the part of it that the held-out frames contribute
+  double held_out_evidence = 0;  // contribution of the held-out frames
   double explained = 0;          // share of the squared misfit
-  double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
+  double rms_over_sigma = 0;     // all frames, with the best values of the adopted nuisances
   RecordedRemainder remainder;
   ModelErrors errors;
-  std::vector<RecordedValue> others;  // of a usable refit
+  std::vector<RecordedValue> others;  // empty if the refit is not usable
 };
 
 // An effect in its best variant.
 struct RecordedEffect {
   std::string type, title;  // "drag", "Drag of the surrounding fluid"
-  std::string variant;      // "at the tip"; empty where there is one only
+  std::string variant;      // "at the tip"; empty where there is only one
   std::string separating_experiment;
-  std::vector<std::string> look_alikes;  // types that first order cannot tell from this one
+  std::vector<std::string> look_alikes;  // types indistinguishable to first order
   RecordedScore first_order;
   std::vector<RecordedSize> sizes;
-  std::optional<RecordedRefit> refit;  // absent: it was not refitted
+  std::optional<RecordedRefit> refit;  // absent where it was not refitted
 
   bool HasUsableRefit() const { return refit && refit->message.empty(); }
 };
 
 struct RecordedNuisance {
   std::string name, what;          // "grip_compliance"; a phrase with its place or time
-  std::string advice;              // how to find out, or to remove it
-  double evidence = 0;             // to first order
+  std::string advice;              // how to check for it, or to remove it
+  double evidence = 0;             // first-order evidence
   double explained = 0;            // share of the squared misfit
-  std::optional<double> refitted;  // evidence after the model with it was fitted again
-  bool adopted = false;            // so certain that it is part of the model
+  std::optional<double> refitted;  // evidence after a refit with it
+  bool adopted = false;            // certain enough to be part of all models
   // Evidence for an effect that the uncertainty in this nuisance's influence could account for.
   double evidence_uncertainty = 0;
 };
 
-// The noise that evidence is computed with.
+// The noise that is assumed in the computation of evidence.
 struct RecordedNoise {
-  double coordinate = 0, scanned_point = 0;  // m, σ; 0: there are none
+  double coordinate = 0, scanned_point = 0;  // m, σ; 0 where there are none
   double correlation_time = 0;               // s; 0: white in time
   double variance_factor = 1;                // variance divided by that of the given σ
 };
@@ -100,19 +100,19 @@ struct RecordedNoise {
 struct RecordedAlternatives {
   std::vector<RecordedEffect> effects;
   double nuisances_evidence = 0;
-  double rms_over_sigma_without_both = 0;  // held-out frames
+  double rms_over_sigma_without_both = 0;  // held-out frames, model without both
 };
 
 struct DiagnosisRecord : Conclusion {
   RecordedNoise noise;
-  double time_step = 0;         // s, of the simulations
-  double control_evidence = 0;  // found in 1 of 20 residuals that contain no effect
-  // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
+  double time_step = 0;         // s, time step of the simulations
+  double control_evidence = 0;  // exceeded in 1 of 20 residuals without an effect
+  // Over all frames, with the best values of the adopted nuisances: the unchanged model, and the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
-  ModelErrors errors;  // of the model as it is
+  ModelErrors errors;  // errors of the unchanged model
   std::vector<RecordedNuisance> nuisances;
-  std::vector<RecordedEffect> ranking;  // by first-order evidence
+  std::vector<RecordedEffect> ranking;  // sorted by first-order evidence
   std::vector<UntriedEffect> untried;
   RecordedAlternatives alternatives;
 };

@@ -1,11 +1,12 @@
 // The card of a physical effect: everything that the rest of the program must know of the effect
 // besides its equations of motion.
 //
-// The card stands beside the effect's code (src/effects/NAME.cc) and is the only place for these
-// facts. The YAML check reads the parameters; `lacuna effects` and `lacuna explain` print the card;
-// the diagnosis reads `tried_at` to enumerate the variants that it tries, and the experiment that
-// it recommends; the sealed trials read `trial` to hide the effect in a synthetic recording. Values
-// are in SI units. Cards are constant after their construction, so that any thread may read them.
+// The card is defined next to the effect's code (src/effects/NAME.cc) and is the only place for
+// these facts. The YAML check reads the parameters; `lacuna effects` and `lacuna explain` print the
+// card; the diagnosis reads `tried_at` to enumerate the variants that it tries, and the experiment
+// that it recommends; the sealed trials read `trial` to hide the effect in a synthetic recording.
+// Values are in SI units. Cards are constant after their construction, so that any thread may read
+// them.
 #ifndef LACUNA_RECORD_EFFECT_CARD_H_
 #define LACUNA_RECORD_EFFECT_CARD_H_
 
@@ -25,8 +26,8 @@ struct TrialSetting {
   double share_of_length = 0;  // > 0: this share of the length of the bar
   // min < max: drawn between these values (SI), uniformly in the logarithm if the parameter has
   // `log_scale`. `draw` numbers the random draw of the case that gives the value; parameters of one
-  // effect need different numbers. Numbers 0 and 6 to 8 are taken by the place and the axis.
-  // A number that is kept keeps the cases of a seed as they are.
+  // effect need different numbers. Numbers 0 and 6 to 8 are used for the place and the axis.
+  // The numbers must not change, because the cases of a seed depend on them.
   double min = 0, max = 0;
   int draw = 0;
 
@@ -35,40 +36,40 @@ struct TrialSetting {
 
 // A parameter that has no value at which the effect vanishes.
 inline constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
-// A parameter whose value the user must give, as no default makes sense.
+// A parameter whose value the user must give, because there is no sensible default.
 inline constexpr double kMustBeGiven = std::numeric_limits<double>::quiet_NaN();
 
 struct ParameterCard {
   std::string name;           // the YAML key
   std::string meaning;        // one phrase
-  Dimension dimension;        // of the value; SI inside
-  Bounds bounds = kAnyValue;  // the YAML check refuses values outside, which make no sense
+  Dimension dimension;        // dimension of the value, which is stored in SI units
+  Bounds bounds = kAnyValue;  // the YAML check refuses values outside of these
   double null_value = 0;      // the value at which the effect vanishes, or kNoNullValue
   double plausible_min = 0;   // range of plausible values for soft objects, SI; the larger of the
   double plausible_max = 0;   // two absolute values is the scale of the prior
   double default_value = 0;   // SI, or kMustBeGiven
   bool log_scale = false;     // the fit and the trials use the logarithm of the value
-  bool setting = false;       // says where or how the effect acts: given by the user, never fitted
+  bool setting = false;       // describes where or how the effect acts; never fitted
   TrialSetting trial = {};
 };
 
-// Where the diagnosis tries an effect that the model lacks. A derivative at the null value finds
-// the size of an effect, but not its place, its direction or its time scale; those are enumerated.
-// The number of variants trades the time of the first-order ranking against the distance between an
-// unknown place, direction or time and the nearest variant.
+// The variants with which the diagnosis tries an effect that the model lacks. A derivative at the
+// null value determines the size of an effect, but not its place, direction or time scale, which
+// are enumerated. The number of variants trades the time of the first-order ranking against the
+// distance between an unknown place, direction or time and the nearest variant.
 //
 // The variants fill the parameters of the card by name: `centre` and `point` get a place, `axis`
 // (or `azimuth` and `inclination`) a direction, `radius` the width of a place, `origin` and
 // `length` the extent of a gradient. All other parameters take the model's value (those of the
-// material, and gravity), else the default of the card.
+// material, and gravity) or the default of the card.
 
-// One variant: nothing has to be enumerated.
+// One variant, without enumeration.
 struct TriedOnce {};
 
 // At places of the body: along the length of a bar, or spread over the volume of any other body.
 struct TriedAtPlaces {
-  std::vector<double> length_shares;  // of a bar: the distance from one end, in its length
-  double radius_share = 0;            // the width of each place, in the length of the body
+  std::vector<double> length_shares;  // for a bar: distance from one end over its length
+  double radius_share = 0;            // width of each place over the length of the body
 };
 
 // Along the principal axes of the body and the diagonals between them (13 directions).
@@ -80,7 +81,7 @@ struct TriedAsGradients {};
 // At values of one parameter.
 struct TriedAtValues {
   std::string parameter;       // its name on the card
-  std::string label;           // how the variant is called: "κ₀" gives "κ₀ = 0.1"
+  std::string label;           // names the variant: "κ₀" gives "κ₀ = 0.1"
   std::vector<double> values;  // SI, in ascending order
 };
 
@@ -88,13 +89,13 @@ struct TriedAtValues {
 // duration of the recordings.
 struct TriedAtRelaxationTimes {
   std::string parameter;  // its name on the card
-  std::string label;      // how the variant is called: "τ" gives "τ = 0.3 s"
+  std::string label;      // names the variant: "τ" gives "τ = 0.3 s"
 };
 
 // On the whole surface, and near both ends and the middle of the length; if the support slips, each
 // of these at several slip distances.
 struct TriedAsSupports {
-  std::vector<double> slip_shares;  // of the parameter `slip_distance`, in the length of the body
+  std::vector<double> slip_shares;  // values of `slip_distance` over the length of the body
 };
 
 // At planes that the predicted body crosses and the measured one does not. Such a contact has no
@@ -109,7 +110,7 @@ using TriedAt =
 struct TrialDesign {
   // The model of every case has the effect, so that a case hides it by leaving it out of the model.
   bool is_in_every_model = false;
-  bool axis_along_bar = false;  // the parameter `axis` is x; false: a random direction
+  bool axis_along_bar = false;  // the parameter `axis` is x, otherwise random
 };
 
 struct EffectCard {
@@ -140,7 +141,7 @@ inline int ParameterIndex(const EffectCard& card, const std::string& name) {
   return -1;
 }
 
-// Indices of the parameters that make the size of the effect: the first one, or the first three
+// Indices of the parameters that define the size of the effect: the first one, or the first three
 // where these are the components of a vector. The card must have parameters.
 inline std::vector<int> SizeParameters(const EffectCard& card) {
   if (card.parameters.front().name.ends_with("_x")) return {0, 1, 2};

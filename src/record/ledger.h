@@ -1,7 +1,7 @@
 // The ledger of models as plain data: ledger.json in the folder of the first run.
 //
-// It lists the models on the way from a first fit to one of which nothing can be named that it
-// lacks: what each added effect gained, which parameters it moved, and what else was tried.
+// It lists the models from a first fit to one for which no missing effect can be named: how much
+// each added effect reduced the error, which parameters it changed, and what else was tried.
 #ifndef LACUNA_RECORD_LEDGER_H_
 #define LACUNA_RECORD_LEDGER_H_
 
@@ -15,10 +15,10 @@
 
 namespace lacuna {
 
-// A fitted parameter compared with the same one of the parent model. SI.
+// A fitted parameter compared with the same parameter of the parent model. Values are in SI units.
 struct ParameterMove {
   std::string name, unit;
-  bool added = false;  // the parent does not have it
+  bool added = false;  // whether the parent model lacks it
   double before = 0, after = 0;
   double low = 0, high = 0;  // 95 % interval of `after`
   // The change in posterior standard deviations of the parent (DeviationsTo); infinite where those
@@ -29,14 +29,14 @@ struct ParameterMove {
 // One model, fitted as a run of its own. The models form a tree; effects that a model's diagnosis
 // refitted, and that were not added to it, are its leaves.
 struct LedgerModel {
-  std::string name;                  // of the run
+  std::string name;                  // name of the run
   std::filesystem::path run;         // its folder
-  int parent = -1;                   // in Ledger::models; -1: the first model
+  int parent = -1;                   // index in Ledger::models; -1 for the first model
   std::string added;                 // the effect that the parent does not have
   CalibrationRecord record;          // usable or not
-  ModelErrors errors;                // over all recordings; 0 where the fit is not usable
+  ModelErrors errors;                // over all recordings; 0 if the fit is not usable
   double gain = 0;                   // relative reduction of the parent's held-out error (in σ)
-  std::vector<ParameterMove> moves;  // against the parent
+  std::vector<ParameterMove> moves;  // changes from the parent
   std::optional<DiagnosisRecord> diagnosis;
 };
 
@@ -45,23 +45,23 @@ struct LedgerEnding {
   enum class Reason {
     kNone,         // the search has not ended
     kVerdict,      // the last verdict names no effect to add
-    kUndecided,    // the last verdict is ambiguous, and none is added by guess
+    kUndecided,    // the last verdict is ambiguous, and no effect is added by guess
     kMostEffects,  // as many effects were added as allowed
     kNotFitted,    // the last added effect could not be fitted
     kLittleGain,   // the last added effect reduced the error by less than `least_gain`
   };
   Reason reason = Reason::kNone;
-  double least_gain = 0;  // of kLittleGain
+  double least_gain = 0;  // threshold of kLittleGain
 };
 
 struct Ledger {
-  std::vector<LedgerModel> models;  // the first one, then in the order in which they were added
+  std::vector<LedgerModel> models;  // in the order in which they were added
   LedgerEnding ending;
 
   bool HasEnded() const { return ending.reason != LedgerEnding::Reason::kNone; }
-  // False: an added effect could not be fitted.
+  // False if an added effect could not be fitted.
   bool IsUsable() const { return ending.reason != LedgerEnding::Reason::kNotFitted; }
-  // The usable model with the least held-out error. At least one model is needed (CHECK).
+  // The usable model with the smallest held-out error. At least one model is needed (CHECK).
   const LedgerModel& Best() const;
 };
 
@@ -72,7 +72,7 @@ ModelErrors ErrorsOf(const CalibrationRecord& record);
 std::vector<ParameterMove> MovesBetween(const CalibrationRecord& before,
                                         const CalibrationRecord& after);
 
-// The model of this run; errors, gain and moves follow from the record and the parent.
+// The model of this run, with errors, gain and moves computed from the record and the parent.
 LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& run,
                             const CalibrationRecord& record, int parent, const std::string& added);
 

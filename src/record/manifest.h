@@ -1,6 +1,6 @@
 // manifest.json: the configuration and the inputs of a run, and its valid results.
 //
-// Nothing in it depends on the machine or the time: the same run gives the same bytes everywhere.
+// It does not depend on the computer or the time: the same run gives the same bytes everywhere.
 #ifndef LACUNA_RECORD_MANIFEST_H_
 #define LACUNA_RECORD_MANIFEST_H_
 
@@ -16,7 +16,7 @@ namespace lacuna {
 inline constexpr int kManifestSchemaVersion = 1;
 
 struct StoredFile {
-  std::string name;  // relative to the stage's folder, with '/'
+  std::string name;  // path relative to the stage's folder, with '/'
   uint64_t size = 0;
   std::string hash;
 };
@@ -35,7 +35,7 @@ struct Manifest {
   nlohmann::json configuration;               // all values in SI, defaults included
   std::map<std::string, std::string> inputs;  // file as named by the user → hash of its content
   uint64_t seed = 0;
-  std::map<std::string, StageResult> stages;  // by name
+  std::map<std::string, StageResult> stages;  // by name of the stage
   bool finished = false;  // whether every stage exists and belongs to this configuration
 };
 
@@ -45,7 +45,7 @@ struct StageIdentity {
   std::string stage;
   int code_version = 0;
   nlohmann::json options;
-  std::map<std::string, std::string> inputs;  // name → hash: of files, or of earlier stages
+  std::map<std::string, std::string> inputs;  // name → hash of a file or of an earlier stage
 };
 // The hash of the identity, under which the result is stored.
 std::string StageKey(const StageIdentity& identity);

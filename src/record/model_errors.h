@@ -14,21 +14,20 @@ namespace lacuna {
 struct MisfitMeasure {
   int frames = 0;
   int points = 0;             // markers or patches observed, summed over the frames
-  double rms = 0;             // m, of the residual's length
-  double largest = 0;         // m
+  double rms = 0;             // m, rms length of the residual
+  double largest = 0;         // m, largest length of the residual
   double rms_over_sigma = 0;  // rms of the components, each divided by its σ; 1 is noise alone
 };
 
 // The residuals of a model over all recordings of a study.
 struct ModelErrors {
-  double in_fit_rms = 0, held_out_rms = 0;  // m, of the fitted and of the held-out frames
+  double in_fit_rms = 0, held_out_rms = 0;  // m, fitted and held-out frames
   double rms_over_sigma = 0;                // held-out frames, components divided by σ
   // The same for the held-out frames of the fitted recordings only, after the adopted nuisances
-  // (mesh, time step, misplaced grips) have taken their best values.
+  // (mesh, time step, grip placement) have taken their best values.
   double without_nuisances = 0;
-  double unfitted_rms_over_sigma =
-      0;                      // recordings that were not fitted at all; 0 if there are none
-  bool has_held_out = false;  // false: nothing was held out, the fitted frames are used
+  double unfitted_rms_over_sigma = 0;  // recordings that were not fitted; 0 if there are none
+  bool has_held_out = false;           // if nothing was held out, the fitted frames are used
 };
 
 // An effect that a diagnosis could not test with these recordings.

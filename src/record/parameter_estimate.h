@@ -12,7 +12,7 @@ namespace lacuna {
 
 struct ParameterEstimate {
   // kPinnedDown: the data determine the parameter. kDead: the predictions do not depend on it.
-  // kFlat: they do, but a typical change of it has an effect within the noise. kTradedOff: changes
+  // kFlat: they do, but the effect of a typical change is within the noise. kTradedOff: changes
   // of other parameters can compensate for its changes. kAtBound: the best value lies on a bound,
   // so the interval has little meaning.
   enum class Verdict { kPinnedDown, kDead, kFlat, kTradedOff, kAtBound };

@@ -15,7 +15,7 @@ namespace lacuna {
 // A nuisance parameter of a recording (its clock, a grip's offset) is far from 0.
 struct NuisanceParameterConflict {
   std::string parameter;
-  double deviations = 0;  // of its prior
+  double deviations = 0;  // distance in standard deviations of its prior
 };
 
 // A marker's estimated place on the undeformed object is far from the recorded one.
@@ -25,7 +25,7 @@ struct MarkerConflict {
   double deviation = 0;                              // m, of the prior (place_deviation)
 };
 
-// How many of a recording's markers are in conflict, where only the worst are listed.
+// The number of a recording's markers in conflict, where only the worst are listed.
 struct MarkerConflictCount {
   std::string recording;
   int conflicting = 0, markers = 0;
@@ -39,7 +39,8 @@ struct ReferenceShapeConflict {
   double deviation = 0;  // m, of the prior (place_deviation)
 };
 
-// Patches of a scanned surface lie off the model's surface by the same distance in all frames.
+// Patches of a scanned surface are offset from the model's surface by the same distance in all
+// frames.
 struct PatchConflict {
   std::string recording;
   int conflicting = 0, patches = 0;
@@ -52,7 +53,7 @@ struct PatchConflict {
 struct UnmatchedScans {
   std::string recording;
   int unmatched = 0, frames = 0;
-  double first_time = 0;   // s, of the first of them
+  double first_time = 0;   // s, time of the first of these frames
   double least_share = 0;  // fewer points than this share of the best frame's were compared
 };
 

@@ -12,7 +12,7 @@
 
 namespace lacuna {
 
-// A measure that does not exist. Test for it with std::isnan.
+// The value of a measure that does not exist. Test for it with std::isnan.
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 // How the solver of a stage ended, for one frame or for the whole stage.
@@ -49,9 +49,9 @@ struct FrameRecord {
 struct MeshRecord {
   int64_t node_count = 0;
   int64_t tet_count = 0;
-  int order = 0;                         // of the elements; 0 if there is no mesh
+  int order = 0;                         // order of the elements; 0 if there is no mesh
   double volume = kNotMeasured;          // m³
-  double smallest_angle = kNotMeasured;  // dihedral, rad
+  double smallest_angle = kNotMeasured;  // rad, smallest dihedral angle
   double largest_radius_edge_ratio = kNotMeasured;
 };
 

@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-// A stage that is read back where the run directory has it, computed and stored where not.
+// Reads the result of a stage from the run directory, or computes and stores it if it is not there.
 template <typename Value, typename Compute, typename Save, typename Read>
 Value RunStage(RunDirectory* run, const StageIdentity& identity, Progress* progress,
                const Compute& compute, const Save& save, const Read& read) {

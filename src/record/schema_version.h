@@ -10,7 +10,7 @@
 namespace lacuna {
 
 // Throws InputError where "schema_version" is not `version`; the message names the command that
-// writes the file anew. Throws nlohmann::json::exception where the key is absent.
+// rewrites the file. Throws nlohmann::json::exception where the key is absent.
 inline void RequireSchemaVersion(const nlohmann::json& value, int version,
                                  const std::string& command) {
   const int found = value.at("schema_version");

@@ -1,4 +1,4 @@
-// Structs of a std::variant as JSON objects, told apart by the key "kind".
+// Structs of a std::variant as JSON objects, distinguished by the key "kind".
 //
 // For each alternative there is a function template in namespace lacuna,
 //   template <typename Visitor> void VisitFields(Visitor& visit, Alternative& value) {
@@ -37,7 +37,7 @@ class FieldWriter {
   nlohmann::json& object_;
 };
 
-// Reads nothing from an object of another kind.
+// Reads the fields of an object, unless it is of another kind.
 class FieldReader {
  public:
   explicit FieldReader(const nlohmann::json& object) : object_(object) {}
@@ -68,7 +68,7 @@ nlohmann::json TaggedToJson(Variant value) {
   return object;
 }
 
-// Throws nlohmann::json::exception, and InputError when the object is of no kind of the variant.
+// Throws nlohmann::json::exception, and InputError when the kind is none of the variant's.
 template <typename Variant, size_t kIndex = 0>
 Variant TaggedFromJson(const nlohmann::json& object) {
   if constexpr (kIndex == std::variant_size_v<Variant>) {

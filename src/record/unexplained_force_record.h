@@ -1,5 +1,5 @@
-// Summary of the body force that would have made a fitted model follow its markers
-// (comparison/force_estimate.h says how it is found), as comparison.json holds it.
+// Summary of the body force that would have made a fitted model follow its markers, as it is stored
+// in comparison.json. It is estimated by comparison/force_estimate.h.
 //
 // Vectors are x, y, z in the model's frame. Every ± value is one standard deviation.
 #ifndef LACUNA_RECORD_UNEXPLAINED_FORCE_RECORD_H_
@@ -12,12 +12,12 @@
 
 namespace lacuna {
 
-// The net force, summarised over the time of the motion. N.
+// The net force, N, summarised over the time of the motion.
 struct NetForceSummary {
   Eigen::Vector3d rms = Eigen::Vector3d::Zero(), rms_deviation = Eigen::Vector3d::Zero();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero(), mean_deviation = Eigen::Vector3d::Zero();
   double constant_share = 0;  // |mean| / |rms|: 1 for a force that never changes
-  double weight = 0;          // of the part of the object that no grip holds, for scale
+  double weight = 0;          // weight of the part that no grip holds, as a reference
 };
 
 // The work of the force on the motion that includes it. Positive work adds energy to the motion.
@@ -27,11 +27,11 @@ struct ForceWork {
   double mean_power = 0;           // W
 };
 
-// Where on the undeformed object the force acts, averaged over time.
+// The place on the undeformed object where the force acts, averaged over time.
 struct ForcePlace {
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // m, of the force density's magnitude
-  double grip_distance = 0;          // m, of the centroid from the nearest gripped node; 0: no grip
-  double largest_grip_distance = 0;  // m, of any node; 0: no grip
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  // m, of the density's magnitude
+  double grip_distance = 0;          // m, centroid to nearest gripped node; 0: no grip
+  double largest_grip_distance = 0;  // m, largest for any node; 0: no grip
 };
 
 // Correlation of the net force with the motion of the centre of mass, over all components and
@@ -45,11 +45,11 @@ struct ForceCorrelation {
 struct ForceFitSummary {
   // Rms of the whitened residual of the model without and with the force.
   double rms_over_sigma_without = 0, rms_over_sigma_with = 0;
-  double log_evidence = 0;  // natural log of the likelihood ratio of a force to none, first order
+  double log_evidence = 0;  // ln of the likelihood ratio of a force to none, to first order
   double noise_scale = 1;   // remaining residual over the noise; all deviations include it
-  int knots = 0;            // of the force in time
+  int knots = 0;            // number of knots of the force in time
   double knot_spacing = 0;  // s
-  int predictions = 0;      // that the search took
+  int predictions = 0;      // number of predictions in the search
   bool converged = false;   // the nonlinear model confirmed the last linear prediction
   // The evidence favours a force, and a component or its mean exceeds two of its deviations or the
   // work exceeds three.

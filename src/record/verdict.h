@@ -1,6 +1,6 @@
 // The verdict of a diagnosis and the reasons for it, as plain data.
 //
-// A reason holds what its sentence needs, and no sentence: report/verdict_text.h writes those.
+// A reason holds the data for its sentence, which report/verdict_text.h writes.
 // Evidence is the natural logarithm of the odds against the model without the effect. Errors with
 // "over_sigma" in their name are rms residuals divided by the standard deviation of the noise; 1 is
 // noise alone. A `nuisance` is an index in the list of nuisances of the same diagnosis.
@@ -25,7 +25,7 @@ enum class Verdict {
 
 // The verdict's name in files and reports, e.g. "not in library".
 std::string VerdictName(Verdict verdict);
-// The reverse. Throws InputError for any other text.
+// The verdict of this name. Throws InputError if there is none.
 Verdict VerdictFromName(const std::string& name);
 
 // --- Reasons for "no power", "adequate", "nuisance" and "not in library" ---
@@ -81,7 +81,7 @@ struct HeldOutErrorRemains {
   double over_sigma_before = 0, over_sigma_after = 0;
 };
 
-// Beside the best effect there is evidence for another one.
+// With the best effect in the model, there is evidence for another one.
 struct EvidenceForAnother {
   std::string effect;
   double evidence = 0;
@@ -95,19 +95,20 @@ struct EvidenceForAnother {
 struct EffectReducesError {
   std::string effect;
   double evidence = 0;
-  bool held_out = true;                 // false: nothing was held out, the fitted frames are judged
+  bool held_out = true;                 // if nothing was held out, the fitted frames are judged
   bool adjusted_for_nuisances = false;  // the errors exclude what the adopted nuisances explain
   double over_sigma_before = 0, over_sigma_after = 0;
 };
 
-// A rival with less evidence predicts the recordings that were not fitted better than the best.
+// A rival with less evidence than the best effect predicts the recordings that were not fitted
+// better.
 struct RivalPredictsBetter {
   std::string effect;
   double evidence = 0;
   double over_sigma = 0, over_sigma_of_best = 0;
 };
 
-// A rival looked as good to first order, but its refit failed.
+// A rival has comparable first-order evidence, but its refit failed.
 struct RivalNotFitted {
   std::string effect;
   double first_order_evidence = 0;
@@ -119,7 +120,7 @@ struct NuisanceHasMoreEvidence {
   double evidence = 0;
 };
 
-// With what the adopted nuisances explain included, the held-out error rises.
+// If the contributions of the adopted nuisances are included, the held-out error rises.
 struct UnadjustedErrorRises {
   double rms_before = 0, rms_after = 0;  // m
 };
@@ -139,7 +140,7 @@ using VerdictReason =
                  EvidenceForAnother, EffectReducesError, RivalPredictsBetter, RivalNotFitted,
                  NuisanceHasMoreEvidence, UnadjustedErrorRises, EffectReplacesNuisances>;
 
-// --- What would settle an open question ---
+// --- Steps that would resolve an open question ---
 
 // Follow the nuisance's advice (e.g. a finer mesh), then fit or diagnose again.
 struct RefineDiscretisation {
@@ -165,12 +166,12 @@ struct CheckNuisance {
 using SuggestedStep =
     std::variant<RefineDiscretisation, AddAndDiagnose, SeparateLookAlikes, CheckNuisance>;
 
-// What a diagnosis concludes.
+// The conclusion of a diagnosis.
 struct Conclusion {
   Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> effects;  // names of effects and nuisances, the best first
   std::vector<VerdictReason> reasons;
-  std::vector<SuggestedStep> next_steps;  // empty: nothing is open
+  std::vector<SuggestedStep> next_steps;  // empty where nothing is open
 };
 
 // The keys "verdict", "effects", "reasons" and "next_steps".

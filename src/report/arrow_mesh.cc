@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSides = 8;
 
-// Corners of a regular polygon about `centre`, across `direction`.
+// Corners of a regular polygon about `centre`, perpendicular to `direction`.
 void PlaceRing(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction, double radius,
                Eigen::Index first, Eigen::Matrix3Xd* vertices) {
   const Eigen::Vector3d u = direction.unitOrthogonal();
@@ -28,7 +28,7 @@ void PlaceRing(const Eigen::Vector3d& centre, const Eigen::Vector3d& direction, 
 TriMesh ArrowMesh(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& along, double radius) {
   static_assert(kArrowVertices == 3 * kSides + 1);
   CHECK_EQ(from.cols(), along.cols());
-  constexpr double kConeRadius = 3, kConeLength = 7;  // of the prism's radius
+  constexpr double kConeRadius = 3, kConeLength = 7;  // multiples of the prism's radius
   constexpr int kTriangles = 4 * kSides;
   const Eigen::Index count = from.cols();
   TriMesh mesh{Eigen::Matrix3Xd(3, count * kArrowVertices),

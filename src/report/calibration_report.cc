@@ -13,7 +13,8 @@
 namespace lacuna {
 namespace {
 
-// A parameter that finer elements would move by more standard deviations gets a note.
+// A parameter that finer elements would change by more than this many standard deviations gets a
+// note.
 constexpr double kMoved = 1;
 
 std::string ParameterTable(const CalibrationRecord& record) {
@@ -73,7 +74,7 @@ std::string TimeStepText(const CalibrationRecord& record) {
       "  time step {:.3g} {}{}\n", (in_seconds ? 1 : 1e3) * record.time_step,
       in_seconds ? "s" : "ms",
       record.step_error > 0
-          ? fmt::format("; half of it would change the prediction by {:.2g} σ", record.step_error)
+          ? fmt::format("; halving it would change the prediction by {:.2g} σ", record.step_error)
           : "");
 }
 
@@ -117,14 +118,14 @@ struct ConflictSentence {
   }
   std::string operator()(const ReferenceShapeConflict& conflict) const {
     return fmt::format(
-        "{}: in frame {}, which must show the object undeformed, the tracked points lie {:.2g} mm "
-        "(rms) off the reference shape; place_deviation is {:.2g} mm",
+        "{}: in frame {}, which must show the object undeformed, the tracked points are {:.2g} mm "
+        "(rms) away from the reference shape; place_deviation is {:.2g} mm",
         conflict.recording, conflict.frame, 1e3 * conflict.rms, 1e3 * conflict.deviation);
   }
   std::string operator()(const PatchConflict& conflict) const {
     return fmt::format(
-        "{}: {} of {} patches lie off the model's surface by the same distance in all frames, up "
-        "to {:.1f} mm; scan.shape_deviation is {:.1f} mm",
+        "{}: {} of {} patches are offset from the model's surface by the same distance in all "
+        "frames, up to {:.1f} mm; scan.shape_deviation is {:.1f} mm",
         conflict.recording, conflict.conflicting, conflict.patches, 1e3 * conflict.largest,
         1e3 * conflict.deviation);
   }

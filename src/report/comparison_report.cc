@@ -12,11 +12,11 @@
 namespace lacuna {
 namespace {
 
-// When a sentence is written.
-constexpr double kWholePart = 0.8;         // share of the frames: a longer period is the whole part
-constexpr double kSignificant = 0.01;      // p-values below it
-constexpr double kClearCorrelation = 0.2;  // of neighbouring frames
-constexpr double kSameDirection = 0.5;     // agreement of the errors' directions
+// Thresholds for the sentences.
+constexpr double kWholePart = 0.8;     // a bad period of a larger share of frames is the whole part
+constexpr double kSignificant = 0.01;  // p-values below this are significant
+constexpr double kClearCorrelation = 0.2;  // correlation of neighbouring frames
+constexpr double kSameDirection = 0.5;     // agreement of the errors' directions, 0 to 1
 constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the measured one
 
 bool IsWhite(double p_value) { return p_value >= kSignificant; }
@@ -138,7 +138,8 @@ std::string DescribeNoise(const ComparedRecording& recording) {
 
 std::string DescribePair(const ComparedPair& pair) {
   return fmt::format(
-      "{} and {}, as measured, differ by {} rms over {} frames if {} is taken {:.4f} s {}. If both "
+      "{} and {}, as measured, differ by {} rms over {} frames if {} is shifted {:.4f} s {}. If "
+      "both "
       "repeat the same experiment, no model can have an error below {} rms in both.",
       pair.first, pair.second, Millimetres(pair.distance), pair.frames, pair.second,
       std::abs(pair.delay), pair.delay < 0 ? "earlier" : "later",

@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-// Effects that were not refitted and whose evidence is not above this are listed in one line.
+// Effects that were not refitted and whose evidence does not exceed this are listed in one line.
 constexpr double kWorthALine = 0;
 
 std::string Paragraph(const std::string& text, const std::string& first = "  ") {
@@ -56,7 +56,7 @@ std::string Row(const std::vector<std::string>& cells) {
   return line + "\n";
 }
 
-// The parameters of a refit beside the effect's size, e.g. "centre_x 0.05 [0.04, 0.06] m".
+// The parameters of a refit other than the effect's size, e.g. "centre_x 0.05 [0.04, 0.06] m".
 std::string OtherParameters(const RecordedRefit& refit) {
   std::vector<std::string> others;
   for (const RecordedValue& other : refit.others)
@@ -94,7 +94,7 @@ std::string RankingTable(const DiagnosisRecord& diagnosis) {
       PaddedLeft("share", 10));
   text += Row({"effect", "expected", "refitted", "expected", "refitted", "raw", "absorbed",
                "size [95 %] or ±"});
-  text += Row({"(the model as it is)", "", "", "",
+  text += Row({"(the fitted model)", "", "", "",
                fmt::format("{:.1f} σ", diagnosis.errors.without_nuisances),
                Millimetres(diagnosis.errors), "", ""});
   std::vector<std::string> quiet;
@@ -105,10 +105,9 @@ std::string RankingTable(const DiagnosisRecord& diagnosis) {
       quiet.push_back(effect.type);
   }
   text += Paragraph(
-      "Errors in σ exclude what mesh, time step and the other adopted nuisances explain; raw "
-      "errors "
-      "include it.");
-  if (!quiet.empty()) text += Paragraph(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
+      "Errors in σ exclude the contributions of mesh, time step and the other adopted nuisances; "
+      "raw errors include them.");
+  if (!quiet.empty()) text += Paragraph(fmt::format("no evidence for: {}", fmt::join(quiet, ", ")));
   for (const UntriedEffect& effect : diagnosis.untried)
     text += Paragraph(fmt::format("not tried: {}; {}", effect.type, effect.why));
   return text;
@@ -134,7 +133,7 @@ std::string NuisanceTable(const DiagnosisRecord& diagnosis) {
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
-  if (!quiet.empty()) text += Paragraph(fmt::format("no sign of: {}", fmt::join(quiet, ", ")));
+  if (!quiet.empty()) text += Paragraph(fmt::format("no evidence for: {}", fmt::join(quiet, ", ")));
   return text;
 }
 
@@ -161,13 +160,14 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
   text += fmt::format(" The residual of the best hypothesis is {:.1f} σ. Time step: {:.3g} ms.",
                       diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
   if (diagnosis.control_evidence > 0)
-    text += fmt::format(" Control: without any effect, chance gives evidence up to {:.1f}.",
-                        diagnosis.control_evidence);
+    text += fmt::format(
+        " Control: without any missing effect, chance alone gives evidence up to {:.1f}.",
+        diagnosis.control_evidence);
   return Paragraph(text);
 }
 
 std::string DetectableTable(const DiagnosisRecord& diagnosis) {
-  std::string text = "\n  Smallest size that these recordings could have shown\n";
+  std::string text = "\n  Smallest size that these recordings would reveal\n";
   for (const RecordedEffect& effect : diagnosis.ranking) {
     double least = INFINITY, most = 0;
     for (const RecordedSize& size : effect.sizes) {
@@ -175,7 +175,7 @@ std::string DetectableTable(const DiagnosisRecord& diagnosis) {
       most = std::max(most, size.detectable);
     }
     const std::string& unit = effect.sizes.front().unit;
-    const std::string sizes = !std::isfinite(least) ? "no size could be seen"
+    const std::string sizes = !std::isfinite(least) ? "no size would be detectable"
                               : least == most
                                   ? WithUnit(fmt::format("{:.2g}", least), unit)
                                   : WithUnit(fmt::format("{:.2g} to {:.2g}", least, most), unit) +
@@ -193,8 +193,8 @@ std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::pa
   if (!diagnosis.next_steps.empty()) return DescribeNextSteps(diagnosis);
   if (diagnosis.verdict == Verdict::kNotInLibrary)
     return fmt::format(
-        "lacuna compare {} shows where and when the model fails; docs/expression.md says how to "
-        "try a force law of your own",
+        "lacuna compare {} shows where and when the model fails; docs/expression.md explains how "
+        "to try a user-defined force law",
         run.string());
   return "";
 }
@@ -212,8 +212,8 @@ std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesys
     text += DetectableTable(diagnosis);
   const std::string next = WhatNext(diagnosis, run);
   if (!next.empty()) text += "\n" + Paragraph(next, "next: ");
-  return text +
-         fmt::format("\n{} holds all of it\n", (run / "diagnosis" / "diagnosis.json").string());
+  return text + fmt::format("\n{} contains all results\n",
+                            (run / "diagnosis" / "diagnosis.json").string());
 }
 
 }  // namespace lacuna

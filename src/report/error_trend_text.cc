@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kClearRankCorrelation = 0.3;  // larger: fewer, clearer trends are reported
 
-// How a quantity is called, in which unit it is printed, and that unit's multiple of the SI unit.
+// The name of a quantity, the unit in which it is printed, and the factor from the SI unit to it.
 struct QuantityName {
   std::string name, unit;
   double scale;
@@ -31,7 +31,8 @@ QuantityName NameOf(const std::string& quantity) {
   return found != names.end() ? found->second : QuantityName{quantity, "", 1};
 }
 
-// The rank correlation is clear, and the error changes in its direction from one end to the other.
+// Whether the rank correlation is clear and has the sign of the change of the error from the first
+// to the last bin.
 bool IsClear(const ErrorTrend& trend) {
   if (!(std::abs(trend.rank_correlation) >= kClearRankCorrelation) || trend.bins.size() < 2)
     return false;

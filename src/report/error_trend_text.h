@@ -1,4 +1,4 @@
-// With which quantities an error grows, in words.
+// Sentences about the quantities with which an error grows.
 #ifndef LACUNA_REPORT_ERROR_TREND_TEXT_H_
 #define LACUNA_REPORT_ERROR_TREND_TEXT_H_
 
@@ -9,8 +9,9 @@
 
 namespace lacuna {
 
-// Sentences with a leading space: on the clearest trend with a quantity of the motion (or that
-// there is none), then on the distance from the grip if that trend is clear.
+// Sentences with a leading space. The first describes the clearest trend with a quantity of the
+// motion, or says that there is none; the second the trend with the distance from the grip, if it
+// is clear.
 std::string DescribeTrends(const std::vector<ErrorTrend>& trends);
 
 }  // namespace lacuna

@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-// Pixels.
+// Sizes in pixels.
 constexpr double kWidth = 1800, kMargin = 50;
 constexpr double kTitleSize = 42, kLabelSize = 38, kSmallSize = 32;
 constexpr double kTitleHeight = 110, kFooterHeight = 90;
@@ -27,9 +27,9 @@ const Eigen::Vector3d kNoiseColour{0.78, 0.22, 0.16}, kAxisColour{0.3, 0.3, 0.3}
 
 std::string ErrorText(double error) { return fmt::format("{:.3f} mm", 1e3 * error); }
 
-// Where the bars are on the page.
+// The area of the bars on the page, in pixels.
 struct BarArea {
-  double left = 0, right = 0;  // of errors 0 and `largest`
+  double left = 0, right = 0;  // positions of the errors 0 and `largest`
   double bottom = 0, top = 0;
   double largest = 1;  // m
 
@@ -64,7 +64,7 @@ void DrawBars(const LedgerPicture& picture, const BarArea& area, vtkRenderer* pa
     DrawRectangle({area.left, middle - 0.5 * kBarHeight}, {end - area.left, kBarHeight},
                   bar == best ? kBestColour : kBarColour, page);
     DrawText(bar->label, area.left - kGap, middle, TextAnchor::kRight, kLabelSize, page);
-    // Beside the noise line where the bar ends just before it.
+    // Where the bar ends just before the noise line, the text starts behind that line.
     const double noise = area.PlaceOf(picture.noise);
     const double text = noise > end && noise < end + 2 * kGap ? noise + kLineWidth : end;
     DrawText(ErrorText(bar->error), text + kGap, middle, TextAnchor::kLeft, kLabelSize, page);

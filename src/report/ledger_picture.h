@@ -1,5 +1,5 @@
 // A picture of a search for missing physics: the error of each model that was fitted, and the noise
-// of the measurement, which no model can undercut.
+// of the measurement as a lower limit.
 //
 // Each model is a horizontal bar with its label and its error; the noise is a dashed vertical line.
 // The model with the smallest error is blue, the others are grey. Drawn without a screen.
@@ -20,16 +20,16 @@ struct LedgerBar {
 };
 
 struct LedgerPicture {
-  std::string title;                                 // says which error the bars show
+  std::string title;                                 // names the error that the bars show
   std::vector<LedgerBar> models;                     // from top to bottom
-  double noise = 0;                                  // m, rms; 0: no line
+  double noise = 0;                                  // m, rms; 0: draw no line
   std::string noise_label = "noise of the markers";  // beside the line
 };
 
 // Writes a PNG that is 1800 pixels wide, with letters that are still readable at half that width;
-// its height follows from the number of models. kNoRenderer when the machine offers no OpenGL
-// through EGL. Throws InputError when the file cannot be written. No model, and an error that is
-// negative or not finite, are mistakes of the program (CHECK).
+// its height follows from the number of models. Returns kNoRenderer where OpenGL is not available
+// through EGL. Throws InputError when the file cannot be written. At least one model is needed, and
+// errors must be finite and not negative (CHECK).
 PictureResult RenderLedgerPng(const std::filesystem::path& file, const LedgerPicture& picture);
 
 }  // namespace lacuna

@@ -12,7 +12,7 @@
 namespace lacuna {
 namespace {
 
-// Parameters that moved by fewer standard deviations are only counted.
+// Parameters that changed by at most this many standard deviations are only counted.
 constexpr double kMoved = 1;
 // The margin of a model's lines where further models hang below it.
 constexpr const char* kTrunk = "│   ";
@@ -56,8 +56,9 @@ std::string Moves(const LedgerModel& model, const std::string& margin) {
       ++quiet;
   }
   if (quiet > 0)
-    lines += fmt::format("{}  {} further parameter{} moved by less than {:g} standard deviation\n",
-                         margin, quiet, quiet == 1 ? "" : "s", kMoved);
+    lines +=
+        fmt::format("{}  {} further parameter{} changed by less than {:g} standard deviation\n",
+                    margin, quiet, quiet == 1 ? "" : "s", kMoved);
   return lines;
 }
 
@@ -146,11 +147,11 @@ std::string DescribeEnding(const Ledger& ledger) {
     case Reason::kUndecided:
       return fmt::format(
           "The search ended undecided between {{{}}}, and none of them is added by guess{}. With "
-          "--follow-best it goes on with the first.",
+          "--follow-best it continues with the first.",
           fmt::join(last.diagnosis->effects, ", "),
           last.diagnosis->next_steps.empty()
               ? ""
-              : "; what would decide: " + DescribeNextSteps(*last.diagnosis));
+              : "; to decide: " + DescribeNextSteps(*last.diagnosis));
     case Reason::kMostEffects:
       return fmt::format("The search ended after {} added effects, although {} is still named.",
                          ledger.models.size() - 1, last.diagnosis->effects.front());

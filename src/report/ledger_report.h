@@ -1,4 +1,4 @@
-// The report of a ledger of models, made from its record alone: ledger.txt.
+// The report of a ledger of models, made from its record alone. It is written to ledger.txt.
 #ifndef LACUNA_REPORT_LEDGER_REPORT_H_
 #define LACUNA_REPORT_LEDGER_REPORT_H_
 
@@ -12,7 +12,7 @@ namespace lacuna {
 // the error before and after, for 100 columns. At least one model is needed (CHECK).
 std::string LedgerReport(const Ledger& ledger);
 
-// Why no further effect was added, in one or two sentences. Empty while the search goes on.
+// Why no further effect was added, in one or two sentences. Empty while the search continues.
 std::string DescribeEnding(const Ledger& ledger);
 
 }  // namespace lacuna

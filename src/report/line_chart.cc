@@ -17,7 +17,7 @@ constexpr double kWidth = 800, kHeight = 480, kLeft = 80, kRight = 140, kTop = 4
 constexpr int kTicks = 5;
 constexpr std::array kColours{"#1f6fb4", "#d9661f", "#2a9d4b", "#8a56b0", "#b0323a", "#6b6b6b"};
 
-// The values of an axis and their places on the page.
+// The range of an axis and its position on the page.
 struct Axis {
   double least = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();

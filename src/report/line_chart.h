@@ -1,4 +1,4 @@
-// A chart of lines over one axis, as SVG: for a browser, a report, or a vector program.
+// A line chart as SVG, for a browser, a report, or a program for vector graphics.
 #ifndef LACUNA_REPORT_LINE_CHART_H_
 #define LACUNA_REPORT_LINE_CHART_H_
 
@@ -11,7 +11,7 @@ namespace lacuna {
 
 struct ChartLine {
   std::string name;
-  Eigen::VectorXd x, y;  // of equal length; a NaN leaves a gap
+  Eigen::VectorXd x, y;  // of equal length; NaN leaves a gap
 };
 
 struct LineChart {
@@ -19,8 +19,8 @@ struct LineChart {
   std::vector<ChartLine> lines;
 };
 
-// Axes from the least to the largest finite value. Written atomically; throws InputError when it
-// cannot be. Lines of unequal x and y are a mistake of the program (CHECK).
+// Writes the chart atomically. The axes extend from the smallest to the largest finite value.
+// Throws InputError when the file cannot be written. CHECKs that x and y have equal length.
 void WriteLineChart(const std::filesystem::path& file, const LineChart& chart);
 
 }  // namespace lacuna

@@ -61,8 +61,8 @@ class EglContext {
   bool current_ = false;
 };
 
-// VTK's window over a context that somebody else made. GLEW, through which VTK finds the OpenGL
-// functions, finds them all and then complains that there is no X display; that is the point here.
+// A VTK window for an existing context. GLEW, with which VTK loads the OpenGL functions, loads them
+// all and then reports that there is no X display; this warning is suppressed here.
 class SurfacelessWindow : public vtkGenericOpenGLRenderWindow {
  public:
   static SurfacelessWindow* New();

@@ -1,7 +1,7 @@
-// VTK's window without a screen, for the pictures of this module.
+// A VTK window without a screen, for the pictures of this module.
 //
-// VTK draws through EGL without a window system: on a machine with neither screen nor graphics
-// processor Mesa's software renderer does it.
+// VTK draws through EGL, without a window system. On a machine with neither screen nor graphics
+// processor, Mesa's software renderer is used.
 #ifndef LACUNA_REPORT_OFFSCREEN_WINDOW_H_
 #define LACUNA_REPORT_OFFSCREEN_WINDOW_H_
 
@@ -19,11 +19,11 @@ class OffscreenWindow {
   OffscreenWindow(const OffscreenWindow&) = delete;
   OffscreenWindow& operator=(const OffscreenWindow&) = delete;
 
-  // False when the machine offers no OpenGL through EGL; nothing can be drawn then (CHECK).
+  // False where OpenGL is not available through EGL; then nothing may be drawn (CHECK).
   bool IsUsable() const;
-  // Later ones are drawn over earlier ones.
+  // Adds a renderer, which is drawn over earlier ones.
   void Add(vtkRenderer* renderer);
-  // Draws, and writes what was drawn as PNG, atomically. Throws InputError when the file cannot be
+  // Draws the window and writes it as PNG, atomically. Throws InputError when the file cannot be
   // written.
   void WritePng(const std::filesystem::path& file);
 

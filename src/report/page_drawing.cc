@@ -37,7 +37,7 @@ void DrawText(const std::string& text, double x, double y, TextAnchor anchor, do
 
 double TextWidth(const std::string& text, double size) {
   if (text.empty()) return 0;
-  constexpr int kDotsPerInch = 72;  // at which a point is a pixel
+  constexpr int kDotsPerInch = 72;  // one typographic point is one pixel
   vtkNew<vtkTextProperty> property;
   SetDarkText(property, size);
   int box[4] = {0, 0, 0, 0};

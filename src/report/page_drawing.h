@@ -13,19 +13,19 @@ namespace lacuna {
 
 enum class TextAnchor { kLeft, kCentre, kRight };
 
-// Dark letters of `size` pixels, without shadow.
+// Sets the style of dark letters of `size` pixels, without shadow.
 void SetDarkText(vtkTextProperty* text, double size);
 
-// A line of dark text: (x, y) is its left end, centre or right end, half way up the letters. An
-// empty text draws nothing.
+// Draws a line of dark text: (x, y) is its left end, centre or right end, half way up the letters.
+// An empty text draws nothing.
 void DrawText(const std::string& text, double x, double y, TextAnchor anchor, double size,
               vtkRenderer* renderer);
 
-// The width, in pixels, that a text of letters of `size` takes.
+// The width, in pixels, of a text with letters of `size` pixels.
 double TextWidth(const std::string& text, double size);
 
-// A filled rectangle, whose lower left corner is `left_bottom`. Where rectangles overlap, the one
-// that was drawn first is seen.
+// Draws a filled rectangle whose lower left corner is `left_bottom`. Where rectangles overlap, the
+// one that was drawn first is visible.
 void DrawRectangle(const Eigen::Vector2d& left_bottom, const Eigen::Vector2d& size,
                    const Eigen::Vector3d& colour, vtkRenderer* renderer);
 

@@ -61,7 +61,7 @@ vtkNew<vtkPolyData> ToVtk(const PanelPoints& drawn) {
   return dots;
 }
 
-// The range of all values in the picture, or the one that was asked for.
+// The range `wanted` or, where it is absent, that of all values in the picture.
 std::pair<double, double> ColourRange(const PanelPicture& picture,
                                       const std::optional<std::pair<double, double>>& wanted) {
   if (wanted) return *wanted;
@@ -136,14 +136,14 @@ vtkNew<vtkActor> ActorOf(const PanelPoints& drawn) {
 // Parts of the picture in pixels, from the lower left.
 struct Layout {
   double text = 0;                            // size of letters
-  double right = 0, bottom = 0, top = 0;      // of the area of panels
-  double caption = 0, legend = 0, title = 0;  // height of the line's middle
+  double right = 0, bottom = 0, top = 0;      // edges of the area of the panels
+  double caption = 0, legend = 0, title = 0;  // y of the middle of the line
   double panel_title = 0;                     // height of the strip above each panel
   int rows = 1;
 };
 
 Layout LayOut(const PanelPicture& picture, const PanelOptions& options, bool has_bar) {
-  constexpr double kLine = 2.2;  // letters
+  constexpr double kLine = 2.2;  // line height over letter size
   Layout layout;
   layout.text = options.text_size > 0 ? options.text_size : options.height / 40.0;
   const double line = kLine * layout.text;
@@ -183,7 +183,7 @@ void AddColourBar(const std::string& name, const Layout& layout, const PanelOpti
   renderer->AddActor(bar);
 }
 
-// Coloured squares with their texts, side by side from the left.
+// Draws coloured squares with their texts, side by side from the left.
 void AddLegend(const std::vector<LegendEntry>& legend, const Layout& layout,
                vtkRenderer* renderer) {
   double x = layout.text;
@@ -196,7 +196,7 @@ void AddLegend(const std::vector<LegendEntry>& legend, const Layout& layout,
   }
 }
 
-// A parallel projection, so that equal lengths look equal. The whole box is in the panel.
+// Sets a parallel projection, in which equal lengths look equal, with the whole box in the panel.
 void PlaceCamera(const Eigen::AlignedBox3d& box, const PanelOptions& options, double aspect,
                  vtkRenderer* renderer) {
   const Eigen::Vector3d forward = options.view_direction.normalized();

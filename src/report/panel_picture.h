@@ -1,7 +1,7 @@
 // A picture of several panels with one view and one colour bar, drawn without a screen.
 //
 // From top to bottom: the title, the panels row by row, each under its own title, and the legend.
-// All panels show the same region at the same scale, left of the colour bar.
+// All panels show the same region at the same scale, to the left of the colour bar.
 #ifndef LACUNA_REPORT_PANEL_PICTURE_H_
 #define LACUNA_REPORT_PANEL_PICTURE_H_
 
@@ -20,10 +20,10 @@ namespace lacuna {
 // Colours are red, green and blue, 0 to 1.
 struct PanelSurface {
   TriMesh mesh;                   // m
-  Eigen::VectorXd vertex_values;  // colours it by the colour bar; empty: `colour`; NaN: grey
+  Eigen::VectorXd vertex_values;  // for the colour bar; empty: use `colour`; NaN: grey
   Eigen::Vector3d colour{0.75, 0.78, 0.82};
   bool show_edges = false;
-  bool only_edges = false;  // in `colour`, with nothing between them
+  bool only_edges = false;  // draw the edges alone, in `colour`
   bool flat = false;        // each triangle in one shade: for cuts and facets
 };
 
@@ -34,7 +34,7 @@ struct PanelPoints {
 };
 
 struct Panel {
-  std::string title;  // above it; where all titles are empty, no space is kept for them
+  std::string title;  // above the panel; if all titles are empty, they take no space
   std::vector<PanelSurface> surfaces;
   std::vector<PanelPoints> points;
 };
@@ -48,19 +48,19 @@ struct PanelPicture {
   std::string title;  // may be empty
   std::vector<Panel> panels;
   int columns = 1;
-  std::string value_name;  // above the colour bar, with the unit; a bar stands where any surface
-                           // has values
+  std::string value_name;  // above the colour bar, with the unit; there is a colour bar if any
+                           // surface has values
   std::vector<LegendEntry> legend;  // at the bottom; may be empty
   std::string caption;              // below the legend; may be empty
 };
 
 struct PanelOptions {
-  int width = 1200;  // pixels; raise for print
+  int width = 1200;  // pixels; larger for print
   int height = 900;
-  // The colours' ends; empty: smallest and largest value of all panels, or 0 where the smallest is
-  // almost that.
+  // The ends of the colour bar. If absent, the smallest and the largest value of all panels; a
+  // smallest value close to 0 is replaced by 0.
   std::optional<std::pair<double, double>> range;
-  // What each panel takes in, m; empty: all that is drawn in any of them.
+  // The region that each panel shows, m; if empty, everything that is drawn in any of them.
   Eigen::AlignedBox3d framing;
   Eigen::Vector3d view_direction{-1, 2, -0.7};  // from the eye to the object
   Eigen::Vector3d up{0, 0, 1};
@@ -74,12 +74,12 @@ struct PictureResult {
   bool IsUsable() const { return status == Status::kWritten; }
 };
 
-// The result where the machine offers no OpenGL through EGL; the message says what to install.
+// The result where OpenGL is not available through EGL; the message says what to install.
 PictureResult NoRenderer();
 
-// Writes the picture as PNG, atomically. kNoRenderer when the machine offers no OpenGL through EGL.
-// Throws InputError when the file cannot be written. A picture without anything to draw, and values
-// of another length than the vertices, are mistakes of the program (CHECK).
+// Writes the picture as PNG, atomically. Returns kNoRenderer where OpenGL is not available through
+// EGL. Throws InputError when the file cannot be written. CHECKs that there is something to draw,
+// and that there is one value for each vertex.
 PictureResult RenderPanelPng(const std::filesystem::path& file, const PanelPicture& picture,
                              const PanelOptions& options = {});
 

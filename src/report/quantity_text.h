@@ -1,4 +1,4 @@
-// Lengths, directions and probabilities as they are written in sentences.
+// Text of lengths, directions and probabilities in sentences.
 #ifndef LACUNA_REPORT_QUANTITY_TEXT_H_
 #define LACUNA_REPORT_QUANTITY_TEXT_H_
 
@@ -14,8 +14,8 @@ std::string Millimetres(double length);
 // "p = 0.03", or "p ≤ 0.001".
 std::string ProbabilityText(double p_value);
 
-// The axis nearest to a direction, as "+x". More than 30 degrees away from it, the second axis too:
-// "−z and +x", the larger component first.
+// The axis nearest to a direction, as "+x". If the angle between them exceeds 30 degrees, the
+// second axis too: "−z and +x", the larger component first.
 std::string DirectionText(const Eigen::Vector3d& vector);
 
 }  // namespace lacuna

@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-// What to draw. Lengths in m.
+// What to draw. Lengths are in m.
 struct SurfaceScene {
   TriMesh mesh;
-  Eigen::VectorXd vertex_values;  // colours the mesh; empty: plain; NaN is drawn grey
+  Eigen::VectorXd vertex_values;  // colour the mesh; empty: one colour; NaN: grey
   std::string value_name;         // above the colour bar, with the unit
   Eigen::Matrix3Xd points;        // drawn as dots over the mesh; may be empty
   std::string caption;            // at the bottom; may be empty
@@ -25,9 +25,9 @@ struct PictureOptions : PanelOptions {
   double point_size = 4;  // pixels
 };
 
-// Writes the picture as PNG, atomically. kNoRenderer when the machine offers no OpenGL through EGL.
-// Throws InputError when the file cannot be written. Values of another length than the vertices are
-// a mistake of the program (CHECK).
+// Writes the picture as PNG, atomically. Returns kNoRenderer where OpenGL is not available through
+// EGL. Throws InputError when the file cannot be written. CHECKs that there is one value for each
+// vertex.
 PictureResult RenderSurfacePng(const std::filesystem::path& file, const SurfaceScene& scene,
                                const PictureOptions& options = {});
 

@@ -9,7 +9,7 @@
 namespace lacuna {
 namespace {
 
-// When a sentence is written. Larger: fewer, more certain sentences.
+// Thresholds for the sentences. Larger: fewer, more certain sentences.
 constexpr double kNear = 0.35, kFar = 0.65;  // shares of the largest distance from the grip
 constexpr double kMostlyConstant = 0.7;      // |mean| over rms
 constexpr double kClearCorrelation = 0.7;
@@ -56,7 +56,7 @@ std::string WorkText(const ForceWork& work) {
                             work.work > 0 ? "adds energy to" : "removes energy from");
 }
 
-// What a force suggests that is parallel to a quantity of the motion, or opposite to it.
+// The likely cause of a force that is parallel or opposite to a quantity of the motion.
 std::string SuggestionFor(const ForceCorrelation& entry) {
   const bool is_parallel = entry.correlation > 0;
   if (entry.quantity == "displacement")
@@ -94,7 +94,7 @@ std::string DescribeUnexplainedForce(const UnexplainedForceRecord& force,
   if (!force.fit.is_significant) {
     return title +
            fmt::format(
-               "the smooth body force that brings the model closest to the markers ({} rms) is not "
+               "the smooth body force with which the model fits the markers best ({} rms) is not "
                "significant; its standard deviation is {}. It would change the error over all "
                "frames from {:.1f} σ to {:.1f} σ.",
                Newtons(force.net.rms.norm()), Newtons(force.net.rms_deviation.norm()),

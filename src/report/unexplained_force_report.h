@@ -1,4 +1,4 @@
-// The unexplained force in words.
+// Describes the unexplained force in words.
 #ifndef LACUNA_REPORT_UNEXPLAINED_FORCE_REPORT_H_
 #define LACUNA_REPORT_UNEXPLAINED_FORCE_REPORT_H_
 

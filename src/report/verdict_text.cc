@@ -34,7 +34,7 @@ const RecordedNuisance& NuisanceAt(const DiagnosisRecord& diagnosis, int index) 
   return diagnosis.nuisances[static_cast<size_t>(index)];
 }
 
-// One sentence, or two, per kind of reason.
+// One or two sentences for each kind of reason.
 struct ReasonSentence {
   const DiagnosisRecord& diagnosis;
 
@@ -68,7 +68,7 @@ struct ReasonSentence {
   }
   std::string operator()(const NuisanceIsNegligible& reason) const {
     return fmt::format(
-        "A small part of it, less than {:.0f} % of the squared misfit, comes from {}.",
+        "A small part of the error, less than {:.0f} % of the squared misfit, comes from {}.",
         100 * reason.share, NuisanceAt(diagnosis, reason.nuisance).what);
   }
   std::string operator()(const ResidualRemains& reason) const {
@@ -96,7 +96,7 @@ struct ReasonSentence {
         "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; the odds for it are e^{:.0f}.",
         reason.effect, JudgedFrames(reason.held_out),
         reason.adjusted_for_nuisances
-            ? ", without what mesh, time step and the other adopted nuisances explain,"
+            ? ", excluding the contributions of mesh, time step and the other adopted nuisances,"
             : "",
         reason.over_sigma_before, reason.over_sigma_after, reason.evidence);
   }
@@ -116,13 +116,13 @@ struct ReasonSentence {
   }
   std::string operator()(const UnadjustedErrorRises& reason) const {
     return fmt::format(
-        "With what the adopted nuisances explain, the held-out error rises, from {:.3f} mm to "
-        "{:.3f} mm: these nuisances need attention, too.",
+        "If the contributions of the adopted nuisances are included, the held-out error rises from "
+        "{:.3f} mm to {:.3f} mm: these nuisances need attention, too.",
         Millimetres(reason.rms_before), Millimetres(reason.rms_after));
   }
   std::string operator()(const EffectReplacesNuisances& reason) const {
     return fmt::format(
-        "The odds for {} are e^{:.0f}. Without that, the odds for {} are e^{:.0f}, and the {} "
+        "The odds for {} are e^{:.0f}. Without these, the odds for {} are e^{:.0f}, and the {} "
         "error goes from {:.1f} σ to {:.1f} σ.",
         fmt::join(reason.nuisances, ", "), reason.nuisances_evidence, reason.effect,
         reason.evidence, JudgedFrames(reason.held_out), reason.over_sigma_before,
@@ -130,7 +130,7 @@ struct ReasonSentence {
   }
 };
 
-// What the verdict names.
+// Sentences that list what the verdict names.
 std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> titles;
   for (const std::string& name : diagnosis.effects) titles.push_back(TitleOf(diagnosis, name));
@@ -159,7 +159,7 @@ std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {
 
 std::string DescribeNextSteps(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> phrases;
-  std::string refined;  // stands behind the last refinement
+  std::string refined;  // what to do after the last refinement
   for (const SuggestedStep& step : diagnosis.next_steps) {
     if (const auto* refine = std::get_if<RefineDiscretisation>(&step)) {
       phrases.push_back(NuisanceAt(diagnosis, refine->nuisance).advice);

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Column-major storage is just what VTK wants: the components of one entity side by side.
+// Column-major storage is the layout that VTK needs: the components of one entity side by side.
 vtkNew<vtkDoubleArray> ToArray(const Eigen::MatrixXd& values) {
   vtkNew<vtkDoubleArray> array;
   array->SetNumberOfComponents(static_cast<int>(values.rows()));
@@ -45,7 +45,7 @@ vtkNew<vtkPoints> ToPoints(const Eigen::Matrix3Xd& positions) {
 // One cell per column.
 vtkNew<vtkCellArray> ToCells(const Eigen::MatrixXi& cells, Eigen::Index node_count) {
   CHECK(cells.size() == 0 || (cells.minCoeff() >= 0 && cells.maxCoeff() < node_count))
-      << "an element names a node that is not there";
+      << "an element refers to a node that does not exist";
   vtkNew<vtkIdTypeArray> offsets;
   vtkNew<vtkIdTypeArray> nodes;
   offsets->SetNumberOfValues(cells.cols() + 1);

@@ -1,8 +1,7 @@
-// Results as ParaView opens them: tetrahedra (.vtu), surfaces and points (.vtp), time series
-// (.pvd).
+// Files for ParaView: tetrahedra (.vtu), surfaces and points (.vtp), time series (.pvd).
 //
-// Files are written atomically as VTK XML with compressed, appended float64 data; lengths in m.
-// A file that cannot be written is an InputError naming it.
+// Files are written atomically as VTK XML with compressed, appended float64 data; lengths are in m.
+// Throws InputError, which names the file, where it cannot be written.
 #ifndef LACUNA_REPORT_VTK_FILES_H_
 #define LACUNA_REPORT_VTK_FILES_H_
 
@@ -17,7 +16,7 @@
 
 namespace lacuna {
 
-// Values under a name, with the unit in it: "displacement_m". One column per node or cell; one row
+// Values with a name that contains the unit: "displacement_m". One column per node or cell; one row
 // is a scalar, three are a vector, nine a tensor (row by row).
 struct Field {
   std::string name;
@@ -29,11 +28,11 @@ struct FieldSet {
   std::vector<Field> cells;  // tetrahedra or triangles
 };
 
-// A field of another length than the mesh, an unnamed or repeated field, and an element that names
-// an absent node are mistakes of the program (CHECK).
+// CHECKs that each field has one column for each node or cell and a name of its own, and that the
+// elements' nodes exist.
 void WriteVtu(const std::filesystem::path& file, const TetMesh& mesh, const FieldSet& fields);
 void WriteVtp(const std::filesystem::path& file, const TriMesh& mesh, const FieldSet& fields);
-// Each point is a vertex of its own; normals, where there are any, become the field "normal".
+// Each point becomes a vertex; normals, where there are any, become the field "normal".
 void WriteVtp(const std::filesystem::path& file, const PointCloud& cloud,
               const std::vector<Field>& fields);
 

@@ -42,7 +42,7 @@ std::string Quoted(const std::string& text) {
   return quoted + "'";
 }
 
-// Runs a program and returns its standard output. Its standard error is that of this process.
+// Runs a program and returns its standard output. Its standard error goes to that of this process.
 std::string OutputOf(std::vector<std::string> arguments, int* status) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());

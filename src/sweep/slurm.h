@@ -10,7 +10,7 @@ namespace lacuna {
 
 struct SlurmOptions {
   std::filesystem::path program;     // the path of lacuna on the compute nodes
-  std::vector<int> numbers;          // the cases to run, ascending; one task for each
+  std::vector<int> numbers;          // numbers of the cases to run, ascending; one task each
   int at_a_time = 0;                 // tasks that may run at once; 0 for Slurm's own limit
   bool retry_failed = false;         // passed on to the tasks
   bool wait = false;                 // return only after all tasks have ended

@@ -22,13 +22,13 @@ namespace lacuna {
 
 struct CaseChange {
   std::string field;  // "mesh.max_volume"
-  std::string value;  // YAML
+  std::string value;  // YAML text
 };
 
 struct SweepCase {
   int number = 0;          // from 1
   std::string name;        // name of its folder: the number and a hash of the rest
-  std::string experiment;  // as named in the sweep file
+  std::string experiment;  // path as written in the sweep file
   std::vector<CaseChange> changes;
   SweepSettings settings;
 };

@@ -119,7 +119,7 @@ CaseOutcome RunCaseSearch(const Config& experiment, const std::filesystem::path&
   return outcome;
 }
 
-// The files of a table1 case in the order of that command.
+// The files of a table1 case in the order in which that command uses them.
 std::vector<Config> ByRow(std::vector<Config> files) {
   std::vector<std::pair<int, size_t>> order;
   for (size_t k = 0; k < files.size(); ++k) order.emplace_back(files[k].Integer("row", 1, 1000), k);

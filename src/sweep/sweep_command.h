@@ -32,7 +32,8 @@ struct SweepSettings {
 struct CaseOutcome {
   bool done = false;    // false if the case failed
   std::string message;  // the reason for a failure
-  // Results in the order of the table's columns. Names end with the SI unit; NaN: not measured.
+  // Results in the order of the table's columns. Names end with the SI unit; NaN where not
+  // measured.
   std::vector<std::pair<std::string, double>> numbers;
   std::vector<std::pair<std::string, std::string>> words;
   double seconds = 0;  // wall time of the process that finished the case
@@ -41,7 +42,7 @@ struct CaseOutcome {
 // The files of a case: name within its folder → YAML.
 using CaseFiles = std::map<std::string, std::string>;
 
-// Reads the files like the command does, before they are written into `folder`. Throws InputError
+// Reads the files as the command does, before they are written into `folder`. Throws InputError
 // if the command would refuse them.
 void CheckCase(SweepCommand command, const CaseFiles& files, const std::filesystem::path& folder);
 

@@ -19,7 +19,7 @@ struct RequestedChange {
 };
 
 struct RequestedCase {
-  std::string experiment;                // as named in the sweep file
+  std::string experiment;                // path as written in the sweep file
   std::filesystem::path path;            // the experiment file, or the folder for table1
   std::vector<RequestedChange> changes;  // sorted by field
 };
@@ -30,8 +30,9 @@ struct SweepFile {
   std::vector<RequestedCase> cases;  // for each experiment the grid, then the listed cases
 };
 
-// Throws InputError with the position for bad input, among it a field without values or one that
-// the sweep sets itself (output, use), a repeated case, and a grid of more than 100 000 cases.
+// Throws InputError with the position for invalid input, for example a field without values, a
+// field that the sweep sets itself (output, use), a repeated case, or a grid of more than 100 000
+// cases.
 SweepFile ReadSweepFile(const Config& config);
 
 }  // namespace lacuna

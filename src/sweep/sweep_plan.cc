@@ -38,7 +38,7 @@ std::string HashOf(const SweepCase& entry, SweepCommand command) {
   return HashBytes(text);
 }
 
-// The experiment's files: name in the folder of the case → source.
+// The experiment's files: name in the folder of the case → path of the source.
 std::map<std::string, fs::path> FilesOf(SweepCommand command, const fs::path& experiment) {
   if (command != SweepCommand::kTable1) return {{"experiment.yaml", experiment}};
   std::map<std::string, fs::path> files;

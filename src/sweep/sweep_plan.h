@@ -14,7 +14,7 @@ namespace lacuna {
 struct SweepPlan {
   std::vector<SweepCase> cases;     // all cases in the folder, by number
   int added = 0;                    // number of cases that this call has added
-  std::vector<std::string> absent;  // cases planned earlier that the file no longer has; kept
+  std::vector<std::string> absent;  // cases planned earlier that are no longer in the file
 };
 
 // Writes cases.csv and a folder for each case of the sweep file that has none yet. A case never

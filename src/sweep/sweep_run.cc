@@ -27,7 +27,7 @@ bool IsToRun(const fs::path& case_folder, bool retry_failed) {
   return !outcome || (retry_failed && !outcome->done);
 }
 
-// Redirects standard output and standard error of this process to `file`.
+// Redirects the standard output and standard error of this process to `file`.
 void SpeakInto(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor < 0 || dup2(descriptor, STDOUT_FILENO) < 0 || dup2(descriptor, STDERR_FILENO) < 0)
@@ -73,7 +73,7 @@ void KeepCrash(const SweepCase& entry, const fs::path& case_folder, const std::s
   const auto before = LoadOutcome(case_folder);
   if (!claim.holds() || (before && (before->done || !retries))) return;
   CaseOutcome outcome;
-  outcome.message = reason + "; log.txt has its last output";
+  outcome.message = reason + "; its last output is in log.txt";
   SaveOutcome(outcome, case_folder);
   fmt::print(stderr, "{}", EndOf(entry, outcome));
 }

@@ -8,7 +8,7 @@
 namespace lacuna {
 
 struct SweepRunOptions {
-  int workers = 1;                // processes at a time, one case each
+  int workers = 1;                // number of simultaneous processes, one case each
   int threads = 1;                // threads of each process; results do not depend on it
   std::vector<int> numbers = {};  // numbers of the cases to run; all if empty
   bool retry_failed = false;      // run failed cases again

@@ -17,13 +17,13 @@ std::string NameOf(CaseStatus status);
 struct SweepRow {
   SweepCase entry;
   CaseStatus status = CaseStatus::kPlanned;
-  std::string note;                    // the process of a running case, the reason of a failed one
-  std::optional<CaseOutcome> outcome;  // of a case that is done or failed
+  std::string note;                    // process of a running case, or reason of a failure
+  std::optional<CaseOutcome> outcome;  // present if the case is done or failed
 };
 
 struct SweepTable {
   SweepIdentity identity;
-  std::vector<SweepRow> rows;  // by number
+  std::vector<SweepRow> rows;  // sorted by case number
 
   int Count(CaseStatus status) const;
   // The number of cases that are neither done nor failed.

@@ -121,7 +121,7 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
   for (int axis = 0; axis < 3; ++axis)
     trial.true_size[axis] = trial.size[axis] * (1 + 0.002 * draws.Between(-1, 1));
   const NuisanceTrial wrong = trial.Disturbance();
-  // Drawn in any case, so that the further draws of a seed do not depend on the nuisance.
+  // Always drawn, so that the later draws of a seed do not depend on the nuisance.
   const double edge =
       draws.Between(wrong.least_clamp_error, wrong.largest_clamp_error) * draws.Sign();
   if (wrong.largest_clamp_error > 0) trial.clamp_error = edge;

@@ -2,7 +2,7 @@
 //
 // A case is drawn from a seed. Its model lacks one or several hidden effects, or it is a control
 // that lacks none. The bar lies along x, is clamped at x = 0, deflected by a hand at its free end
-// and released. truth.json keeps the case, and is opened after the diagnosis only.
+// and released. The case is kept in truth.json, which is opened only after the diagnosis.
 #ifndef LACUNA_TRIALS_TRIAL_CASE_H_
 #define LACUNA_TRIALS_TRIAL_CASE_H_
 
@@ -23,8 +23,8 @@ namespace lacuna {
 struct HiddenEffect {
   std::string type;
   std::map<std::string, double> parameters;  // all parameters of the card, SI, as hidden
-  // The parameters that make its size. Empty for an effect without a size: a contact with a plane,
-  // and an elasticity law, which replaces the law of the model.
+  // The parameters that define its size. Empty for an effect without a size: a contact with a
+  // plane, and an elasticity law, which replaces the law of the model.
   std::vector<std::string> amplitude;
   // The size as a multiple of the detectable size. An effect without a size changes the recording
   // by at least this multiple of the detectable change.
@@ -43,35 +43,36 @@ struct TrialCase {
   std::string group;
   uint64_t seed = 0;
   int recordings = 1;
-  bool is_scanned = false;  // true: depth cameras; false: markers
-  // The nuisance of a hard control, by the name that its card has for that
-  // (NuisanceTrial::control); empty: none.
+  bool is_scanned = false;  // observed by depth cameras instead of markers
+  // The nuisance of a hard control, named as on its card (NuisanceTrial::control); empty where
+  // there is none.
   std::string nuisance;
   std::vector<HiddenEffect> hidden;
 
-  // Drawn from the seed.
+  // The following values are drawn from the seed.
   double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
-  double damping = 0;                        // s, stiffness-proportional, typical of soft rubber
-  Eigen::Vector3d size{0.08, 0.02, 0.02};    // m, in the model
-  Eigen::Vector3d true_size = size;          // m
-  double clamp_error = 0;                    // m, along x
-  std::vector<Eigen::Vector3d> hold_forces;  // N, of the hand before the release, per recording
-  double noise = 1e-4;                       // m, standard deviation of a marker's coordinate, or
-                                             // along the ray of a depth camera
-  double noise_correlation_time = 0;         // s
+  double damping = 0;                      // s, stiffness-proportional, typical of soft rubber
+  Eigen::Vector3d size{0.08, 0.02, 0.02};  // m, size in the model
+  Eigen::Vector3d true_size = size;        // m
+  double clamp_error = 0;                  // m, along x
+  std::vector<Eigen::Vector3d>
+      hold_forces;                    // N, force of the hand before the release, per recording
+  double noise = 1e-4;                // m, standard deviation of a marker's coordinate, or
+                                      // along the ray of a depth camera
+  double noise_correlation_time = 0;  // s
 
   bool Hides(const std::string& type) const;
-  // What is wrong with the experiment of a hard control; by default nothing.
+  // The error in the experiment of a hard control; by default none.
   NuisanceTrial Disturbance() const;
 };
 
-// Draws all that depends on the seed, without hidden effects.
+// Draws everything that depends on the seed, except hidden effects.
 TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t seed, int recordings,
                    bool is_scanned, const std::string& nuisance);
 
-// Draws the place, direction and times of an effect from the seed, as its card says. Its size is 1
-// unit of its parameter, with a plausible sign; the caller scales it. A plane of contact stands
-// beside the bar, on the side to which it swings. `type` must be in the catalogue.
+// Draws the place, direction and times of an effect from the seed, as its card prescribes. Its size
+// is 1 unit of its parameter, with a plausible sign; the caller scales it. A plane of contact
+// stands beside the bar, on the side to which it swings. `type` must be in the catalogue.
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed);
 
 // Write and read truth.json. Both throw InputError if the file cannot be used.

@@ -43,8 +43,8 @@ void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3X
   }
 }
 
-// Moves one frame of a hard control with such a nuisance by a random rigid motion, as a failed
-// registration would.
+// In a hard control with a bad frame, moves one frame by a random rigid motion, like a failed
+// registration.
 void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
   const NuisanceTrial wrong = trial.Disturbance();
   if (wrong.frame_shift == 0 && wrong.frame_rotation == 0) return;
@@ -58,7 +58,7 @@ void SpoilFrame(const TrialCase& trial, int recording, std::vector<Eigen::Matrix
     place += shift + rotation.cross(Eigen::Vector3d(place));
 }
 
-// The shape of the body in the model.
+// Writes the shape of the body in the model.
 void WriteBox(const TrialCase& trial, const std::filesystem::path& file) {
   std::string box = "OFF\n8 12 0\n";
   for (int corner = 0; corner < 8; ++corner)

@@ -20,7 +20,7 @@ inline constexpr double kTrialFace = 1e-5;        // m: the clamp and the hand h
                                                   // this distance of the end faces
 inline constexpr double kTrialPlaceError = 1e-4;  // m: standard deviation, per axis, of the
                                                   // recorded place of a marker
-inline constexpr double kTrialShapeError = 2e-4;  // m: deviation of a body whose size is 0.2 % off
+inline constexpr double kTrialShapeError = 2e-4;  // m: shape deviation for a size error of 0.2 %
 
 // The motion of the true bar.
 struct TrueMotion {
@@ -32,7 +32,7 @@ struct TrueMotion {
 // these three numbers alone.
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j);
 
-// Writes recording.yaml and all files that it refers to into the folder. `recording`: 0 or 1.
+// Writes recording.yaml and all files that it refers to into the folder. `recording` is 0 or 1.
 // Throws InputError if a file cannot be written.
 void WriteRecording(const TrialCase& trial, int recording, const TrueMotion& motion,
                     const std::filesystem::path& folder);

@@ -103,22 +103,22 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
 
 std::string ReportInWords(const TrialReport& report) {
   std::string text =
-      fmt::format("{:28} {:>5} {:>6} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>7} {:>7}  {}\n",
-                  "group", "cases", "top-1", "top-2", "wrong", "first", "at noise", "within",
-                  "covered", "before", "after", "verdicts");
+      fmt::format("{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8} {:>7}  {}\n",
+                  "group", "cases", "correct", "top two", "wrong", "ranked 1st", "at noise",
+                  "size ±15 %", "in interval", "σ before", "σ after", "verdicts");
   for (const TrialTally& tally : report.tallies) {
     std::vector<std::string> verdicts;
     for (const auto& [name, count] : tally.verdicts)
       verdicts.push_back(fmt::format("{} {}", count, name));
-    text +=
-        fmt::format("{:28} {:>5} {:>6} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>7.2f} {:>7.2f}  {}\n",
-                    tally.group, tally.cases, Share(tally.top1, tally.cases),
-                    Share(tally.top2, tally.cases), Share(tally.wrong, tally.cases),
-                    Share(tally.ranked_first, tally.cases), Share(tally.at_noise, tally.fitted),
-                    Share(tally.within_15, tally.fitted), Share(tally.covered, tally.intervals),
-                    tally.median_before, tally.median_after, fmt::join(verdicts, ", "));
+    text += fmt::format(
+        "{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7.2f}  {}\n",
+        tally.group, tally.cases, Share(tally.top1, tally.cases), Share(tally.top2, tally.cases),
+        Share(tally.wrong, tally.cases), Share(tally.ranked_first, tally.cases),
+        Share(tally.at_noise, tally.fitted), Share(tally.within_15, tally.fitted),
+        Share(tally.covered, tally.intervals), tally.median_before, tally.median_after,
+        fmt::join(verdicts, ", "));
   }
-  text += "\nhidden: what was said\n";
+  text += "\nhidden effect: verdicts, or the effects named as missing\n";
   for (const auto& [truth, said] : report.confusion) {
     std::vector<std::string> parts;
     for (const auto& [name, count] : said) parts.push_back(fmt::format("{} {}", count, name));

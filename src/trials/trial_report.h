@@ -16,7 +16,7 @@ struct TrialTally {
   std::string group;  // e.g. "hard_control grip", "one_effect, 2 rec, 4 x"
   int cases = 0;
   int top1 = 0, top2 = 0, wrong = 0;
-  int ranked_first = 0;  // the hidden effect leads the ranking, whatever the verdict
+  int ranked_first = 0;  // the hidden effect is first in the ranking, whatever the verdict
   std::map<std::string, int> verdicts;
   int fitted = 0;     // cases whose hidden effect was fitted
   int at_noise = 0;   // fitted cases with a held-out error of at most 1.2 times the noise

@@ -86,7 +86,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   const CalibrationProblem problem(study, reference.mesh);
   if (calibration.estimates.empty()) throw InputError(folder.string() + ": " + calibration.message);
   DiagnosisOptions options;
-  // Before the diagnosis, the truth tells only which effects are removed from the library.
+  // Before the diagnosis, only the list of effects removed from the library is used.
   const std::filesystem::path without = folder / "without.txt";
   if (std::filesystem::exists(without)) {
     std::ifstream stream(without);

@@ -17,26 +17,26 @@ struct TrialOutcome {
   Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> named;   // effects and nuisances of the verdict, the best one first
   std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
-  double error_before = 0;          // held-out, of the model without any of them
-  double error_best = 0;            // held-out, with the first one named; 0: none is named
-  // Evidence (natural logarithm of the odds against the model as it is) of the first two ranked
-  // effects, and the one that a twentieth of the controls without an effect exceeds; `left`: the
-  // remaining rms residual over the noise. All as the Diagnosis has them.
+  double error_before = 0;          // held-out error of the model without any of them
+  double error_best = 0;            // held-out error with the first effect named; 0: none is
+  // Values from the diagnosis: the evidence (natural logarithm of the odds against the unchanged
+  // model) of the first two ranked effects, the evidence that a twentieth of the controls without
+  // an effect exceeds, and the remaining rms residual over the noise.
   double evidence = 0, second_evidence = 0, control = 0, left = 0;
-  // Whether the first hidden effect was fitted, so that the following values hold. False if it is
-  // not in the library, has no size, or could not be fitted.
+  // Whether the first hidden effect was fitted, so that the following values are valid. False if it
+  // is not in the library, has no size, or could not be fitted.
   bool has_truth = false;
-  double error_after = 0;  // held-out, with the hidden effect fitted
-  // |estimate − truth| / |truth|, each component in units of its detectable size, so that a
-  // component that hardly shows (such as weight along a bar) hardly counts.
+  double error_after = 0;  // held-out error with the hidden effect fitted
+  // |estimate − truth| / |truth|, with each component divided by its detectable size, so that a
+  // component with little influence (such as weight along a bar) has little weight.
   double relative_error = 0;
   std::vector<char> covered;  // for each amplitude: whether the 95 % interval contains the truth
   double seconds = 0;         // wall time of fit and diagnosis
 };
 
-// Fits and diagnoses the case in `folder` as its experiment.yaml says and writes diagnosis.json
-// there. The truth is opened only afterwards. Throws InputError if the case cannot be read or
-// fitted.
+// Fits and diagnoses the case in `folder` according to its experiment.yaml and writes
+// diagnosis.json there. The truth is opened only afterwards. Throws InputError if the case cannot
+// be read or fitted.
 TrialOutcome RunCase(const std::filesystem::path& folder);
 
 // Write and read outcome.json. Both throw InputError if the file cannot be used.

@@ -67,7 +67,7 @@ std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
 }
 
 TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
-  // A clamp that reaches further holds more of the bar, whose free part begins later.
+  // A clamp that extends further holds more of the bar, so that its free part is shorter.
   Eigen::Vector3d size = trial.true_size;
   size[0] -= trial.clamp_error;
   const Eigen::Vector3d centre(trial.clamp_error + 0.5 * size[0], 0, 0);

@@ -3,7 +3,7 @@
 //
 // The truth differs from the model that must explain it in its mesh (finer elements, another
 // subdivision), its time step, its shape (within 0.2 %) and its clamp. The places of the markers
-// are known to within 0.2 mm only, and the noise is correlated in time.
+// are known only to within 0.2 mm, and the noise is correlated in time.
 #ifndef LACUNA_TRIALS_TRIAL_SIMULATION_H_
 #define LACUNA_TRIALS_TRIAL_SIMULATION_H_
 

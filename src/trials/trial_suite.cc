@@ -61,7 +61,7 @@ TrialCase DrawnAgain(const TrialCase& trial) {
                         trial.recordings, trial.is_scanned, RandomBits({trial.seed, 1}));
 }
 
-// The change of the residuals, m, that the hidden effect causes as drawn.
+// The change of the residuals, m, that the hidden effect causes at the size that was drawn.
 Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& problem,
                          const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
   CandidateEffect candidate;
@@ -75,7 +75,7 @@ Eigen::VectorXd ChangeBy(const HiddenEffect& hidden, const CalibrationProblem& p
   return with.residual - misfit.residual;
 }
 
-// The true values of the fitted parameters, in their order.
+// The true values of the fitted parameters, in the same order.
 Eigen::VectorXd TrueValues(const TrialCase& trial, const TrialCase& without,
                            const PredictionStudy& study, const CalibrationProblem& problem) {
   Eigen::VectorXd values = problem.Start();
@@ -102,8 +102,8 @@ std::vector<MisfitDirection> SizeDirections(const HiddenEffect& hidden) {
   return directions;
 }
 
-// The nuisances of the measurement that a hidden effect must stand out from. `grip_columns`: the
-// columns of the directions of `grips`.
+// The nuisances of the measurement from which a hidden effect must be distinguishable.
+// `grip_columns` are the columns of the directions of `grips`.
 std::vector<NuisanceCandidate> CaseNuisances(const CalibrationProblem& problem,
                                              const Eigen::VectorXd& values,
                                              const LinearisedMisfit& misfit,
@@ -128,7 +128,7 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   TrialCase without = trial;
   without.hidden.clear();
   if (IsInEveryModel(hidden.type)) {
-    // The model must lack the effect. With size zero its absence is not an error of the model yet.
+    // The model must lack the effect. At size zero, its absence is no error of the model.
     without.hidden.push_back(hidden);
     for (const std::string& name : hidden.amplitude) without.hidden[0].parameters[name] = 0;
   }
@@ -195,7 +195,7 @@ void SimulateAndSeal(const TrialCase& trial, const std::filesystem::path& folder
 }
 
 // Determines the sizes of the hidden effects and simulates the case. Returns the reason of a
-// failure; empty: it succeeded.
+// failure, empty on success.
 std::string SizeAndSimulate(TrialCase* trial, const std::filesystem::path& folder) {
   try {
     for (HiddenEffect& hidden : trial->hidden) {

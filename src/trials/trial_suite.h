@@ -18,11 +18,11 @@ struct TrialSuite {
   std::string name;
   // Suites that tune the diagnosis and suites that are reported must have different seeds.
   uint64_t seed = 0;
-  int controls = 0, hard_controls = 0;  // numbers of cases without a hidden effect
+  int controls = 0, hard_controls = 0;  // number of cases without a hidden effect
   std::vector<std::string> effects;     // hidden one at a time
-  std::vector<int> factors;             // sizes of the hidden effects, in detectable sizes
+  std::vector<int> factors;             // sizes of hidden effects over their detectable sizes
   std::vector<int> recordings;          // numbers of recordings per case
-  bool is_scanned = false;              // true: depth cameras; false: markers
+  bool is_scanned = false;              // observed by depth cameras instead of markers
   std::vector<std::string> removed;     // hidden at the largest factor and removed from the library
   int pairs = 0;                        // number of cases with two effects, at the largest factor
 };

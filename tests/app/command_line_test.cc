@@ -144,11 +144,11 @@ TEST(CommandLine, EveryEffectTellsOfItself) {
     EXPECT_EQ(told.status, 0);
     EXPECT_THAT(told.said, HasSubstr(entry.card->title));
     for (const char* section :
-         {"Equation", "Source", "Parameters", "When it is missing", "To tell it apart"})
+         {"Equation", "Source", "Parameters", "When it is missing", "How to distinguish it"})
       EXPECT_THAT(told.said, HasSubstr("\n" + std::string(section) + "\n  "));
     for (const std::string& other : entry.card->look_alikes)
       EXPECT_THAT(told.said, HasSubstr(FindEntry(other)->card->title));
-    const size_t paste = told.said.find("\nTo paste");
+    const size_t paste = told.said.find("\nExample (");
     ASSERT_NE(paste, std::string::npos);
     ExpectUnderstood(told.said.substr(told.said.find('\n', paste + 1) + 1), entry);
   }

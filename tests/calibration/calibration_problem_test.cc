@@ -343,7 +343,7 @@ TEST(CalibrationProblem, TellsWhatItCannotWorkWith) {
       testing::HasSubstr("regions \"clamp\" and \"end\" hold the same part"));
   EXPECT_THAT(message_with_clamp("{name: all, half_space: {point: [1 m, 0 m, 0 m], "
                                  "normal: [-1, 0, 0]}}"),
-              testing::HasSubstr("region \"all\" holds all of the object"));
+              testing::HasSubstr("region \"all\" holds the whole object"));
   WriteBarRecording(folder.Path(), std::vector<Eigen::Matrix3Xd>(kFrames, moved));
   std::string text = FileContent(folder / "recording.yaml");
   const size_t place = text.find("[", text.find("name: m2")) + 1;

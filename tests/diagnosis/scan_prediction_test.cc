@@ -297,12 +297,12 @@ TEST_F(CarriedBar, TellsWhatItCannotFollow) {
   EXPECT_THAT(MessageWith(std::string("gripped: [{name: tool, half_space: {point: [0.002 m, 0 m, 0 "
                                       "m], normal: [-1, 0, 0]}}]\n") +
                           kShape),
-              HasSubstr("tool follows the scan, but frame 0 does not tell all of its motion"));
+              HasSubstr("tool follows the scan, but frame 0 does not determine all of its motion"));
   EXPECT_THAT(
       MessageWith(std::string("gripped: [{name: tool, sphere: {center: [0 m, 0.01 m, 0.01 m], "
                               "radius: 1 mm}}]\n") +
                   kShape),
-      HasSubstr("tool follows the scan, but holds no face of the surface"));
+      HasSubstr("tool follows the scan, but contains no face of the surface"));
   // What the tool hides.
   std::vector<TriMesh> without_end = CarriedSurfaces();
   std::vector<Eigen::Index> seen;
@@ -319,7 +319,7 @@ TEST_F(CarriedBar, IsRefusedWhereItSaysNothing) {
   EXPECT_THAT(MessageWith(rest, CarriedSurfaces(), {{"to: 0.2001 s", "to: 0.03 s"}}),
               HasSubstr("2 frames lie between 0 s and 0.03 s; at least 3 are needed"));
   EXPECT_THAT(MessageWith(rest, CarriedSurfaces(), {{"fit_until: 0.1201 s", "from: 0.1 s"}}),
-              HasSubstr("the object moves already between its first two frames"));
+              HasSubstr("the object already moves between its first two frames"));
   TetMesh elsewhere = BarMesh({8, 1, 1}, 2);
   elsewhere.nodes.row(1).array() += 0.3;
   EXPECT_THAT(MessageOf([&] {

@@ -90,7 +90,7 @@ TEST_F(CarriedByMarkers, IsRefusedWhereTwoAreToTellHowItDeforms) {
       [&] {
         Follow({"a", "b"}, Moved());
       },
-      testing::ThrowsMessage<InputError>(testing::HasSubstr("span no plane")));
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("do not span a plane")));
 }
 
 TEST_F(CarriedByMarkers, DoesWithoutOneThatIsHidden) {
@@ -134,7 +134,7 @@ TEST(RecordedGrips, AreRefusedWhereTheLastFrameDoesNotShowThem) {
   } catch (const InputError& problem) {
     EXPECT_THAT(problem.what(),
                 testing::HasSubstr("frame 25, the last that is used, shows too few of the markers "
-                                   "that \"hand\" follows: choose `to`"));
+                                   "that \"hand\" follows: change `to`"));
   }
 }
 

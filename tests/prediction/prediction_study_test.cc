@@ -169,7 +169,7 @@ TEST_F(ReadingAPredictionStudy, RefusesALoadThatDoesNotCoverTheFrames) {
   EXPECT_THAT(MessageAfterInRecording({{"reference",
                                         "forces: [{name: pull, constant: [0 N, 0 N, 1 N]}]\n"
                                         "reference"}}),
-              HasSubstr("does not tell where pull acts"));
+              HasSubstr("does not say where pull acts"));
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesAGripWhosePathDoesNotCoverTheFrames) {
@@ -222,8 +222,9 @@ TEST_F(ReadingAPredictionStudy, RefusesCandidatesThatCouldNotBeAddedByName) {
               more}});
   };
   EXPECT_EQ(message("push"), "nothing was refused");
-  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: a candidate's is of letters"));
-  EXPECT_THAT(message("drag"), HasSubstr("candidates[0].name: is that of an effect of the cat"));
+  EXPECT_THAT(message("a push"), HasSubstr("candidates[0].name: must consist of letters"));
+  EXPECT_THAT(message("drag"),
+              HasSubstr("candidates[0].name: is the name of an effect of the cat"));
   EXPECT_THAT(message("push", "  - {type: drag, coefficient: 1}\n"),
               HasSubstr("candidates[1].type: a diagnosis tries drag anyway"));
 }
@@ -263,7 +264,7 @@ TEST_F(ReadingAPredictionStudy, RefusesNothingToFit) {
 TEST_F(ReadingAPredictionStudy, TakesEquilibria) {
   const std::string statics = "motion: {scheme: quasi_static}";
   EXPECT_THAT(MessageAfter({{"motion: {time_step: 1.5 ms}", statics}}),
-              HasSubstr("recordings[0].hold: what is let go of swings"));
+              HasSubstr("recordings[0].hold: a released object vibrates"));
   Replacements one{{"motion: {time_step: 1.5 ms}", statics},
                    {"    fit_until", "    from: 0.1 s\n    to: 0.115 s\n    fit_until"}};
   one.insert(kNoHold.begin(), kNoHold.end());
@@ -311,7 +312,7 @@ TEST_F(ReadingAPredictionStudy, RefusesTwoRecordingsOfOneName) {
   const std::string entry = text.substr(text.find("  - recording: "));
   const std::string message = MessageOf(text + entry);
   EXPECT_THAT(message, HasSubstr("recordings[1].name: \""));
-  EXPECT_THAT(message, HasSubstr("is that of another recording already"));
+  EXPECT_THAT(message, HasSubstr("is already the name of another recording"));
 }
 
 TEST_F(ReadingAPredictionStudy, TakesTheNoiseOfRestForNoMotion) {
@@ -336,11 +337,11 @@ TEST_F(ReadingAPredictionStudy, RefusesAStartInMotion) {
   auto markers = Moving(0, 0);
   for (size_t frame = 1; frame < markers.size(); ++frame) markers[frame].array() += 0.001;
   WriteBarRecording(folder_.Path(), markers);
-  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object already moves between its first two"));
   // The first marker is not seen at first: the others tell.
   markers[0].col(0).setConstant(std::numeric_limits<double>::quiet_NaN());
   WriteBarRecording(folder_.Path(), markers);
-  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object moves already between its first two"));
+  EXPECT_THAT(MessageAfter(kNoHold), HasSubstr("the object already moves between its first two"));
   WriteBarRecording(folder_.Path(), Moving(0.001));
   EXPECT_EQ(MessageAfter(kNoHold), "nothing was refused");
 }

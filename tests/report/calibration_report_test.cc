@@ -31,7 +31,7 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   EXPECT_THAT(text, HasSubstr("14 with finer elements"));
   EXPECT_THAT(text, HasSubstr("fitted    0.100 mm (largest 0.200), 1.5 σ, 3 frames"));
   EXPECT_THAT(text, HasSubstr("held out  -"));
-  EXPECT_THAT(text, HasSubstr("time step 2 ms; half of it would change the prediction by 0.03 σ"));
+  EXPECT_THAT(text, HasSubstr("time step 2 ms; halving it would change the prediction by 0.03 σ"));
   EXPECT_THAT(text, HasSubstr("7 of 8 markers conflict with their priors; the worst are listed"));
 }
 
@@ -42,9 +42,9 @@ TEST(CalibrationReport, DescribesEveryConflict) {
       DescribePriorConflict(MarkerConflict{"swing", "tip", Eigen::Vector3d(1e-3, 0, 0), 1e-4}),
       HasSubstr("the fit places marker tip (1, 0, 0) mm away from its recorded place"));
   EXPECT_THAT(DescribePriorConflict(ReferenceShapeConflict{"swing", 5, 1e-3, 1e-4}),
-              HasSubstr("the tracked points lie 1 mm (rms) off the reference shape"));
+              HasSubstr("the tracked points are 1 mm (rms) away from the reference shape"));
   EXPECT_THAT(DescribePriorConflict(PatchConflict{"swing", 7, 8, 1e-3, 1e-4}),
-              HasSubstr("7 of 8 patches lie off the model's surface"));
+              HasSubstr("7 of 8 patches are offset from the model's surface"));
   EXPECT_THAT(DescribePriorConflict(UnmatchedScans{"swing", 7, 8, 0.5, 0.85}),
               HasSubstr("in 7 of 8 frames, the first at 0.500 s, fewer than 85 %"));
 }

@@ -41,7 +41,7 @@ TEST(DiagnosisReport, ShowsVerdictReasonsAndNextCommand) {
   EXPECT_THAT(text, HasSubstr("\nmissing {drag}\n"));
   EXPECT_THAT(text, HasSubstr("goes from 5.0 σ to 1.0 σ"));
   EXPECT_THAT(text, HasSubstr("2 [1, 3] kg/m^3"));
-  EXPECT_THAT(text, HasSubstr("no sign of: swelling"));
+  EXPECT_THAT(text, HasSubstr("no evidence for: swelling"));
   EXPECT_THAT(text, HasSubstr("next: lacuna add runs/bar drag"));
   EXPECT_THAT(text, Not(HasSubstr("Smallest size")));
 }
@@ -52,9 +52,9 @@ TEST(DiagnosisReport, ShowsWhatWouldHaveBeenSeenWhereNothingIsMissing) {
   record.effects.clear();
   record.ranking[1].sizes[0].detectable = INFINITY;
   const std::string text = DiagnosisReport(record, "runs/bar");
-  EXPECT_THAT(text, HasSubstr("Smallest size that these recordings could have shown"));
+  EXPECT_THAT(text, HasSubstr("Smallest size that these recordings would reveal"));
   EXPECT_THAT(text, HasSubstr("0.5 kg/m^3"));
-  EXPECT_THAT(text, HasSubstr("no size could be seen"));
+  EXPECT_THAT(text, HasSubstr("no size would be detectable"));
 }
 
 TEST(DiagnosisReport, ShowsWhyARefitIsNotUsable) {

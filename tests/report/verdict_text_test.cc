@@ -48,7 +48,8 @@ TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
             "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; the "
             "odds for it are e^300.");
   record.reasons = {EffectReducesError{"drag", 300, false, true, 5, 1}};
-  EXPECT_THAT(ExplainVerdict(record), HasSubstr("the fitted error, without what mesh, time step"));
+  EXPECT_THAT(ExplainVerdict(record),
+              HasSubstr("the fitted error, excluding the contributions of mesh, time step"));
   EXPECT_EQ(DescribeNextSteps(record), "");
 }
 

@@ -185,7 +185,7 @@ TEST(VtkFilesDeathTest, FieldsThatDoNotFitTheMeshAreRefused) {
   EXPECT_DEATH(WriteVtu(file, TwoTets(), {{{"", five}}, {}}), "without a name");
   TriMesh broken = Square();
   broken.triangles(0, 0) = 4;
-  EXPECT_DEATH(WriteVtp(file, broken, {}), "a node that is not there");
+  EXPECT_DEATH(WriteVtp(file, broken, {}), "a node that does not exist");
 }
 
 TEST(PvdTest, NamesFilesByTimeRelativeToItsOwnFolder) {
