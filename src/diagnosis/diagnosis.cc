@@ -71,7 +71,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.noise = problem.noise();
   diagnosis.scan_noise = problem.scan_noise();
   diagnosis.time_step = problem.study().time_step;
-  diagnosis.errors = ErrorsOf(problem, fitted);
+  diagnosis.errors = ErrorsOf(problem, fitted, &ranking.misfit);
   diagnosis.scored = ranking.variants;
   diagnosis.control = ranking.control;
   diagnosis.untried = std::move(ranking.untried);

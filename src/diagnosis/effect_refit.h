@@ -17,8 +17,10 @@
 
 namespace lacuna {
 
-// The errors of a model with these parameter values, over all recordings.
-ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
+// The errors of a model with these parameter values, over all recordings. `known`, if given: its
+// misfit there, which is then not predicted again.
+ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                     const LinearisedMisfit* known = nullptr);
 
 // A fitted model, linearised about its parameters.
 struct FittedHypothesis {
