@@ -14,13 +14,6 @@ namespace {
 // After a projection, less than this fraction of a column's square consists of rounding errors.
 constexpr double kRounding = 1e-8;
 
-// ln(2 Φ(z)) with the standard normal distribution Φ; an asymptotic series where erfc underflows.
-double LogTwiceNormal(double z) {
-  if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
-  constexpr double kPi = 3.14159265358979323846;
-  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * kPi));
-}
-
 // The posterior information matrix of the chosen parameters, scaled to a unit diagonal.
 struct ScaledInformation {
   Eigen::VectorXd unit;
@@ -28,6 +21,12 @@ struct ScaledInformation {
 };
 
 }  // namespace
+
+double LogTwiceNormal(double z) {
+  if (z > -30) return std::log(std::erfc(-z / std::sqrt(2.0)));
+  // An asymptotic series where erfc underflows.
+  return -0.5 * z * z - std::log(-z * std::sqrt(0.5 * M_PI));
+}
 
 LinearGaussianModel::LinearGaussianModel(const Eigen::VectorXd& residual,
                                          const Eigen::MatrixXd& columns,
@@ -60,6 +59,20 @@ ScaledInformation Informed(const Eigen::MatrixXd& products, const std::vector<Li
 }
 
 }  // namespace
+
+LinearGaussianModel LinearGaussianModel::FromProducts(double squares, Eigen::VectorXd toward,
+                                                      Eigen::MatrixXd products,
+                                                      std::vector<LinearPrior> priors) {
+  CHECK_EQ(toward.size(), static_cast<Eigen::Index>(priors.size()));
+  CHECK_EQ(products.rows(), toward.size());
+  CHECK_EQ(products.cols(), toward.size());
+  LinearGaussianModel model;
+  model.squares_ = squares;
+  model.toward_ = std::move(toward);
+  model.products_ = std::move(products);
+  model.priors_ = std::move(priors);
+  return model;
+}
 
 LinearGaussianModel LinearGaussianModel::WithResidual(const Eigen::VectorXd& residual,
                                                       const Eigen::MatrixXd& columns) const {

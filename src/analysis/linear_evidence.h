@@ -23,6 +23,10 @@ struct LinearPrior {
   bool positive = false;                                       // restricts the change to δ ≥ 0
 };
 
+// ln(2 Φ(z)) with the standard normal distribution Φ: the factor by which a prior that is truncated
+// at 0 changes the evidence of an amount that is z standard deviations above 0.
+double LogTwiceNormal(double z);
+
 struct LinearFit {
   double log_evidence = 0;    // ln p, natural logarithm
   Eigen::VectorXd change;     // δ̂, in the order of the chosen columns
@@ -36,6 +40,11 @@ class LinearGaussianModel {
   // and `priors` has k entries. CHECKs the sizes and that the deviations are positive.
   LinearGaussianModel(const Eigen::VectorXd& residual, const Eigen::MatrixXd& columns,
                       std::vector<LinearPrior> priors);
+
+  // A model of known products: rᵀr, Aᵀr and AᵀA, for k columns with k priors. CHECKs the sizes.
+  static LinearGaussianModel FromProducts(double squares, Eigen::VectorXd toward,
+                                          Eigen::MatrixXd products,
+                                          std::vector<LinearPrior> priors);
 
   // A model with another residual and the values of `columns` for it; the products AᵀA are kept.
   LinearGaussianModel WithResidual(const Eigen::VectorXd& residual,
@@ -56,6 +65,10 @@ class LinearGaussianModel {
   // ‖column‖²
   double Square(int column) const { return products_(column, column); }
   const LinearPrior& Prior(int column) const { return priors_[column]; }
+  const std::vector<LinearPrior>& priors() const { return priors_; }
+  double squares() const { return squares_; }                    // rᵀr
+  const Eigen::VectorXd& toward() const { return toward_; }      // Aᵀr
+  const Eigen::MatrixXd& products() const { return products_; }  // AᵀA
 
   // The largest canonical correlation, 0 to 1, of two sets of columns after `taken` has been
   // projected out. Near 1 the data cannot distinguish the two sets. It is 0 if nothing remains of
@@ -64,6 +77,8 @@ class LinearGaussianModel {
                       const std::vector<int>& b, double variance) const;
 
  private:
+  LinearGaussianModel() = default;
+
   double squares_ = 0;        // rᵀ r
   Eigen::VectorXd toward_;    // Aᵀ r
   Eigen::MatrixXd products_;  // Aᵀ A

@@ -38,12 +38,16 @@ int Main(int argc, char** argv) {
   run->add_option("folder", folder, "Folder of the cases")->required();
   run->add_option("--workers", workers, "Number of processes that run at the same time")
       ->check(CLI::Range(1, 64));
+  CLI::App* redecide = app.add_subcommand(
+      "redecide", "Decide again with the rules as they are now, from the stored evidence");
+  redecide->add_option("folder", folder, "Folder of the cases")->required();
   CLI::App* report = app.add_subcommand("report", "Report how often the diagnosis was right");
   report->add_option("folder", folder, "Folder of the cases")->required();
   CLI11_PARSE(app, argc, argv);
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
     if (run->parsed()) return RunTrials(folder, workers);
+    if (redecide->parsed()) fmt::print("{} cases decided\n", RedecideTrials(folder));
     return Report(folder);
   } catch (const InputError& problem) {
     fmt::print(stderr, "{}\n", problem.what());

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "analysis/measurement_errors.h"
-#include "comparison/smooth_force.h"
 #include "fem/reduced_response.h"
 #include "prediction/predicted_motion.h"
 #include "prediction/replayed_motion.h"
+#include "prediction/smooth_force.h"
 
 namespace lacuna {
 

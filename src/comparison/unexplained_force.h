@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "comparison/smooth_force.h"
+#include "prediction/smooth_force.h"
 #include "record/unexplained_force_record.h"
 
 namespace lacuna {

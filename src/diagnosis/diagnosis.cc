@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "calibration/calibration_fits.h"
+#include "diagnosis/decision_maker.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/recording_power.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"
@@ -59,9 +61,55 @@ bool IsStepTooLong(const EffectRanking& ranking) {
                                    return nuisance.candidate.card.shrinks_with_time_step;
                                  });
   return step != ranking.nuisances.end() &&
-         DiscretisationUncertainty(step->uncertain_evidence) > kThresholds.naming.least_evidence &&
+         step->uncertain_evidence > kThresholds.refit.uncertain_step_evidence &&
          !ranking.effects.empty() &&
-         ranking.effects.front().score.evidence > kThresholds.naming.least_evidence;
+         ranking.effects.front().score.evidence > kThresholds.refit.least_evidence;
+}
+
+// The effects whose power is simulated: those that were refitted, the most probable first.
+std::vector<std::string> EffectsOfInterest(const Decision& decision, const DecisionInput& input) {
+  constexpr size_t kMost = 4;
+  std::vector<std::string> effects;
+  for (const HypothesisProbability& one : decision.record.probabilities) {
+    const bool refitted =
+        one.kind == HypothesisProbability::Kind::kEffect &&
+        std::any_of(input.refits.begin(), input.refits.end(),
+                    [&](const WeighedRefit& refit) { return refit.effect == one.names.front(); });
+    if (refitted && effects.size() < kMost) effects.push_back(one.names.front());
+  }
+  return effects;
+}
+
+// Decides, and looks closer where that may change the decision: where the best effect leaves more
+// than noise, at what it leaves along its own motion; where nuisances explain the residual, at
+// effects in their place.
+void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, const RefitNoise& noise,
+                const DiagnosisOptions& options, Diagnosis* diagnosis) {
+  DecisionInput& input = diagnosis->decision_input;
+  input = MakeDecisionInput(context, ranked, noise, *diagnosis);
+  Decision decision = Decide(input);
+  if (decision.verdict == Verdict::kNotInLibrary) {
+    const std::string best = decision.record.probabilities.front().names.empty()
+                                 ? ""
+                                 : decision.record.probabilities.front().names.front();
+    for (size_t k = 0; k < ranked.effects.size(); ++k) {
+      const RankedEffect& effect = ranked.effects[k];
+      if (effect.scored.candidate.type != best || !ranked.IsUsable(k)) continue;
+      for (WeighedRefit& refit : input.refits)
+        if (refit.effect == best)
+          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without);
+      decision = Decide(input);
+    }
+  }
+  if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
+    diagnosis->alternatives = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
+    AddAlternatives(diagnosis->alternatives, &input);
+    decision = Decide(input);
+  }
+  const std::vector<std::string> effects = EffectsOfInterest(decision, input);
+  decision.record.power = SimulatePower(input, effects);
+  decision.record.separations = Separations(input, effects);
+  Conclude(decision, diagnosis);
 }
 
 Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
@@ -73,7 +121,6 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.time_step = problem.study().time_step;
   diagnosis.errors = ErrorsOf(problem, fitted, &ranking.misfit);
   diagnosis.scored = ranking.variants;
-  diagnosis.control = ranking.control;
   diagnosis.untried = std::move(ranking.untried);
 
   const BaselineModel model{problem, fitted, ranking.misfit, setting.progress, setting.kept};
@@ -89,17 +136,12 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
   const RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
-  RankBesideBest(context, options.without, &ranked);
 
   diagnosis.noise_level = noise.level;
   diagnosis.best_rms_over_sigma = noise.least_rms_over_sigma;
   diagnosis.ranking = ranked.effects;
   diagnosis.nuisances = ranking.nuisances;
-  Decide(&diagnosis);
-  if (diagnosis.verdict == Verdict::kNuisance) {
-    diagnosis.alternatives = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
-    DecideAgainstNuisances(&diagnosis);
-  }
+  DecideUpon(context, ranked, noise, options, &diagnosis);
   return diagnosis;
 }
 

@@ -5,11 +5,11 @@
 // 2. The best effects are added to the model, one at a time, and fitted with it (refits.h). What
 //    counts is the evidence of all frames, including the held-out ones, with a noise that is at
 //    least as large and as correlated as the residual of the best refit.
-// 3. A control applies the ranking to residuals that contain no effect: an effect needs more
-// evidence
-//    than the control finds.
-// 4. The verdict states what these results support (verdict.h).
-// docs/diagnosis.md explains the method and its limits, thresholds.h all its thresholds.
+// 3. The decision weighs all hypotheses, tests whether the most probable one leaves more than
+// noise,
+//    and simulates what these recordings would have shown (decision.h, recording_power.h).
+// 4. The verdict states the result in terms to act upon (verdict.h).
+// docs/diagnosis.md explains the method and its limits.
 #ifndef LACUNA_DIAGNOSIS_DIAGNOSIS_H_
 #define LACUNA_DIAGNOSIS_DIAGNOSIS_H_
 

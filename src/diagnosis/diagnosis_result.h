@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "diagnosis/decision_input.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
+#include "record/decision_record.h"
 #include "record/verdict.h"
 
 namespace lacuna {
@@ -24,7 +26,6 @@ struct RankedEffect {
   double held_out_evidence = 0;          // the part of it that the held-out frames contribute
   double explained = 0;                  // share of the squared misfit
   double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best
-  FurtherEvidence further;               // for another effect beside this one
   Eigen::VectorXd values;                // the effect's parameters; empty: there is no usable refit
   std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
   std::vector<NamedEstimate> others;     // as in EffectRefit
@@ -49,8 +50,9 @@ struct Diagnosis : Conclusion {
   std::vector<UntriedEffect> untried;     // as in EffectRanking
   std::vector<ScoredNuisance> nuisances;  // as in EffectRanking
   NuisanceAlternatives alternatives;
-  int scored = 0;      // number of effects and variants
-  double control = 0;  // evidence found in 1 of 20 residuals that contain no effect
+  int scored = 0;  // number of effects and variants
+  DecisionInput decision_input;
+  DecisionRecord decision;
   // Over all frames, with the adopted nuisances at their best: of the baseline model, and of the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "diagnosis/decision_store.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "effects/catalogue.h"
 #include "record/run_directory.h"
@@ -19,7 +20,7 @@ namespace {
 using nlohmann::json;
 
 // Raised when the diagnosis changes so that its result does.
-constexpr int kDiagnosisVersion = 29;
+constexpr int kDiagnosisVersion = 30;
 
 std::filesystem::path ResultFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "diagnosis.json";
@@ -103,6 +104,7 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   MakeFolder(ResultFile(run).parent_path());
   RefitStore kept(ResultFile(run).parent_path() / "refits.json", OriginOf(run, options));
   const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept);
+  SaveDecisionInput(diagnosis.decision_input, ResultFile(run).parent_path() / "decision");
   WriteDiagnosisFile(RecordOf(diagnosis), ResultFile(run));
   const json origin = {{"schema_version", 2},
                        {"of", OriginOf(run, options)},

@@ -12,6 +12,7 @@
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
+#include "diagnosis/unknown_force.h"
 
 namespace lacuna {
 namespace {
@@ -84,6 +85,11 @@ class HypothesisRanking {
   std::vector<ScoredEffect> ScoredEntries() const;
   ScoredVariant Variant(size_t candidate) const;
   std::vector<TriedVariant> Tried() const;
+  std::vector<LinearPrior> PriorsOfBase() const {
+    std::vector<LinearPrior> priors;
+    for (const int column : base_) priors.push_back(hypotheses_.priors[column]);
+    return priors;
+  }
   double EffectPenalty(const Entry& entry) const {
     return SelectionPenalty(entry.variants.size()) + SelectionPenalty(entries_.size());
   }
@@ -142,6 +148,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
     AddNuisance(std::move(nuisance));
   weighed_ = WeighColumns(misfit_, hypotheses_.columns, hypotheses_.priors,
                           ranking_.noise.correlation_time);
+  ranking_.unknown_force = UnknownForceColumns(problem, values, misfit_);
 }
 
 void HypothesisRanking::AddEffects(const Eigen::MatrixXd& columns, PilotHypotheses pilots) {
@@ -295,12 +302,13 @@ std::vector<TriedVariant> HypothesisRanking::Tried() const {
   std::vector<TriedVariant> tried;
   for (const Entry& entry : entries_)
     for (const size_t c : entry.variants)
-      tried.push_back({candidates_[c].type, hypotheses_.columns(Eigen::all, of_candidate_[c]),
-                       PriorsOf(candidates_[c]), EffectPenalty(entry), false});
+      tried.push_back({candidates_[c].type, candidates_[c].variant,
+                       hypotheses_.columns(Eigen::all, of_candidate_[c]), PriorsOf(candidates_[c]),
+                       EffectPenalty(entry), false});
   for (const ScoredNuisance& nuisance : ranking_.nuisances) {
     const NuisanceCandidate& candidate = nuisance.candidate;
     if (!nuisance.adopted)
-      tried.push_back({candidate.card.name, candidate.columns, candidate.priors,
+      tried.push_back({candidate.card.name, "", candidate.columns, candidate.priors,
                        candidate.selection_penalty + SelectionPenalty(ranking_.nuisances.size()),
                        true});
   }
@@ -310,24 +318,55 @@ std::vector<TriedVariant> HypothesisRanking::Tried() const {
 EffectRanking HypothesisRanking::Rank() && {
   ScoreNuisancesOfEveryModel();
   ScoreEffectsAndNuisances();
-  const double variance = ranking_.noise.variance;
   ranking_.variants = static_cast<int>(candidates_.size());
   const std::vector<int> adopted(base_.begin() + known_, base_.end());
   ranking_.adopted.columns = hypotheses_.columns(Eigen::all, adopted);
   ranking_.adopted.always = always_;
   for (const int k : adopted) ranking_.adopted.priors.push_back(hypotheses_.priors[k]);
-  std::vector<int> best_fit = base_;
-  if (BestEvidence() > 0) best_fit = Joined(base_, of_candidate_[entries_[0].best]);
-  ranking_.control = ControlEvidence(*weighed_, misfit_, best_fit, base_, of_candidate_, variance) -
-                     SelectionPenalty(candidates_.size());
   ranking_.effects = ScoredEntries();
   ranking_.tried = Tried();
+  ranking_.space = SpaceBeside(misfit_, hypotheses_.columns(Eigen::all, base_), PriorsOfBase(),
+                               ranking_, "", ranking_.noise);
   misfit_.jacobian.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);
 }
 
 }  // namespace
+
+HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
+                            std::vector<LinearPrior> priors, const EffectRanking& ranking,
+                            const std::string& without, const NoiseLevel& noise) {
+  Eigen::Index width = base.cols() + ranking.unknown_force.cols();
+  for (const TriedVariant& tried : ranking.tried)
+    if (tried.type != without) width += tried.columns.cols();
+  Eigen::MatrixXd columns(base.rows(), width);
+  columns.leftCols(base.cols()) = base;
+  Eigen::Index column = base.cols();
+  std::vector<WeighedHypothesis> hypotheses;
+  const auto add = [&](WeighedHypothesis hypothesis, const Eigen::MatrixXd& own) {
+    if (own.cols() == 0) return;
+    columns.middleCols(column, own.cols()) = own;
+    hypothesis.columns = Range(column, own.cols());
+    column += own.cols();
+    hypotheses.push_back(std::move(hypothesis));
+  };
+  for (const TriedVariant& tried : ranking.tried) {
+    if (tried.type == without) continue;
+    add({tried.is_nuisance ? HypothesisKind::kNuisance : HypothesisKind::kEffect,
+         tried.type,
+         tried.variant,
+         {}},
+        tried.columns);
+    priors.insert(priors.end(), tried.priors.begin(), tried.priors.end());
+  }
+  add({HypothesisKind::kUnknownForce, "", "", {}}, ranking.unknown_force);
+  priors.resize(static_cast<size_t>(width), {0, 1, false});
+  return MakeHypothesisSpace(WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
+                             WhitenedRows(columns, misfit, noise.correlation_time, false),
+                             std::move(priors), base.cols(), std::move(hypotheses), noise.variance,
+                             ObservedRows(misfit));
+}
 
 double SelectionPenalty(size_t rivals) {
   return std::log(static_cast<double>(std::max<size_t>(rivals, 1)));

@@ -22,6 +22,7 @@
 #include "calibration/linear_misfit.h"
 #include "core/progress.h"
 #include "diagnosis/hypothesis_score.h"
+#include "diagnosis/hypothesis_space.h"
 #include "diagnosis/pilot_hypotheses.h"
 #include "diagnosis/scene_columns.h"
 #include "diagnosis/scored_effect.h"
@@ -42,11 +43,19 @@ struct EffectRanking {
   std::vector<ScoredNuisance> nuisances;  // in the order of the catalogue
   AdoptedNuisances adopted;
   NoiseLevel noise;
-  LinearisedMisfit misfit;  // at the fitted values, without columns
-  double control = 0;       // evidence that chance gives to the best effect (ControlEvidence)
-  int variants = 0;         // number of variants scored
-  SceneColumns scene;       // for further rankings
+  LinearisedMisfit misfit;        // at the fitted values, without columns
+  Eigen::MatrixXd unknown_force;  // the columns of UnknownForceColumns (unknown_force.h)
+  HypothesisSpace space;          // of all hypotheses beside the parameters and adopted nuisances
+  int variants = 0;               // number of variants scored
+  SceneColumns scene;             // for further rankings
 };
+
+// The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of
+// `misfit`) with these priors, for the residual of `misfit`. `without`: a type of effect that is
+// left out, because it is part of the base.
+HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
+                            std::vector<LinearPrior> priors, const EffectRanking& ranking,
+                            const std::string& without, const NoiseLevel& noise);
 
 // Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
 // with the fitted `values` of CalibrationProblem::parameters. What `known` has is taken from there

@@ -151,64 +151,17 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
   return {all.log_evidence, all.log_evidence - fitted, all.misfit};
 }
 
-FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
-                                  const std::vector<TriedVariant>& tried, const std::string& type,
-                                  const NoiseLevel& noise) {
-  const LinearisedMisfit& misfit = hypothesis.misfit;
-  Eigen::Index width = misfit.jacobian.cols();
-  for (const TriedVariant& variant : tried) width += variant.columns.cols();
-  Eigen::MatrixXd columns(misfit.jacobian.rows(), width);
-  columns.leftCols(misfit.jacobian.cols()) = misfit.jacobian;
-  std::vector<LinearPrior> priors = hypothesis.priors;
-  for (const TriedVariant& variant : tried) {
-    columns.middleCols(static_cast<Eigen::Index>(priors.size()), variant.columns.cols()) =
-        variant.columns;
-    priors.insert(priors.end(), variant.priors.begin(), variant.priors.end());
-  }
-  const LinearGaussianModel model(
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
-      WhitenedRows(columns, misfit, noise.correlation_time, false), priors);
-  std::vector<int> chosen(hypothesis.priors.size());
-  std::iota(chosen.begin(), chosen.end(), 0);
-  const double before = model.Fit(chosen, noise.variance).log_evidence;
-  FurtherEvidence best;
-  int column = static_cast<int>(chosen.size());
-  for (const TriedVariant& variant : tried) {
-    std::vector<int> with = chosen;
-    for (size_t k = 0; k < variant.priors.size(); ++k) with.push_back(column++);
-    if (variant.type == type) continue;
-    const double evidence =
-        model.Fit(with, noise.variance).log_evidence - before - variant.selection_penalty;
-    if (variant.is_nuisance) {
-      best.nuisance_evidence = std::max(best.nuisance_evidence, evidence);
-    } else if (evidence > best.evidence) {
-      best.type = variant.type;
-      best.evidence = evidence;
-    }
-  }
-  return best;
+HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
+                        const std::string& type, const NoiseLevel& noise) {
+  return SpaceBeside(hypothesis.misfit, hypothesis.misfit.jacobian, hypothesis.priors, ranking,
+                     type, noise);
 }
 
-FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                                     const EffectRefit& refit,
-                                     const std::vector<std::string>& without, SceneColumns scene) {
-  if (effect.candidate.replaces_material) scene.pilots.reset();
+HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
+                           const EffectRefit& refit, const std::vector<std::string>& without) {
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
-  const EffectRanking ranking =
-      RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene);
-  FurtherEvidence best;
-  const auto other = std::find_if(
-      ranking.effects.begin(), ranking.effects.end(),
-      [&](const ScoredEffect& e) { return e.candidate.type != effect.candidate.type; });
-  if (other != ranking.effects.end() && other->score.evidence > 0) {
-    best.type = other->candidate.type;
-    best.evidence = other->score.evidence;
-  }
-  for (const ScoredNuisance& nuisance : ranking.nuisances)
-    if (!nuisance.adopted)
-      best.nuisance_evidence = std::max(best.nuisance_evidence, nuisance.evidence);
-  return best;
+  return RankEffects(with, refit.calibration.parameters, baseline.progress, without).space;
 }
 
 namespace {

@@ -61,24 +61,15 @@ struct RefitEvidence {
 };
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
-// The largest evidence, to first order, of another effect and of a nuisance beside the refitted
-// effect, each less its selection penalty.
-struct FurtherEvidence {
-  std::string type;     // of the other effect; empty: none has evidence
-  double evidence = 0;  // of that effect
-  double nuisance_evidence = 0;
-};
-// With the columns of the ranking at the baseline model. `type`: the refitted effect.
-FurtherEvidence FurtherEvidenceOf(const FittedHypothesis& hypothesis,
-                                  const std::vector<TriedVariant>& tried, const std::string& type,
-                                  const NoiseLevel& noise);
+// The space of all other hypotheses beside a refitted effect, with the columns that the ranking
+// found along the baseline's motion. `type`: the refitted effect.
+HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
+                        const std::string& type, const NoiseLevel& noise);
 
-// With a new ranking along the motion of the refitted model. `scene`: of the baseline's ranking,
-// whose pilots are tried again only beside another elasticity law, which they are compared with.
-// Throws Interrupted.
-FurtherEvidence FurtherEvidenceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                                     const EffectRefit& refit,
-                                     const std::vector<std::string>& without, SceneColumns scene);
+// The same with columns along the motion of the refitted model, from a new ranking. Throws
+// Interrupted.
+HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
+                           const EffectRefit& refit, const std::vector<std::string>& without);
 
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a

@@ -102,8 +102,9 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
 
 const RecordedGrip* RecordedAs(const Recording& recording, size_t grip) {
   const size_t fixed = recording.object.fixed.size();  // the model has these grips first
-  return grip < fixed || grip - fixed >= recording.object.grips.size() ? nullptr
-                                                                : &recording.object.grips[grip - fixed];
+  return grip < fixed || grip - fixed >= recording.object.grips.size()
+             ? nullptr
+             : &recording.object.grips[grip - fixed];
 }
 
 }  // namespace lacuna

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 #include "diagnosis/thresholds.h"
-#include "scan/random_bits.h"
 
 namespace lacuna {
 namespace {
@@ -67,51 +65,6 @@ Score ScoreOf(const WeighedColumns& weighed, const std::vector<int>& base, const
   }
   if (raw > 0) score.absorbed = std::clamp(1 - visible / raw, 0.0, 1.0);
   return score;
-}
-
-namespace {
-
-// The residual with the frames of each recording shifted in time, cyclically, and a random sign for
-// each series.
-Eigen::VectorXd ShuffledResidual(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit,
-                                 uint64_t draw) {
-  Eigen::VectorXd shuffled = residual;
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
-    const Eigen::Index series = part.layout.series;
-    const Eigen::Index shift = static_cast<Eigen::Index>(RandomBits({draw, part.recording, 1}) %
-                                                         static_cast<uint64_t>(frames));
-    for (Eigen::Index s = 0; s < series; ++s) {
-      const double sign =
-          RandomBits({draw, part.recording, 2, static_cast<uint64_t>(s)}) % 2 == 0 ? 1 : -1;
-      for (Eigen::Index f = 0; f < frames; ++f)
-        shuffled[part.first_row + f * series + s] =
-            sign * residual[part.first_row + (f + shift) % frames * series + s];
-    }
-  }
-  return shuffled;
-}
-
-}  // namespace
-
-double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& misfit,
-                       const std::vector<int>& best, const std::vector<int>& base,
-                       const std::vector<std::vector<int>>& effects, double variance) {
-  const Eigen::VectorXd residual =
-      weighed.residual + weighed.columns(Eigen::all, best) * weighed.all.Fit(best, variance).change;
-  constexpr int kDraws = kThresholds.ranking.control_draws;
-  std::vector<double> largest;
-  for (uint64_t draw = 0; draw < kDraws; ++draw) {
-    const LinearGaussianModel control =
-        weighed.all.WithResidual(ShuffledResidual(residual, misfit, draw), weighed.columns);
-    const double before = control.Fit(base, variance).log_evidence;
-    double most = 0;
-    for (const std::vector<int>& effect : effects)
-      most = std::max(most, control.Fit(Joined(base, effect), variance).log_evidence - before);
-    largest.push_back(most);
-  }
-  std::sort(largest.begin(), largest.end());
-  return largest[kDraws - 1 - kThresholds.ranking.control_exceptions];
 }
 
 }  // namespace lacuna

@@ -50,14 +50,6 @@ std::vector<int> Joined(std::vector<int> a, const std::vector<int>& b);
 Score ScoreOf(const WeighedColumns& weighed, const std::vector<int>& base, const LinearFit& before,
               const std::vector<int>& own, double variance, const LinearisedMisfit& misfit);
 
-// The evidence that the best of `effects` reaches by chance: the value that all but
-// RankingThresholds::control_exceptions of the control draws stay below. A control is the residual
-// after a fit of the columns `best`, its frames shifted in time and its series given random signs,
-// so that no effect is in it.
-double ControlEvidence(const WeighedColumns& weighed, const LinearisedMisfit& misfit,
-                       const std::vector<int>& best, const std::vector<int>& base,
-                       const std::vector<std::vector<int>>& effects, double variance);
-
 }  // namespace lacuna
 
 #endif  // LACUNA_DIAGNOSIS_HYPOTHESIS_SCORE_H_

@@ -28,8 +28,6 @@ RecordedRefit RefitOf(const RankedEffect& effect) {
   refit.held_out_evidence = effect.held_out_evidence;
   refit.explained = effect.explained;
   refit.rms_over_sigma = effect.rms_over_sigma;
-  refit.remainder = {effect.further.type, effect.further.evidence,
-                     effect.further.nuisance_evidence};
   refit.errors = effect.errors;
   for (const NamedEstimate& other : effect.others)
     refit.others.push_back({other.name, other.unit, IntervalOf(other.estimate)});
@@ -62,7 +60,7 @@ DiagnosisRecord RecordOf(const Diagnosis& diagnosis) {
   record.noise = {diagnosis.noise, diagnosis.scan_noise, diagnosis.noise_level.correlation_time,
                   diagnosis.noise_level.variance};
   record.time_step = diagnosis.time_step;
-  record.control_evidence = diagnosis.control;
+  record.decision = diagnosis.decision;
   record.baseline_rms_over_sigma = diagnosis.baseline_rms_over_sigma;
   record.best_rms_over_sigma = diagnosis.best_rms_over_sigma;
   record.errors = diagnosis.errors;

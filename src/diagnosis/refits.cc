@@ -74,8 +74,8 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
 }
 
 // `rivals`: number of effects from which this one was selected.
-void SetEvidence(const RefitContext& context, const EffectRefit& with, const RefitEvidence& before,
-                 const NoiseLevel& noise, size_t rivals, RankedEffect* effect) {
+void SetEvidence(const EffectRefit& with, const RefitEvidence& before, const NoiseLevel& noise,
+                 size_t rivals, RankedEffect* effect) {
   const RefitEvidence after = EvidenceOf(with, noise);
   effect->evidence = after.all - before.all - SelectionPenalty(rivals);
   effect->held_out_evidence = after.held_out - before.held_out;
@@ -86,8 +86,6 @@ void SetEvidence(const RefitContext& context, const EffectRefit& with, const Ref
   }
   effect->explained = std::clamp(1 - after.misfit / before.misfit, 0.0, 1.0);
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
-  effect->further = FurtherEvidenceOf(with.hypothesis, context.ranking.tried,
-                                      effect->scored.candidate.type, noise);
 }
 
 // The hypothesis with the smallest residual, the model without an effect among them.
@@ -185,7 +183,7 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   const size_t rivals = ranked->effects.size();
   for (size_t k = 0; k < rivals; ++k)
     if (ranked->IsUsable(k))
-      SetEvidence(context, ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+      SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
   return noise;
 }
 
@@ -215,25 +213,6 @@ void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ran
   }
 }
 
-void RankBesideBest(const RefitContext& context, const std::vector<std::string>& without,
-                    RefittedRanking* ranked) {
-  const RefitThresholds& thresholds = kThresholds.refit;
-  const RankedEffect* best = BestRefitted(ranked->effects);
-  if (best == nullptr) return;
-  const double least = best->evidence - thresholds.second_ranking_lead;
-  int done = 0;
-  for (size_t k = 0; k < ranked->refits.size() && done < thresholds.most_second_rankings; ++k) {
-    RankedEffect& effect = ranked->effects[k];
-    if (!ranked->IsUsable(k) || effect.evidence < least ||
-        effect.further.evidence < std::max(thresholds.least_evidence,
-                                           kThresholds.naming.remainder_share * effect.evidence))
-      continue;
-    ++done;
-    effect.further = FurtherEvidenceAlong(context.model, effect.scored, ranked->refits[k], without,
-                                          context.ranking.scene);
-  }
-}
-
 NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
                                              const RefittedRanking& ranked, const RefitNoise& noise,
                                              int wanted) {
@@ -255,7 +234,7 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     effect.scored = scored;
     const EffectRefit with = RefitEffect(context, always, bare, &effect);
     if (with.message.empty())
-      SetEvidence(context, with, before, noise.level, ranked.effects.size(), &effect);
+      SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
   }
   return alternatives;
 }

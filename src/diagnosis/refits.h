@@ -74,11 +74,6 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked);
 void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ranked,
                          const RefitNoise& noise, std::vector<ScoredNuisance>* nuisances);
 
-// Where a good refit seems to leave evidence for another effect, ranks the effects again along the
-// refitted motion, and sets RankedEffect::further. `without`: types that are not ranked.
-void RankBesideBest(const RefitContext& context, const std::vector<std::string>& without,
-                    RefittedRanking* ranked);
-
 // Refits `wanted` effects, at most, in place of the adopted nuisances.
 NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
                                              const RefittedRanking& ranked, const RefitNoise& noise,

@@ -57,7 +57,8 @@ struct AdoptedNuisances {
 
 // A variant of an effect, or a nuisance, as the ranking tried it.
 struct TriedVariant {
-  std::string type;
+  std::string type;     // of the effect, or the name of the nuisance
+  std::string variant;  // of the effect
   Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
   double selection_penalty = 0;  // SelectionPenalty of its rivals, which its evidence is reduced by

@@ -60,6 +60,7 @@ class ActiveContractionLaw {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "active_contraction",
+        .family = EffectFamily::kVolumeStress,
         .title = "Active contraction along a direction",
         .equation =
             "ψ = T g(t) (a·C·a − 1)/2,  C = FᵀF,  P = T g F a ⊗ a;  "

@@ -6,7 +6,6 @@
 // element size. It adds no stiffness and no rotational inertia beyond that of the nodes.
 #include <glog/logging.h>
 
-
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
@@ -45,6 +44,7 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "attached_mass",
+        .family = EffectFamily::kMassDistribution,
         .title = "Attached mass",
         .equation = "f_i = m s_i (g − a_i),  s_i ∝ V_i exp(−|X_i − c|²/(2 r²)),  Σ s_i = 1",
         .citation =

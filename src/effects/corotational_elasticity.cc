@@ -59,6 +59,7 @@ class CorotationalLaw {
   static const EffectCard& Card() {
     static const EffectCard card{
         .type = "corotational",
+        .family = EffectFamily::kElasticity,
         .title = "Corotational linear elasticity",
         .equation =
             "ψ = μ ‖F − R‖² + λ/2 (tr(RᵀF) − 3)²,  R the rotation nearest to F,  "

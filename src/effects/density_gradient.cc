@@ -4,7 +4,6 @@
 // It uses the nodal volumes of the lumped mass, so that the total mass is exact.
 #include <glog/logging.h>
 
-
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
@@ -46,6 +45,7 @@ class DensityGradientEffect final : public CloneableEffect<DensityGradientEffect
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "density_gradient",
+        .family = EffectFamily::kMassDistribution,
         .title = "Density that varies along an axis",
         .equation = "f_i = ρ′ n·(X_i − X₀) V_i (g − a_i)",
         .citation =

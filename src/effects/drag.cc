@@ -5,7 +5,6 @@
 // The law neglects the wake and the added mass of the medium; the shape enters through c only.
 #include <glog/logging.h>
 
-
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
 #include "fem/cloneable_effect.h"
@@ -24,6 +23,7 @@ class DragEffect final : public CloneableEffect<DragEffect> {
   static const EffectCard& TheCard() {
     static const EffectCard card{
         .type = "drag",
+        .family = EffectFamily::kLossOutside,
         .title = "Drag of the surrounding medium",
         .equation = "f_i = −A_i (b |v_i| + d) v_i,  b = ½ c ρ_medium",
         .citation =

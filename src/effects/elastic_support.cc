@@ -61,6 +61,7 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "elastic_support",
+        .family = EffectFamily::kSteadyForce,
         .title = "Elastic support",
         .equation = "f_i = −k w_i A_i (x_i − X_i),  w_i = exp(−|X_i − c|²/(2 r²)) or 1",
         .citation = "E. Winkler, Die Lehre von der Elasticität und Festigkeit, Prag 1867",

@@ -72,6 +72,7 @@ class ElastoplasticLaw {
 
   static EffectCard MakeCard() {
     return {.type = "elastoplastic_branch",
+            .family = EffectFamily::kLossInside,
             .title = "Elastic–perfectly plastic branch (Prandtl element)",
             .equation =
                 "P = F S,  S = (2m/3) (dev E − E_p),  ‖dev E − E_p‖ ≤ √(3/2) ε_y,  E_p flows along "

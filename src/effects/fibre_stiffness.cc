@@ -80,6 +80,7 @@ class FibreStiffnessLaw {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "fibre_stiffness",
+        .family = EffectFamily::kStiffnessDistribution,
         .title = "Stiffness along fibres (transverse isotropy)",
         .equation =
             "ψ = k/8 (a·C·a − 1)²,  C = FᵀF,  "

@@ -121,6 +121,7 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "follower_force",
+        .family = EffectFamily::kSteadyForce,
         .title = "Force that turns with the body",
         .equation =
             "f_a = Σ_q s_q N_a R_q F,  R the rotation nearest to ∂x/∂X,  "

@@ -56,6 +56,7 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "gravity",
+        .family = EffectFamily::kSteadyForce,
         .title = "Gravity",
         .equation = "f_i = m_i g",
         .citation =
@@ -72,6 +73,7 @@ class GravityEffect final : public CloneableEffect<GravityEffect> {
         .look_alikes = {"attached_mass", "density_gradient", "point_force", "swelling", "pressure",
                         "plane_contact", "active_contraction"},
         .trial = {.is_in_every_model = true},
+        .natural_magnitude = kStandardGravity,
         .conserves_momentum = false,
         .conserves_angular_momentum = false};
     AppendVector({.name = "acceleration",

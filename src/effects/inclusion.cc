@@ -37,6 +37,7 @@ class BumpWeight {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "inclusion",
+        .family = EffectFamily::kStiffnessDistribution,
         .title = "A stiffer or softer inclusion",
         .equation =
             "ψ = w(X) ψ_nH(F; ΔE, ν),  w = exp(−|X − c|²/(2 r²)),  ψ_nH the neo-Hookean energy",

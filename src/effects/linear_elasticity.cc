@@ -11,6 +11,7 @@ class LinearLaw {
   static const EffectCard& Card() {
     static const EffectCard card{
         .type = "linear",
+        .family = EffectFamily::kElasticity,
         .title = "Linear elasticity",
         .equation = "ψ = μ ε:ε + λ/2 (tr ε)²,  ε = ½ (F + Fᵀ) − I,  P = 2μ ε + λ (tr ε) I",
         .citation =

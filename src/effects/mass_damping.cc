@@ -12,6 +12,7 @@ class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
   static const EffectCard& TheCard() {
     static const EffectCard card{
         .type = "mass_damping",
+        .family = EffectFamily::kLossOutside,
         .title = "Mass-proportional damping",
         .equation = "f_i = −α m_i v_i;  damping ratio of a mode of angular frequency ω: α/(2ω)",
         .citation = "J. W. Strutt, Baron Rayleigh, The Theory of Sound, vol. 1, 1877, §81–82",

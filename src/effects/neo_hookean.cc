@@ -15,6 +15,7 @@ class NeoHookeanLaw : public NeoHookeanEnergy {
   static const EffectCard& Card() {
     static const EffectCard card{
         .type = "neo_hookean",
+        .family = EffectFamily::kElasticity,
         .title = "Neo-Hookean elasticity",
         .equation =
             "ψ = μ/2 (F:F − 3) − μ (J − 1) + (λ + μ)/2 (J − 1)²,  J = det F,  "

@@ -144,6 +144,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "plane_contact",
+        .family = EffectFamily::kContact,
         .title = "Contact with a plane, with Coulomb friction",
         .equation =
             "f_i = A_i p(d_i) (n − μ u_i/√(|u_i|² + w²)),  d = c − n·x,  u = (I − n nᵀ) v;  "

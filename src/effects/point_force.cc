@@ -70,6 +70,7 @@ class PointForceEffect final : public CloneableEffect<PointForceEffect> {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "point_force",
+        .family = EffectFamily::kSteadyForce,
         .title = "Force on a place of the surface",
         .equation =
             "f_i = F s_i for start ≤ t < stop,  s_i ∝ A_i exp(−|X_i − c|²/(2 r²)),  Σ s_i = 1",

@@ -152,6 +152,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "pressure",
+        .family = EffectFamily::kVolumeStress,
         .title = "Pressure on the surface",
         .equation = "f_a = −p ∫ N_a n dA over the deformed surface, n outward",
         .citation =

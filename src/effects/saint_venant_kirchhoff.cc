@@ -11,6 +11,7 @@ class SaintVenantKirchhoffLaw {
   static const EffectCard& Card() {
     static const EffectCard card{
         .type = "st_venant_kirchhoff",
+        .family = EffectFamily::kElasticity,
         .title = "St. Venant–Kirchhoff elasticity",
         .equation = "ψ = μ E:E + λ/2 (tr E)²,  E = ½ (FᵀF − I),  P = F (2μ E + λ (tr E) I)",
         .citation = "G. A. Holzapfel, Nonlinear Solid Mechanics, Wiley 2000, sec. 6.5, Eq. 6.151",

@@ -11,7 +11,6 @@
 // incremental potential is convex: quadratic up to the limit and linear beyond it.
 #include <glog/logging.h>
 
-
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
 #include "fem/cloneable_effect.h"
@@ -98,6 +97,7 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "slipping_support",
+        .family = EffectFamily::kLossOutside,
         .title = "Support that slips",
         .equation =
             "f_i = −k w_i A_i (u_i − s_i),  ‖u_i − s_i‖ ≤ d,  s_i flows along u_i − s_i at the "

@@ -69,6 +69,7 @@ class SofteningLaw {
   static EffectCard MakeCard() {
     return {
         .type = "softening",
+        .family = EffectFamily::kElasticity,
         .title = "Softening by the largest past strain (Mullins effect)",
         .equation =
             "P = F S,  S = (λ (tr E) I + 2μ E)/(1 + κ/κ₀),  κ = largest √(E:C:E) so far (in a "

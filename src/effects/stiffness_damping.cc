@@ -106,6 +106,7 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "stiffness_damping",
+        .family = EffectFamily::kLossInside,
         .title = "Stiffness-proportional damping (Kelvin–Voigt)",
         .equation =
             "P = F β (2μ Ė + λ (tr Ė) I),  Ė = ½ (FᵀḞ + ḞᵀF);  at small strain "

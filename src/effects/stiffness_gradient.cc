@@ -30,6 +30,7 @@ class LinearWeight {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "stiffness_gradient",
+        .family = EffectFamily::kStiffnessDistribution,
         .title = "Stiffness that changes along the body",
         .equation =
             "ψ = w(X) ψ_nH(F; ΔE, ν),  w = a·(X − o)/L with |a| = 1,  ψ_nH the neo-Hookean energy",

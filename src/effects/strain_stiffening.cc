@@ -21,6 +21,7 @@ class StrainStiffeningLaw {
   static const EffectCard& Card() {
     static const EffectCard card{
         .type = "strain_stiffening",
+        .family = EffectFamily::kElasticity,
         .title = "Stiffening with strain (Yeoh's second term)",
         .equation =
             "ψ = c I²,  I = F:F − 3 − 2 (J − 1) + (J − 1)²/3 (= Ī₁ − 3 at J = 1),  J = det F,  "

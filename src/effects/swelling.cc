@@ -60,6 +60,7 @@ class SwellingLaw {
   static EffectCard MakeCard() {
     EffectCard card{
         .type = "swelling",
+        .family = EffectFamily::kVolumeStress,
         .title = "Swelling, shrinking or thermal expansion",
         .equation = "ψ = −3 K ε (J − 1),  J = det F,  3 K = E/(1 − 2ν),  P = −3 K ε ∂J/∂F",
         .citation =

@@ -72,6 +72,7 @@ class ViscoelasticLaw {
   static EffectCard MakeCard() {
     return {
         .type = "viscoelastic_branch",
+        .family = EffectFamily::kLossInside,
         .title = "Viscoelastic branch (Maxwell element of a Prony series)",
         .equation =
             "P = F Q,  dQ/dt + Q/τ = d/dt (λ (tr E) I + 2μ E),  E = ½ (FᵀF − I),  λ and μ from "

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 9;
+constexpr int kSchemaVersion = 10;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // has_held_out is the same for all models of a diagnosis and is written only once.
@@ -80,11 +80,7 @@ json RefitToJson(const RecordedRefit& refit) {
                 {"held_out_evidence", refit.held_out_evidence},
                 {"explained_share", refit.explained},
                 {"rms_over_sigma", refit.rms_over_sigma},
-                {"others", others},
-                {"remainder",
-                 {{"effect", refit.remainder.effect},
-                  {"evidence", refit.remainder.evidence},
-                  {"nuisance_evidence", refit.remainder.nuisance_evidence}}}};
+                {"others", others}};
   value.update(ErrorsToJson(refit.errors));
   return value;
 }
@@ -96,9 +92,6 @@ RecordedRefit RefitFromJson(const json& value, bool has_held_out) {
   refit.held_out_evidence = value.at("held_out_evidence");
   refit.explained = value.at("explained_share");
   refit.rms_over_sigma = value.at("rms_over_sigma");
-  const json& remainder = value.at("remainder");
-  refit.remainder = {remainder.at("effect"), remainder.at("evidence"),
-                     remainder.at("nuisance_evidence")};
   refit.errors = ErrorsFromJson(value, has_held_out);
   for (const json& other : value.at("others"))
     refit.others.push_back({other.at("parameter"), other.at("unit"), IntervalFromJson(other)});
@@ -184,7 +177,7 @@ json ToJson(const DiagnosisRecord& record) {
               {"noise_correlation_time_s", record.noise.correlation_time},
               {"noise_variance_factor", record.noise.variance_factor},
               {"time_step_s", record.time_step},
-              {"control_evidence", record.control_evidence},
+              {"decision", DecisionToJson(record.decision)},
               {"baseline_rms_over_sigma", record.baseline_rms_over_sigma},
               {"best_rms_over_sigma", record.best_rms_over_sigma},
               {"has_held_out", record.errors.has_held_out},
@@ -207,7 +200,7 @@ DiagnosisRecord FromJson(const json& value) {
   record.noise = {value.at("noise_m"), value.at("scan_noise_m"),
                   value.at("noise_correlation_time_s"), value.at("noise_variance_factor")};
   record.time_step = value.at("time_step_s");
-  record.control_evidence = value.at("control_evidence");
+  record.decision = DecisionFromJson(value.at("decision"));
   record.baseline_rms_over_sigma = value.at("baseline_rms_over_sigma");
   record.best_rms_over_sigma = value.at("best_rms_over_sigma");
   const bool has_held_out = value.at("has_held_out");

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "record/decision_record.h"
 #include "record/model_errors.h"
 #include "record/verdict.h"
 
@@ -46,21 +47,13 @@ struct RecordedScore {
   double held_out_rms_over_sigma = 0;  // expected error of the held-out frames
 };
 
-// The best explanations of what remains after the refit of an effect: another effect, and a
-// nuisance.
-struct RecordedRemainder {
-  std::string effect;  // empty where no other effect has evidence
-  double evidence = 0, nuisance_evidence = 0;
-};
-
-// The fit of the model with an additional effect.
+// The model fitted again with an effect.
 struct RecordedRefit {
   std::string message;  // the reason why it is not usable; empty where it is
   double evidence = 0;
   double held_out_evidence = 0;  // contribution of the held-out frames
   double explained = 0;          // share of the squared misfit
-  double rms_over_sigma = 0;     // all frames, with the best values of the adopted nuisances
-  RecordedRemainder remainder;
+  double rms_over_sigma = 0;     // all frames, with the adopted nuisances at their best
   ModelErrors errors;
   std::vector<RecordedValue> others;  // empty if the refit is not usable
 };
@@ -105,9 +98,9 @@ struct RecordedAlternatives {
 
 struct DiagnosisRecord : Conclusion {
   RecordedNoise noise;
-  double time_step = 0;         // s, time step of the simulations
-  double control_evidence = 0;  // exceeded in 1 of 20 residuals without an effect
-  // Over all frames, with the best values of the adopted nuisances: the unchanged model, and the
+  double time_step = 0;     // s, of the simulations
+  DecisionRecord decision;  // what the verdict follows from
+  // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;
   ModelErrors errors;  // errors of the unchanged model

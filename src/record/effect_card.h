@@ -113,8 +113,28 @@ struct TrialDesign {
   bool axis_along_bar = false;  // the parameter `axis` is x, otherwise random
 };
 
+// What kind of physics an effect is. Effects of one family change a motion alike, so that a
+// recording which cannot tell them apart may still show that one of the family is missing.
+enum class EffectFamily {
+  kOther,                  // no family: laws of the user
+  kSteadyForce,            // loads that do not depend on the velocity
+  kLossOutside,            // dissipation by the surroundings
+  kLossInside,             // dissipation in the material
+  kVolumeStress,           // stresses without an external load
+  kStiffnessDistribution,  // stiffness that depends on place or direction
+  kMassDistribution,       // density that depends on the place
+  kElasticity,             // how the stress depends on large strains
+  kContact,                // other bodies
+};
+// A phrase, e.g. "loss outside the body".
+std::string FamilyTitle(EffectFamily family);
+// The name in files, e.g. "loss_outside", and the reverse, which throws InputError.
+std::string FamilyName(EffectFamily family);
+EffectFamily FamilyFromName(const std::string& name);
+
 struct EffectCard {
-  std::string type;      // the YAML name, e.g. "viscous_damping"
+  std::string type;  // the YAML name, e.g. "viscous_damping"
+  EffectFamily family = EffectFamily::kOther;
   std::string title;     // e.g. "Mass-proportional damping"
   std::string equation;  // in plain Unicode
   std::string citation;
@@ -128,6 +148,8 @@ struct EffectCard {
   std::vector<std::string> look_alikes;
   TriedAt tried_at = TriedOnce{};
   TrialDesign trial = {};
+  // The length of the vector that makes the size, where nature fixes it (SI); 0: it does not.
+  double natural_magnitude = 0;
   bool repeatable = false;  // a model may contain several, e.g. several walls
   // Invariances, which the test suite checks.
   bool conserves_momentum = false;          // the forces sum to zero

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 2;
+constexpr int kSchemaVersion = 3;
 
 const char* ReasonName(LedgerEnding::Reason reason) {
   switch (reason) {
@@ -61,7 +61,7 @@ json DiagnosisToJson(const DiagnosisRecord& diagnosis, const std::vector<std::st
          {"errors", ErrorsToJson(effect.refit->errors)},
          {"added", std::count(added.begin(), added.end(), effect.type) > 0}});
   }
-  json value = {{"control_evidence", diagnosis.control_evidence}, {"tried", tried}};
+  json value = {{"chance_evidence", diagnosis.decision.chance}, {"tried", tried}};
   value.update(ConclusionToJson(diagnosis));
   return value;
 }

@@ -40,25 +40,10 @@ void VisitFields(Visitor& visit, ErrorUnexplained& reason) {
 }
 
 template <typename Visitor>
-void VisitFields(Visitor& visit, UncertainDiscretisation& reason) {
-  visit.Kind("uncertain_discretisation");
-  visit("nuisance_index", reason.nuisance);
-  visit("best_evidence", reason.best_evidence);
-  visit("evidence_uncertainty", reason.uncertainty);
-}
-
-template <typename Visitor>
 void VisitFields(Visitor& visit, NuisanceExplains& reason) {
   visit.Kind("nuisance_explains");
   visit("nuisance_index", reason.nuisance);
   visit("explained_share", reason.share);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, NuisanceIsNegligible& reason) {
-  visit.Kind("nuisance_is_negligible");
-  visit("nuisance_index", reason.nuisance);
-  visit("largest_share", reason.share);
 }
 
 template <typename Visitor>
@@ -67,15 +52,6 @@ void VisitFields(Visitor& visit, ResidualRemains& reason) {
   visit("effect", reason.effect);
   visit("explained_share_of_excess", reason.share);
   visit("rms_over_sigma", reason.rms_over_sigma);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, HeldOutErrorRemains& reason) {
-  visit.Kind("held_out_error_remains");
-  visit("effect", reason.effect);
-  visit("evidence", reason.evidence);
-  visit("rms_over_sigma_before", reason.over_sigma_before);
-  visit("rms_over_sigma_after", reason.over_sigma_after);
 }
 
 template <typename Visitor>
@@ -96,55 +72,6 @@ void VisitFields(Visitor& visit, EffectReducesError& reason) {
   visit("adjusted_for_nuisances", reason.adjusted_for_nuisances);
   visit("rms_over_sigma_before", reason.over_sigma_before);
   visit("rms_over_sigma_after", reason.over_sigma_after);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, RivalPredictsBetter& reason) {
-  visit.Kind("rival_predicts_better");
-  visit("effect", reason.effect);
-  visit("evidence", reason.evidence);
-  visit("unfitted_rms_over_sigma", reason.over_sigma);
-  visit("unfitted_rms_over_sigma_of_best", reason.over_sigma_of_best);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, RivalNotFitted& reason) {
-  visit.Kind("rival_not_fitted");
-  visit("effect", reason.effect);
-  visit("first_order_evidence", reason.first_order_evidence);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, NuisanceHasMoreEvidence& reason) {
-  visit.Kind("nuisance_has_more_evidence");
-  visit("nuisance_index", reason.nuisance);
-  visit("evidence", reason.evidence);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, UnadjustedErrorRises& reason) {
-  visit.Kind("unadjusted_error_rises");
-  visit("rms_before_m", reason.rms_before);
-  visit("rms_after_m", reason.rms_after);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, EffectReplacesNuisances& reason) {
-  visit.Kind("effect_replaces_nuisances");
-  visit("effect", reason.effect);
-  visit("evidence", reason.evidence);
-  visit("nuisances_evidence", reason.nuisances_evidence);
-  visit("nuisances", reason.nuisances);
-  visit("held_out", reason.held_out);
-  visit("rms_over_sigma_before", reason.over_sigma_before);
-  visit("rms_over_sigma_after", reason.over_sigma_after);
-}
-
-template <typename Visitor>
-void VisitFields(Visitor& visit, RefineDiscretisation& step) {
-  visit.Kind("refine_discretisation");
-  visit("nuisance_index", step.nuisance);
-  visit("fit_again", step.fit_again);
 }
 
 template <typename Visitor>

@@ -47,41 +47,21 @@ struct ErrorUnexplained {
   double best_evidence = 0;
 };
 
-// The uncertainty in the discretisation error could account for `uncertainty` of the best effect's
-// evidence.
-struct UncertainDiscretisation {
-  int nuisance = 0;
-  double best_evidence = 0, uncertainty = 0;
-};
-
 // A nuisance explains this share of the squared misfit.
 struct NuisanceExplains {
   int nuisance = 0;
   double share = 0;
 };
 
-// A nuisance is certainly present, and explains less than this share of a misfit that is noise.
-struct NuisanceIsNegligible {
-  int nuisance = 0;
-  double share = 0;
-};
-
-// The best effect explains this share of the squared misfit in excess of the noise, but what
-// remains over all frames exceeds the noise.
+// The best effect explains this share of the squared misfit in excess of the noise; what remains
+// over all frames is more than noise leaves.
 struct ResidualRemains {
   std::string effect;
   double share = 0;
   double rms_over_sigma = 0;
 };
 
-// With the best effect, the error of the held-out frames still exceeds the noise.
-struct HeldOutErrorRemains {
-  std::string effect;
-  double evidence = 0;
-  double over_sigma_before = 0, over_sigma_after = 0;
-};
-
-// With the best effect in the model, there is evidence for another one.
+// Beside the best effect there is evidence for another one.
 struct EvidenceForAnother {
   std::string effect;
   double evidence = 0;
@@ -100,53 +80,11 @@ struct EffectReducesError {
   double over_sigma_before = 0, over_sigma_after = 0;
 };
 
-// A rival with less evidence than the best effect predicts the recordings that were not fitted
-// better.
-struct RivalPredictsBetter {
-  std::string effect;
-  double evidence = 0;
-  double over_sigma = 0, over_sigma_of_best = 0;
-};
-
-// A rival has comparable first-order evidence, but its refit failed.
-struct RivalNotFitted {
-  std::string effect;
-  double first_order_evidence = 0;
-};
-
-// A nuisance has more evidence than the best effect.
-struct NuisanceHasMoreEvidence {
-  int nuisance = 0;
-  double evidence = 0;
-};
-
-// If the contributions of the adopted nuisances are included, the held-out error rises.
-struct UnadjustedErrorRises {
-  double rms_before = 0, rms_after = 0;  // m
-};
-
-// Without the adopted nuisances, an effect explains the recordings nearly as well as they do.
-struct EffectReplacesNuisances {
-  std::string effect;
-  double evidence = 0, nuisances_evidence = 0;
-  std::vector<std::string> nuisances;  // names
-  bool held_out = true;                // as in EffectReducesError
-  double over_sigma_before = 0, over_sigma_after = 0;
-};
-
 using VerdictReason =
-    std::variant<NothingDetectable, ErrorIsNoise, ErrorUnexplained, UncertainDiscretisation,
-                 NuisanceExplains, NuisanceIsNegligible, ResidualRemains, HeldOutErrorRemains,
-                 EvidenceForAnother, EffectReducesError, RivalPredictsBetter, RivalNotFitted,
-                 NuisanceHasMoreEvidence, UnadjustedErrorRises, EffectReplacesNuisances>;
+    std::variant<NothingDetectable, ErrorIsNoise, ErrorUnexplained, NuisanceExplains,
+                 ResidualRemains, EvidenceForAnother, EffectReducesError>;
 
 // --- Steps that would resolve an open question ---
-
-// Follow the nuisance's advice (e.g. a finer mesh), then fit or diagnose again.
-struct RefineDiscretisation {
-  int nuisance = 0;
-  bool fit_again = false;  // false: diagnosing again is enough
-};
 
 // Add the effect and diagnose again: `expected_next` should then be named.
 struct AddAndDiagnose {
@@ -163,8 +101,7 @@ struct CheckNuisance {
   int nuisance = 0;
 };
 
-using SuggestedStep =
-    std::variant<RefineDiscretisation, AddAndDiagnose, SeparateLookAlikes, CheckNuisance>;
+using SuggestedStep = std::variant<AddAndDiagnose, SeparateLookAlikes, CheckNuisance>;
 
 // The conclusion of a diagnosis.
 struct Conclusion {

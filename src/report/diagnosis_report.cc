@@ -159,11 +159,40 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
                                  : "white in time");
   text += fmt::format(" The residual of the best hypothesis is {:.1f} σ. Time step: {:.3g} ms.",
                       diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
-  if (diagnosis.control_evidence > 0)
-    text += fmt::format(
-        " Control: without any missing effect, chance alone gives evidence up to {:.1f}.",
-        diagnosis.control_evidence);
+  text += fmt::format(
+      " Without any effect, chance gives the best one a log Bayes factor above {:.1f} in one of 20 "
+      "such recordings.",
+      diagnosis.decision.chance);
   return Paragraph(text);
+}
+
+// What these recordings would have said, had one of the hypotheses been true.
+std::string PowerTable(const DecisionRecord& decision) {
+  if (decision.power.empty()) return "";
+  std::string text = fmt::format(
+      "\n  Had this been missing, at the size that was found, such recordings would have\n"
+      "  {}{}{}{}{}{}\n",
+      PaddedRight("", 22), PaddedLeft("named it", 10), PaddedLeft("named a relative", 18),
+      PaddedLeft("another", 9), PaddedLeft("left open", 11), PaddedLeft("said unknown", 14));
+  for (const RecordedPower& one : decision.power) {
+    text += fmt::format(
+        "  {}{}{}{}{}{}{}\n", PaddedRight(one.truth.empty() ? "nothing" : one.truth.front(), 22),
+        PaddedLeft(Percent(one.named), 10), PaddedLeft(Percent(one.wrong_member), 18),
+        PaddedLeft(Percent(one.wrong), 9), PaddedLeft(Percent(one.open), 11),
+        PaddedLeft(Percent(one.unknown), 14),
+        one.most_wrong.empty() ? "" : "   mistaken for " + one.most_wrong);
+  }
+  std::vector<std::string> pairs;
+  constexpr double kSeparable = 12;
+  for (const RecordedSeparation& pair : decision.separations)
+    if (pair.lambda < kSeparable)
+      pairs.push_back(fmt::format("{} and {} (λ = {:.1f})", pair.first, pair.second, pair.lambda));
+  if (!pairs.empty())
+    text += Paragraph(fmt::format(
+        "These recordings cannot separate {}; λ is the squared distance of their predictions in "
+        "units of the noise, and 12 would separate two effects in four cases of five.",
+        fmt::join(pairs, ", ")));
+  return text;
 }
 
 std::string DetectableTable(const DiagnosisRecord& diagnosis) {
@@ -208,6 +237,7 @@ std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesys
   text += RankingTable(diagnosis);
   text += NuisanceTable(diagnosis);
   text += AlternativesTable(diagnosis);
+  text += PowerTable(diagnosis.decision);
   if (diagnosis.verdict == Verdict::kAdequate || diagnosis.verdict == Verdict::kNoPower)
     text += DetectableTable(diagnosis);
   const std::string next = WhatNext(diagnosis, run);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <variant>
 #include <vector>
 
@@ -55,34 +56,17 @@ struct ReasonSentence {
         "explains it (best evidence {:.1f}).",
         Millimetres(reason.rms), reason.rms_over_sigma, reason.best_evidence);
   }
-  std::string operator()(const UncertainDiscretisation& reason) const {
-    return fmt::format(
-        "The uncertainty in {} could account for up to {:.1f} of the best effect's evidence of "
-        "{:.1f}.",
-        NuisanceAt(diagnosis, reason.nuisance).what, reason.uncertainty, reason.best_evidence);
-  }
   std::string operator()(const NuisanceExplains& reason) const {
     const RecordedNuisance& nuisance = NuisanceAt(diagnosis, reason.nuisance);
     return fmt::format("{:.0f} % of the squared misfit is explained by {}: {}.", 100 * reason.share,
                        nuisance.what, nuisance.advice);
   }
-  std::string operator()(const NuisanceIsNegligible& reason) const {
-    return fmt::format(
-        "A small part of the error, less than {:.0f} % of the squared misfit, comes from {}.",
-        100 * reason.share, NuisanceAt(diagnosis, reason.nuisance).what);
-  }
   std::string operator()(const ResidualRemains& reason) const {
     return fmt::format(
-        "{} explains most, {:.0f} % of the squared misfit in excess of the noise, but the residual "
-        "that remains, {:.1f} σ, exceeds the noise: it may compensate for another effect.",
+        "{} explains {:.0f} % of the squared misfit in excess of the noise, and {:.1f} σ remain: "
+        "it "
+        "may be present beside something unknown, or compensate for it.",
         TitleOf(diagnosis, reason.effect), 100 * reason.share, reason.rms_over_sigma);
-  }
-  std::string operator()(const HeldOutErrorRemains& reason) const {
-    return fmt::format(
-        "{} explains most, with odds of e^{:.0f}, but with it the held-out error only goes from "
-        "{:.1f} σ to {:.1f} σ, which exceeds the noise: it may compensate for another effect.",
-        TitleOf(diagnosis, reason.effect), reason.evidence, reason.over_sigma_before,
-        reason.over_sigma_after);
   }
   std::string operator()(const EvidenceForAnother& reason) const {
     return fmt::format(
@@ -100,37 +84,57 @@ struct ReasonSentence {
             : "",
         reason.over_sigma_before, reason.over_sigma_after, reason.evidence);
   }
-  std::string operator()(const RivalPredictsBetter& reason) const {
-    return fmt::format(
-        "{} has less evidence, e^{:.0f}, but predicts the recordings that were not fitted better, "
-        "to {:.1f} σ against {:.1f} σ.",
-        reason.effect, reason.evidence, reason.over_sigma, reason.over_sigma_of_best);
-  }
-  std::string operator()(const RivalNotFitted& reason) const {
-    return fmt::format("{}, whose odds are e^{:.0f} to first order, could not be fitted.",
-                       reason.effect, reason.first_order_evidence);
-  }
-  std::string operator()(const NuisanceHasMoreEvidence& reason) const {
-    return fmt::format("{} has more evidence, e^{:.0f}.",
-                       NuisanceAt(diagnosis, reason.nuisance).name, reason.evidence);
-  }
-  std::string operator()(const UnadjustedErrorRises& reason) const {
-    return fmt::format(
-        "If the contributions of the adopted nuisances are included, the held-out error rises from "
-        "{:.3f} mm to {:.3f} mm: these nuisances need attention, too.",
-        Millimetres(reason.rms_before), Millimetres(reason.rms_after));
-  }
-  std::string operator()(const EffectReplacesNuisances& reason) const {
-    return fmt::format(
-        "The odds for {} are e^{:.0f}. Without these, the odds for {} are e^{:.0f}, and the {} "
-        "error goes from {:.1f} σ to {:.1f} σ.",
-        fmt::join(reason.nuisances, ", "), reason.nuisances_evidence, reason.effect,
-        reason.evidence, JudgedFrames(reason.held_out), reason.over_sigma_before,
-        reason.over_sigma_after);
-  }
 };
 
-// Sentences that list what the verdict names.
+std::string Percent(double probability) {
+  if (probability > 0.995) return "> 99 %";
+  if (probability < 0.005) return "< 1 %";
+  return fmt::format("{:.0f} %", 100 * probability);
+}
+
+std::string NamesOf(const std::vector<std::string>& names) {
+  return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, " with "));
+}
+
+// The probabilities at both levels: of families, and of their members.
+std::string ProbabilitySentence(const DecisionRecord& decision) {
+  using Kind = HypothesisProbability::Kind;
+  constexpr double kWorthNaming = 0.01;
+  std::vector<std::string> groups;
+  std::vector<EffectFamily> done;
+  for (const HypothesisProbability& one : decision.probabilities) {
+    if (one.probability < kWorthNaming) break;
+    if (one.kind != Kind::kEffect || one.family == EffectFamily::kOther) {
+      groups.push_back(NamesOf(one.names) + " " + Percent(one.probability));
+      continue;
+    }
+    if (std::count(done.begin(), done.end(), one.family) > 0) continue;
+    done.push_back(one.family);
+    std::vector<std::string> members;
+    for (const HypothesisProbability& member : decision.probabilities)
+      if (member.kind == Kind::kEffect && member.family == one.family &&
+          member.probability >= kWorthNaming)
+        members.push_back(NamesOf(member.names) + " " + Percent(member.probability));
+    groups.push_back(fmt::format("{} {} ({})", FamilyTitle(one.family),
+                                 Percent(decision.FamilyProbability(one.family)),
+                                 fmt::join(members, ", ")));
+  }
+  return fmt::format("Probability of what is missing, among all hypotheses that were tried: {}.",
+                     fmt::join(groups, "; "));
+}
+
+std::string AdequacySentence(const RecordedAdequacy& adequacy) {
+  const std::string beside =
+      adequacy.beside.empty() ? "The model as it is" : "The model with " + NamesOf(adequacy.beside);
+  if (adequacy.is_adequate)
+    return fmt::format("{} leaves no more than noise does (p = {:.2f}).", beside, adequacy.p);
+  return fmt::format(
+      "Something unknown is left: {} leaves more than noise does (p = {:.3f}, {:.2f} σ over all "
+      "frames).",
+      beside, adequacy.p, adequacy.rms_over_sigma);
+}
+
+// What the verdict names.
 std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> titles;
   for (const std::string& name : diagnosis.effects) titles.push_back(TitleOf(diagnosis, name));
@@ -154,17 +158,17 @@ std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> sentences = NamingSentences(diagnosis);
   for (const VerdictReason& reason : diagnosis.reasons)
     sentences.push_back(std::visit(ReasonSentence{diagnosis}, reason));
+  if (!diagnosis.decision.probabilities.empty()) {
+    sentences.push_back(ProbabilitySentence(diagnosis.decision));
+    sentences.push_back(AdequacySentence(diagnosis.decision.adequacy));
+  }
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 std::string DescribeNextSteps(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> phrases;
-  std::string refined;  // what to do after the last refinement
   for (const SuggestedStep& step : diagnosis.next_steps) {
-    if (const auto* refine = std::get_if<RefineDiscretisation>(&step)) {
-      phrases.push_back(NuisanceAt(diagnosis, refine->nuisance).advice);
-      refined = refine->fit_again ? ", and fit again" : ", and diagnose again";
-    } else if (const auto* add = std::get_if<AddAndDiagnose>(&step)) {
+    if (const auto* add = std::get_if<AddAndDiagnose>(&step)) {
       phrases.push_back(fmt::format(
           "add {0} and diagnose again: if both are missing, {1} is named next, and the residual "
           "that then remains is noise",
@@ -177,7 +181,7 @@ std::string DescribeNextSteps(const DiagnosisRecord& diagnosis) {
                         NuisanceAt(diagnosis, check->nuisance).advice);
     }
   }
-  return fmt::format("{}{}", fmt::join(phrases, "; "), refined);
+  return fmt::format("{}", fmt::join(phrases, "; "));
 }
 
 }  // namespace lacuna

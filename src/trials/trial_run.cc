@@ -14,6 +14,8 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
+#include "diagnosis/decision.h"
+#include "diagnosis/decision_store.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "experiment/reference_body.h"
@@ -93,12 +95,15 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
     for (std::string type; std::getline(stream, type);) options.without.push_back(type);
   }
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
+  SaveDecisionInput(diagnosis.decision_input, folder / "decision");
   WriteDiagnosisFile(RecordOf(diagnosis), folder / "diagnosis.json");
 
   TrialOutcome outcome;
   outcome.verdict = diagnosis.verdict;
   outcome.named = diagnosis.effects;
-  outcome.control = diagnosis.control;
+  outcome.chance = diagnosis.decision.chance;
+  outcome.probabilities = diagnosis.decision.probabilities;
+  outcome.p_adequate = diagnosis.decision.adequacy.p;
   outcome.left = diagnosis.best_rms_over_sigma;
   std::vector<std::pair<double, std::string>> order;
   for (const RankedEffect& effect : diagnosis.ranking) {
@@ -126,15 +131,19 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
 }
 
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
-  const nlohmann::json all = {{"schema_version", 1},
+  DecisionRecord decision;
+  decision.probabilities = outcome.probabilities;
+  const nlohmann::json all = {{"schema_version", 2},
                               {"verdict", VerdictName(outcome.verdict)},
+                              {"probabilities", DecisionToJson(decision).at("probabilities")},
+                              {"p_adequate", outcome.p_adequate},
                               {"named", outcome.named},
                               {"ranked", outcome.ranked},
                               {"error_before", outcome.error_before},
                               {"error_best", outcome.error_best},
                               {"evidence", outcome.evidence},
                               {"second_evidence", outcome.second_evidence},
-                              {"control", outcome.control},
+                              {"chance", outcome.chance},
                               {"left", outcome.left},
                               {"has_truth", outcome.has_truth},
                               {"error_after", outcome.error_after},
@@ -152,12 +161,16 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
     TrialOutcome outcome;
     outcome.verdict = VerdictFromName(json.at("verdict"));
     outcome.named = json.at("named");
+    if (json.at("schema_version") == 2) {  // outcomes of before have no probabilities
+      outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
+      outcome.p_adequate = json.at("p_adequate");
+    }
     outcome.ranked = json.at("ranked");
     outcome.error_before = json.at("error_before");
     outcome.error_best = json.at("error_best");
     outcome.evidence = json.at("evidence");
     outcome.second_evidence = json.at("second_evidence");
-    outcome.control = json.at("control");
+    outcome.chance = json.at("chance");
     outcome.left = json.at("left");
     outcome.has_truth = json.at("has_truth");
     outcome.error_after = json.at("error_after");
@@ -168,6 +181,24 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
   } catch (const nlohmann::json::exception& problem) {
     throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
   }
+}
+
+int RedecideTrials(const std::filesystem::path& folder) {
+  int decided = 0;
+  for (const std::filesystem::path& own : CasesIn(folder)) {
+    if (!std::filesystem::exists(own / "decision" / "decision.json") ||
+        !std::filesystem::exists(own / "outcome.json"))
+      continue;
+    const Decision decision = Decide(LoadDecisionInput(own / "decision"));
+    TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+    outcome.verdict = decision.verdict;
+    outcome.named = decision.names;
+    outcome.probabilities = decision.record.probabilities;
+    outcome.p_adequate = decision.record.adequacy.p;
+    SaveOutcome(outcome, own / "outcome.json");
+    ++decided;
+  }
+  return decided;
 }
 
 int RunTrials(const std::filesystem::path& folder, int workers) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "record/decision_record.h"
 #include "record/verdict.h"
 #include "trials/trial_case.h"
 
@@ -17,14 +18,18 @@ struct TrialOutcome {
   Verdict verdict = Verdict::kNoPower;
   std::vector<std::string> named;   // effects and nuisances of the verdict, the best one first
   std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
-  double error_before = 0;          // held-out error of the model without any of them
-  double error_best = 0;            // held-out error with the first effect named; 0: none is
-  // Values from the diagnosis: the evidence (natural logarithm of the odds against the unchanged
-  // model) of the first two ranked effects, the evidence that a twentieth of the controls without
-  // an effect exceeds, and the remaining rms residual over the noise.
-  double evidence = 0, second_evidence = 0, control = 0, left = 0;
-  // Whether the first hidden effect was fitted, so that the following values are valid. False if it
-  // is not in the library, has no size, or could not be fitted.
+  double error_before = 0;          // held-out, of the model without any of them
+  double error_best = 0;            // held-out, with the first one named; 0: none is named
+  // Evidence (natural logarithm of the odds against the model as it is) of the first two ranked
+  // effects, and the one that a twentieth of the controls without an effect exceeds; `left`: the
+  // remaining rms residual over the noise. All as the Diagnosis has them.
+  double evidence = 0, second_evidence = 0, chance = 0, left = 0;
+  // The posterior of all hypotheses, the most probable one first, and the tail probability of what
+  // the first one leaves; empty and 1 for outcomes of older versions.
+  std::vector<HypothesisProbability> probabilities;
+  double p_adequate = 1;
+  // Whether the first hidden effect was fitted, so that the following values hold. False if it is
+  // not in the library, has no size, or could not be fitted.
   bool has_truth = false;
   double error_after = 0;  // held-out error with the hidden effect fitted
   // |estimate − truth| / |truth|, with each component divided by its detectable size, so that a
@@ -42,6 +47,11 @@ TrialOutcome RunCase(const std::filesystem::path& folder);
 // Write and read outcome.json. Both throw InputError if the file cannot be used.
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);
 TrialOutcome LoadOutcome(const std::filesystem::path& file);
+
+// Decides again upon every case that keeps what its decision was made from, with the rules as they
+// are now, and replaces the verdict of its outcome. Returns the number of such cases. Throws
+// InputError if a file cannot be read.
+int RedecideTrials(const std::filesystem::path& folder);
 
 // Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a
 // time. A case is claimed by a lock on a file in its folder, so that several calls may share the

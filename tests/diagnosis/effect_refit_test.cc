@@ -9,6 +9,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "calibration/linear_misfit.h"
+#include "diagnosis/projected_hypotheses.h"
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
@@ -104,22 +105,24 @@ TEST(HypothesisEvidence, CountsTheCostOfTheNuisancesItUses) {
   EXPECT_NEAR(of_usual.log_evidence - of_far.log_evidence, 8, 0.5);
 }
 
-// The evidence of the linear model with the columns of another effect, relative to that without,
-// less the selection penalty; the refitted effect itself is not considered.
-TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
+// The Bayes factor of another effect beside a refit is that of the linear models with and without
+// its columns; the refitted effect itself is not considered.
+TEST(SpaceOfARefit, WeighsTheOtherEffectsBesideIt) {
   FittedHypothesis hypothesis = MakeHypothesis(0.1);
   LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(misfit.residual.size(), 0, 1);
   const Eigen::VectorXd there = 1e-3 * (4 * std::numbers::pi * t).array().sin();
-  const std::vector<TriedVariant> tried = {
-      {"refitted", there, {{0, 1, false}}},
-      {"absent", 1e-3 * (9 * std::numbers::pi * t).array().cos(), {{0, 1, false}}},
-      {"there", there, {{0, 1, false}}, std::log(3)},
-      {"a nuisance", there, {{0, 1, false}}, 1, true}};
-  EXPECT_EQ(FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise).type, "");
+  EffectRanking ranking;
+  ranking.tried = {{"refitted", "", there, {{0, 1, false}}},
+                   {"absent", "", 1e-3 * (9 * std::numbers::pi * t).array().cos(), {{0, 1, false}}},
+                   {"there", "", there, {{0, 1, false}}},
+                   {"a nuisance", "", there, {{0, 1, false}}, 0, true}};
   misfit.residual += 0.2 * there;
-  const FurtherEvidence further = FurtherEvidenceOf(hypothesis, tried, "refitted", kNoise);
-  EXPECT_EQ(further.type, "there");
+  const HypothesisSpace space = SpaceOf(hypothesis, ranking, "refitted", kNoise);
+  const ProjectedHypotheses projected(space);
+  const Eigen::VectorXd factors =
+      projected.LogBayesFactors(projected.Project(space.model.toward()));
+  ASSERT_EQ(factors.size(), 3);
   const auto evidence = [&] {
     return LinearGaussianModel(
                WhitenedRows(misfit.residual, misfit, kNoise.correlation_time, false),
@@ -132,9 +135,10 @@ TEST(FurtherEvidence, IsThatOfTheBestOtherEffect) {
   misfit.jacobian.conservativeResize(Eigen::NoChange, 3);
   misfit.jacobian.col(2) = there;
   hypothesis.priors.push_back({0, 1, false});
-  EXPECT_NEAR(further.evidence, evidence() - without - std::log(3), 1e-9);
-  EXPECT_GT(further.evidence, 10);
-  EXPECT_NEAR(further.nuisance_evidence, further.evidence + std::log(3) - 1, 1e-9);
+  EXPECT_NEAR(factors[1], evidence() - without, 1e-6 * factors[1]);
+  EXPECT_GT(factors[1], 10);
+  EXPECT_LT(factors[0], 0);
+  EXPECT_NEAR(factors[2], factors[1], 1e-9 * factors[1]);
 }
 
 // With the best parameter for all frames, or for the fitted ones.

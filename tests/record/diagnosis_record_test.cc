@@ -33,6 +33,14 @@ DiagnosisRecord SmallDiagnosis() {
   effect.first_order = {310, 0.9, 0.2, 1.1};
   effect.sizes.push_back({"coefficient", "kg/m^3", 1, INFINITY, INFINITY, std::nullopt});
   record.untried.push_back({"plane_contact", "nothing is near"});
+  DecisionRecord& decision = record.decision;
+  using Kind = HypothesisProbability::Kind;
+  decision.probabilities = {{Kind::kEffect, {"drag"}, EffectFamily::kLossOutside, 300, 0.9},
+                            {Kind::kNothing, {}, EffectFamily::kOther, 0, 0.1}};
+  decision.adequacy = {{"drag"}, 0.2, 0.3, 0.4, 0.25, true, "gravity", 1.5, 1.01};
+  decision.power = {{{"drag"}, 0.7, 0.1, 0.05, 0.1, 0.05, "mass_damping"}};
+  decision.separations = {{"drag", "mass_damping", 6.8}};
+  decision.chance = 2.5;
   return record;
 }
 
@@ -42,7 +50,6 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   refitted.sizes[0].refitted = RecordedInterval{2, 1, INFINITY};
   refitted.refit.emplace().evidence = 300;
   refitted.refit->errors.without_nuisances = 1;
-  refitted.refit->remainder = {"gravity", 2, 1};
   refitted.refit->others.push_back({"drag.centre_x", "m", {0.05, -INFINITY, 0.07}});
   record.ranking.push_back(refitted);
   record.alternatives = {{refitted}, 1000, 10};
@@ -61,7 +68,8 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.ranking[0].sizes[0].detectable, INFINITY);
   ASSERT_TRUE(read.ranking[1].HasUsableRefit());
   EXPECT_TRUE(read.ranking[1].refit->errors.has_held_out);
-  EXPECT_EQ(read.ranking[1].refit->remainder.effect, "gravity");
+  EXPECT_EQ(read.decision.probabilities[1].kind, HypothesisProbability::Kind::kNothing);
+  EXPECT_EQ(read.decision.FamilyProbability(EffectFamily::kLossOutside), 0.9);
   EXPECT_EQ(read.ranking[1].sizes[0].refitted->high, INFINITY);
   EXPECT_EQ(read.ranking[1].refit->others[0].found.low, -INFINITY);
   EXPECT_EQ(read.alternatives.effects.size(), 1u);

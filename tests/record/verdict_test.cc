@@ -24,21 +24,13 @@ TEST(VerdictRecord, EveryReasonAndStepIsReadBackAsItWasWritten) {
   conclusion.reasons = {NothingDetectable{},
                         ErrorIsNoise{1e-4, 1.5},
                         ErrorUnexplained{1e-4, 2.5, 4},
-                        UncertainDiscretisation{1, 12, 13},
                         NuisanceExplains{2, 0.5},
-                        NuisanceIsNegligible{3, 0.05},
                         ResidualRemains{"drag", 0.75, 1.5},
-                        HeldOutErrorRemains{"drag", 300, 2.5, 1.5},
                         EvidenceForAnother{"drag", 300, "gravity", 16},
-                        EffectReducesError{"drag", 300, false, true, 5, 1},
-                        RivalPredictsBetter{"gravity", 150, 11, 12},
-                        RivalNotFitted{"gravity", 305},
-                        NuisanceHasMoreEvidence{4, 1950},
-                        UnadjustedErrorRises{1e-4, 2e-4},
-                        EffectReplacesNuisances{"drag", 900, 1000, {"time_jitter"}, true, 10, 3}};
+                        EffectReducesError{"drag", 300, false, true, 5, 1}};
   ASSERT_EQ(conclusion.reasons.size(), std::variant_size_v<VerdictReason>);
-  conclusion.next_steps = {RefineDiscretisation{1, true}, AddAndDiagnose{"drag", "gravity"},
-                           SeparateLookAlikes{"drag"}, CheckNuisance{2}};
+  conclusion.next_steps = {AddAndDiagnose{"drag", "gravity"}, SeparateLookAlikes{"drag"},
+                           CheckNuisance{2}};
   ASSERT_EQ(conclusion.next_steps.size(), std::variant_size_v<SuggestedStep>);
   const nlohmann::json written = ConclusionToJson(conclusion);
   const Conclusion read = ConclusionFromJson(written);
@@ -49,9 +41,6 @@ TEST(VerdictRecord, EveryReasonAndStepIsReadBackAsItWasWritten) {
     EXPECT_EQ(read.reasons[k].index(), conclusion.reasons[k].index());
   // Every field is written and read: the second writing equals the first.
   EXPECT_EQ(ConclusionToJson(read), written);
-  const auto& replaced = std::get<EffectReplacesNuisances>(read.reasons.back());
-  EXPECT_EQ(replaced.nuisances, std::vector<std::string>{"time_jitter"});
-  EXPECT_EQ(replaced.over_sigma_after, 3);
 }
 
 TEST(VerdictRecord, AnUnknownKindOfReasonIsRefused) {

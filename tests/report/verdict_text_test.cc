@@ -53,16 +53,24 @@ TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
   EXPECT_EQ(DescribeNextSteps(record), "");
 }
 
-TEST(VerdictText, SaysWhatMayAccountForTheEvidenceOfAnAdequateModel) {
+// Both levels: the family, and its members.
+TEST(VerdictText, StatesProbabilitiesOfFamiliesAndMembers) {
   DiagnosisRecord record = SmallDiagnosis();
-  record.verdict = Verdict::kAdequate;
-  record.reasons = {ErrorIsNoise{1e-4, 1.04}, UncertainDiscretisation{0, 12, 13}};
-  EXPECT_EQ(ExplainVerdict(record),
-            "The error, 0.100 mm or 1.0 σ, is that of the noise, and no effect has sufficient "
-            "evidence. The uncertainty in the coarse mesh could account for up to 13.0 of the best "
-            "effect's evidence of 12.0.");
-  record.next_steps = {RefineDiscretisation{0, false}};
-  EXPECT_EQ(DescribeNextSteps(record), "choose a smaller mesh.max_volume, and diagnose again");
+  record.verdict = Verdict::kAmbiguous;
+  record.effects = {"drag", "mass_damping"};
+  using Kind = HypothesisProbability::Kind;
+  record.decision.probabilities = {
+      {Kind::kEffect, {"drag"}, EffectFamily::kLossOutside, 20, 0.62},
+      {Kind::kEffect, {"mass_damping"}, EffectFamily::kLossOutside, 19.5, 0.37},
+      {Kind::kNothing, {}, EffectFamily::kOther, 0, 0.004}};
+  record.decision.adequacy.beside = {"drag"};
+  record.decision.adequacy.p = 0.4;
+  EXPECT_THAT(ExplainVerdict(record),
+              HasSubstr("loss outside the body 99 % (drag 62 %, mass_damping 37 %). The model with "
+                        "drag leaves no more than noise does (p = 0.40)."));
+  record.decision.adequacy.is_adequate = false;
+  record.decision.adequacy.p = 0.001;
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("Something unknown is left"));
 }
 
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
@@ -83,18 +91,13 @@ TEST(VerdictText, SuggestsAnExperimentOrACheck) {
   DiagnosisRecord record = SmallDiagnosis();
   record.next_steps = {SeparateLookAlikes{"drag"}, CheckNuisance{1}};
   EXPECT_EQ(DescribeNextSteps(record), "film it in vacuum; or check the camera's clock");
-  record.next_steps = {RefineDiscretisation{0, true}};
-  EXPECT_EQ(DescribeNextSteps(record), "choose a smaller mesh.max_volume, and fit again");
 }
 
 TEST(VerdictText, HasASentenceForEveryReason) {
   DiagnosisRecord record = SmallDiagnosis();
-  const std::vector<VerdictReason> all{
-      NothingDetectable{},       ErrorIsNoise{},         ErrorUnexplained{},
-      UncertainDiscretisation{}, NuisanceExplains{},     NuisanceIsNegligible{},
-      ResidualRemains{},         HeldOutErrorRemains{},  EvidenceForAnother{},
-      EffectReducesError{},      RivalPredictsBetter{},  RivalNotFitted{},
-      NuisanceHasMoreEvidence{}, UnadjustedErrorRises{}, EffectReplacesNuisances{}};
+  const std::vector<VerdictReason> all{NothingDetectable{}, ErrorIsNoise{},    ErrorUnexplained{},
+                                       NuisanceExplains{},  ResidualRemains{}, EvidenceForAnother{},
+                                       EffectReducesError{}};
   ASSERT_EQ(all.size(), std::variant_size_v<VerdictReason>);
   for (const VerdictReason& reason : all) {
     record.reasons = {reason};

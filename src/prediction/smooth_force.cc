@@ -1,4 +1,4 @@
-#include "comparison/smooth_force.h"
+#include "prediction/smooth_force.h"
 
 #include <glog/logging.h>
 

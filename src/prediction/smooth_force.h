@@ -3,8 +3,8 @@
 // with ψ_0 = 1 and ψ_1 the coordinate along the longest principal axis of the mass, scaled to mean
 // 0 and variance 1. The amplitudes a_c (m/s², three components each) are linear in time between
 // evenly spaced knots. The net force is that of ψ_0.
-#ifndef LACUNA_COMPARISON_SMOOTH_FORCE_H_
-#define LACUNA_COMPARISON_SMOOTH_FORCE_H_
+#ifndef LACUNA_PREDICTION_SMOOTH_FORCE_H_
+#define LACUNA_PREDICTION_SMOOTH_FORCE_H_
 
 #include <Eigen/Core>
 
@@ -46,4 +46,4 @@ SmoothForce MakeSmoothForce(const Model& model, double start, double end, int kn
 
 }  // namespace lacuna
 
-#endif  // LACUNA_COMPARISON_SMOOTH_FORCE_H_
+#endif  // LACUNA_PREDICTION_SMOOTH_FORCE_H_

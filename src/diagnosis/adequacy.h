@@ -1,0 +1,76 @@
+// Whether a hypothesis leaves what noise leaves: three statistics of its residual, each compared
+// with its distribution under noise alone.
+//
+// The statistics are the log Bayes factor of an unknown smooth force beside the hypothesis, the
+// largest posterior log odds of any further effect or nuisance beside it, and the variance of the
+// residual. Noise alone makes t = Aᵀr normal with the covariance v AᵀA, so that the distributions
+// are simulated from the products of the recording itself: they need no table of thresholds, and
+// hold whatever the columns are. The smallest of the three tail probabilities is compared with its
+// own distribution, which makes the combined test exact (Tippett's method with simulated
+// dependence; Westfall & Young, Resampling-Based Multiple Testing, 1993).
+#ifndef LACUNA_DIAGNOSIS_ADEQUACY_H_
+#define LACUNA_DIAGNOSIS_ADEQUACY_H_
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diagnosis/hypothesis_space.h"
+#include "diagnosis/projected_hypotheses.h"
+
+namespace lacuna {
+
+// The log Bayes factors of the effects and nuisances of a space, each with its variants summed and
+// divided by the number of its rivals.
+struct NamedEvidence {
+  HypothesisKind kind = HypothesisKind::kEffect;
+  std::string name;
+  double evidence = 0;
+  size_t best = 0;  // index of the variant with the most evidence
+};
+// One entry per name, in the order in which the names first appear. `factors`: one per hypothesis.
+// Effects share one prior probability, and so do nuisances; variants share that of their effect.
+std::vector<NamedEvidence> SumVariants(const HypothesisSpace& space,
+                                       const Eigen::VectorXd& factors);
+
+struct AdequacyStatistics {
+  double unknown_force = 0;    // log Bayes factor; 0 where the space has no unknown force
+  double further = 0;          // the largest NamedEvidence::evidence
+  double variance = 0;         // of the whitened residual, per degree of freedom
+  NamedEvidence best_further;  // what `further` belongs to
+};
+
+// The statistics of one residual beside the columns that `projected` has taken.
+AdequacyStatistics MeasureAdequacy(const HypothesisSpace& space,
+                                   const ProjectedHypotheses& projected,
+                                   const ResidualProducts& residual);
+
+struct AdequacyTest {
+  AdequacyStatistics found;
+  // Tail probabilities under noise alone: of each statistic, and of their smallest.
+  double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
+  // The 95 % quantile of `further` under noise: what chance gives to the best effect.
+  double chance = 0;
+};
+
+// `further`: columns of the space that belong to the hypothesis, beside the base. `noise_is_known`:
+// the standard deviation of the noise was given, so that the variance is a test. The random draws
+// depend on `seed` alone.
+AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& further,
+                          bool noise_is_known, uint64_t seed);
+
+// Draws of the products of noise alone: t ~ N(0, v AᵀA), with rᵀr from the same noise.
+class NoiseDraws {
+ public:
+  explicit NoiseDraws(const HypothesisSpace& space);
+  ResidualProducts Draw(uint64_t seed, uint64_t number) const;
+
+ private:
+  double variance_;
+  Eigen::Index rows_;
+  Eigen::MatrixXd root_;  // AᵀA = root rootᵀ, columns × rank
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_ADEQUACY_H_

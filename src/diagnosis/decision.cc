@@ -1,0 +1,216 @@
+#include "diagnosis/decision.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/adequacy.h"
+#include "diagnosis/decision_rules.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = HypothesisProbability::Kind;
+
+size_t CountOf(const std::vector<HypothesisProbability>& hypotheses, Kind kind) {
+  return static_cast<size_t>(std::count_if(hypotheses.begin(), hypotheses.end(),
+                                           [&](const auto& one) { return one.kind == kind; }));
+}
+
+const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& effect) {
+  for (const WeighedRefit& refit : input.refits)
+    if (refit.effect == effect) return &refit;
+  return nullptr;
+}
+
+double LogSum(double a, double b) {
+  const double largest = std::max(a, b);
+  return largest + std::log(std::exp(a - largest) + std::exp(b - largest));
+}
+
+// The nuisances that are in the base become a hypothesis of their own; all others stand beside
+// them, or in their place.
+void CompareWithAdopted(const DecisionInput& input, double effects,
+                        std::vector<HypothesisProbability>* hypotheses) {
+  if (input.adopted.empty()) return;
+  for (HypothesisProbability& one : *hypotheses) {
+    one.evidence += input.adopted_evidence;
+    if (one.kind == Kind::kNothing) {
+      one.kind = Kind::kNuisance;
+      one.names = input.adopted;
+    } else if (one.kind == Kind::kEffect) {
+      for (const WeighedRefit& refit : input.in_place_of_adopted)
+        if (refit.effect == one.names.front())
+          one.evidence = LogSum(one.evidence, refit.evidence - effects - input.discretisation);
+    }
+  }
+  hypotheses->emplace_back();  // nothing, and no nuisance
+}
+
+// First order overrates large effects. The evidence of an effect that was not refitted is reduced
+// by the share that the best refit has kept of its own.
+double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& first_order) {
+  double best = 0, share = 1;
+  for (const WeighedRefit& refit : input.refits) {
+    if (refit.evidence <= best) continue;
+    for (const NamedEvidence& named : first_order)
+      if (named.name == refit.effect && named.evidence > refit.evidence)
+        share = refit.evidence / named.evidence;
+    best = refit.evidence;
+  }
+  return share;
+}
+
+// The posterior over single hypotheses.
+std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
+                                               const std::vector<NamedEvidence>& first_order) {
+  std::vector<HypothesisProbability> hypotheses =
+      HypothesesOf(first_order, input.families, input.discretisation);
+  const double share = KeptShare(input, first_order);
+  const double effects = std::log(static_cast<double>(CountOf(hypotheses, Kind::kEffect)));
+  const double nuisances = std::log(static_cast<double>(CountOf(hypotheses, Kind::kNuisance)));
+  for (HypothesisProbability& one : hypotheses) {
+    if (one.kind == Kind::kEffect) {
+      const WeighedRefit* refit = FindRefit(input, one.names.front());
+      if (refit != nullptr)
+        one.evidence = refit->evidence - effects - input.discretisation;
+      else if (one.evidence > 0)
+        one.evidence *= share;
+      if (const auto natural = input.natural_value.find(one.names.front());
+          natural != input.natural_value.end())
+        one.evidence += natural->second;
+    } else if (one.kind == Kind::kNuisance) {
+      for (const WeighedNuisance& refit : input.nuisances)
+        if (refit.name == one.names.front()) one.evidence = refit.evidence - nuisances;
+    }
+  }
+  CompareWithAdopted(input, effects, &hypotheses);
+  SetPosterior(&hypotheses);
+  return hypotheses;
+}
+
+// The space in which a hypothesis is tested, and its columns there beside the base.
+struct TestedSpace {
+  const HypothesisSpace* space;
+  std::vector<int> columns;
+};
+
+TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
+                    const HypothesisProbability& hypothesis) {
+  if (hypothesis.kind == Kind::kNothing || hypothesis.names == input.adopted)
+    return {&input.baseline, {}};
+  const std::string& name = hypothesis.names.front();
+  if (hypothesis.kind == Kind::kEffect)
+    if (const WeighedRefit* refit = FindRefit(input, name)) return {&refit->space, {}};
+  for (const NamedEvidence& named : first_order)
+    if (named.name == name) return {&input.baseline, input.baseline.hypotheses[named.best].columns};
+  return {&input.baseline, {}};
+}
+
+RecordedAdequacy RecordOf(const AdequacyTest& test, std::vector<std::string> beside) {
+  RecordedAdequacy adequacy;
+  adequacy.beside = std::move(beside);
+  adequacy.p_unknown_force = test.p_unknown_force;
+  adequacy.p_further = test.p_further;
+  adequacy.p_variance = test.p_variance;
+  adequacy.p = test.p;
+  adequacy.is_adequate = test.p >= kAdequacyLevel;
+  adequacy.further = test.found.best_further.name;
+  adequacy.further_evidence = test.found.further;
+  adequacy.rms_over_sigma = std::sqrt(std::max(0.0, test.found.variance));
+  return adequacy;
+}
+
+// The most probable effect with a second one beside it, as one hypothesis; nothing where the second
+// one has too little evidence, or where the two leave more than noise.
+bool TryPair(const DecisionInput& input, const TestedSpace& tested, const AdequacyTest& test,
+             Decision* decision) {
+  const HypothesisProbability best = decision->record.probabilities.front();
+  const NamedEvidence& second = test.found.best_further;
+  if (best.kind != Kind::kEffect || second.kind != HypothesisKind::kEffect ||
+      second.name == best.names.front() || second.name.empty())
+    return false;
+  HypothesisProbability pair;
+  pair.kind = Kind::kPair;
+  pair.names = {best.names.front(), second.name};
+  pair.evidence = best.evidence + second.evidence + std::log(2.0);  // either order
+  std::vector<HypothesisProbability> posterior = decision->record.probabilities;
+  posterior.push_back(pair);
+  SetPosterior(&posterior);
+  if (posterior.front().kind != Kind::kPair || posterior.front().probability < kNamingProbability)
+    return false;
+  std::vector<int> columns = tested.columns;
+  const std::vector<int>& own = tested.space->hypotheses[second.best].columns;
+  columns.insert(columns.end(), own.begin(), own.end());
+  const AdequacyTest both =
+      TestAdequacy(*tested.space, columns, input.noise_is_known, input.seed + 1);
+  if (both.p < kAdequacyLevel) return false;
+  decision->record.probabilities = std::move(posterior);
+  decision->record.adequacy = RecordOf(both, pair.names);
+  return true;
+}
+
+}  // namespace
+
+std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
+                                                const std::map<std::string, EffectFamily>& families,
+                                                double discretisation) {
+  std::vector<HypothesisProbability> hypotheses(1);  // nothing
+  for (const NamedEvidence& named : evidence) {
+    HypothesisProbability& one = hypotheses.emplace_back();
+    one.kind = named.kind == HypothesisKind::kEffect ? Kind::kEffect : Kind::kNuisance;
+    one.names = {named.name};
+    one.evidence = named.evidence;
+    if (one.kind != Kind::kEffect) continue;
+    one.evidence -= discretisation;
+    if (const auto family = families.find(named.name); family != families.end())
+      one.family = family->second;
+  }
+  return hypotheses;
+}
+
+Decision Decide(const DecisionInput& input) {
+  const ProjectedHypotheses beside_nothing(input.baseline);
+  const std::vector<NamedEvidence> first_order = SumVariants(
+      input.baseline,
+      beside_nothing.LogBayesFactors(beside_nothing.Project(input.baseline.model.toward())));
+  Decision decision;
+  DecisionRecord& record = decision.record;
+  record.probabilities = PosteriorOf(input, first_order);
+  const HypothesisProbability best = record.probabilities.front();
+  const TestedSpace tested = SpaceOf(input, first_order, best);
+  const AdequacyTest test =
+      TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
+  record.adequacy = RecordOf(test, best.names);
+  record.chance = test.chance;
+
+  const Naming naming = NameFrom(record.probabilities);
+  if (!record.adequacy.is_adequate && !TryPair(input, tested, test, &decision)) {
+    decision.verdict = Verdict::kNotInLibrary;
+    if (naming.level != Naming::Level::kNothing)
+      for (const size_t k : naming.kept)
+        for (const std::string& name : record.probabilities[k].names)
+          decision.names.push_back(name);
+    return decision;
+  }
+  const HypothesisProbability& first = record.probabilities.front();
+  if (first.kind == Kind::kPair) {
+    decision.verdict = Verdict::kMissing;
+    decision.names = first.names;
+  } else if (naming.level == Naming::Level::kNothing) {
+    decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;
+  } else {
+    const auto is_nuisance = [&](size_t k) {
+      return record.probabilities[k].kind == Kind::kNuisance;
+    };
+    for (const size_t k : naming.kept)
+      for (const std::string& name : record.probabilities[k].names) decision.names.push_back(name);
+    if (std::all_of(naming.kept.begin(), naming.kept.end(), is_nuisance))
+      decision.verdict = Verdict::kNuisance;
+    else
+      decision.verdict =
+          naming.level == Naming::Level::kMember ? Verdict::kMissing : Verdict::kAmbiguous;
+  }
+  return decision;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,38 @@
+// The decision: what the recordings say is missing, from the evidence of all hypotheses.
+//
+// 1. The posterior over {nothing, each effect, each nuisance} follows from the Bayes factors
+//    (decision_rules.h): of a refit where there is one, else to first order.
+// 2. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
+//    more than noise, a second effect beside it is a hypothesis, too; if no pair leaves noise,
+//    something unknown is left.
+// 3. A name is stated with a posterior probability of kNamingProbability, else a set.
+//
+// Pure: the result depends on the input alone.
+#ifndef LACUNA_DIAGNOSIS_DECISION_H_
+#define LACUNA_DIAGNOSIS_DECISION_H_
+
+#include "diagnosis/adequacy.h"
+#include "diagnosis/decision_input.h"
+#include "record/decision_record.h"
+#include "record/verdict.h"
+
+namespace lacuna {
+
+struct Decision {
+  Verdict verdict = Verdict::kNoPower;
+  // The effects and nuisances of the verdict, the most probable one first. Of "not in library": the
+  // effect that explains most of the residual, if its probability allows a name.
+  std::vector<std::string> names;
+  DecisionRecord record;  // without power and separations (recording_power.h)
+};
+
+Decision Decide(const DecisionInput& input);
+
+// The hypotheses of a space with their log Bayes factors, and "nothing", without probabilities.
+std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
+                                                const std::map<std::string, EffectFamily>& families,
+                                                double discretisation);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_DECISION_H_

@@ -1,0 +1,111 @@
+#include "diagnosis/decision_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/catalogue.h"
+
+namespace lacuna {
+namespace {
+
+// Of a normal distribution: the half width of the 95 % interval.
+constexpr double kHalfWidth95 = 1.96;
+// The length of a vector is determined if its mean exceeds so many standard deviations.
+constexpr double kDeterminedLength = 3;
+
+// No effect, at the largest plausible size, would stand out from the noise.
+bool IsAnythingDetectable(const std::vector<RankedEffect>& ranking) {
+  for (const RankedEffect& effect : ranking) {
+    const std::vector<CandidateAmount> amounts = AmountsOf(effect.scored.candidate);
+    for (size_t k = 0; k < amounts.size(); ++k)
+      if (effect.scored.score.detectable[static_cast<Eigen::Index>(k)] < amounts[k].plausible)
+        return true;
+  }
+  return false;
+}
+
+// The evidence for the value that nature gives to the effect's size; 0 where it gives none.
+double EvidenceOfNaturalValue(const RankedEffect& effect) {
+  const CandidateEffect& candidate = effect.scored.candidate;
+  if (candidate.effect == nullptr || effect.sizes.size() != 3) return 0;
+  const EffectCard& card = candidate.effect->Card();
+  if (card.natural_magnitude == 0) return 0;
+  Eigen::Vector3d mean, deviation;
+  for (int k = 0; k < 3; ++k) {
+    const ParameterEstimate& size = effect.sizes[static_cast<size_t>(k)];
+    mean[k] = size.value;
+    deviation[k] = (size.high - size.low) / (2 * kHalfWidth95);
+  }
+  if (!deviation.allFinite()) return 0;
+  const double prior = AmountsOf(candidate).front().plausible;
+  return NaturalValueEvidence(mean, deviation, prior, card.natural_magnitude);
+}
+
+}  // namespace
+
+double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& deviation,
+                            double prior, double natural) {
+  const double length = mean.norm();
+  const double radial = (mean / std::max(length, 1e-300)).cwiseProduct(deviation).norm();
+  if (!(radial > 0) || length < kDeterminedLength * deviation.maxCoeff()) return 0;
+  // The density of the posterior on the sphere, whose curvature is small beside the deviations,
+  // over that of the normal prior there.
+  const double on_sphere = -0.5 * std::pow((natural - length) / radial, 2) -
+                           std::log(radial * std::sqrt(2 * M_PI)) -
+                           std::log(4 * M_PI * natural * natural);
+  const double before =
+      -0.5 * std::pow(natural / prior, 2) - 3 * std::log(prior * std::sqrt(2 * M_PI));
+  const double factor = on_sphere - before;
+  const double largest = std::max(factor, 0.0);
+  return largest + std::log(0.5 * std::exp(-largest) + 0.5 * std::exp(factor - largest));
+}
+
+DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanking& ranked,
+                                const RefitNoise& noise, const Diagnosis& diagnosis) {
+  const EffectRanking& ranking = context.ranking;
+  DecisionInput input;
+  input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, "", noise.level);
+  const double penalty = SelectionPenalty(ranked.effects.size());
+  for (size_t k = 0; k < ranked.effects.size(); ++k) {
+    const RankedEffect& effect = ranked.effects[k];
+    const CandidateEffect& candidate = effect.scored.candidate;
+    if (candidate.effect != nullptr)
+      input.families[candidate.type] = candidate.effect->Card().family;
+    if (!ranked.IsUsable(k)) continue;
+    input.refits.push_back(
+        {candidate.type, effect.evidence + penalty,
+         SpaceOf(ranked.refits[k].hypothesis, ranking, candidate.type, noise.level)});
+    if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
+      input.natural_value[candidate.type] = natural;
+  }
+  for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
+    input.discretisation += nuisance.uncertain_evidence;
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
+      input.adopted.push_back(nuisance.candidate.card.name);
+    if (nuisance.refitted)
+      input.nuisances.push_back(
+          {nuisance.candidate.card.name,
+           *nuisance.refitted + SelectionPenalty(diagnosis.nuisances.size())});
+  }
+  if (!input.adopted.empty()) {
+    // To first order, against the parameters and the nuisances that every model has.
+    for (const ScoredNuisance& nuisance : diagnosis.nuisances)
+      if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
+        input.adopted_evidence += std::max(0.0, nuisance.evidence);
+  }
+  input.noise_is_known = context.model.problem.LeastNoiseVariance() == 1;
+  input.is_anything_detectable = IsAnythingDetectable(ranked.effects);
+  return input;
+}
+
+void AddAlternatives(const NuisanceAlternatives& alternatives, DecisionInput* input) {
+  if (alternatives.nuisances_evidence == 0) return;
+  input->adopted_evidence = alternatives.nuisances_evidence;
+  const double penalty = SelectionPenalty(input->families.size());
+  for (const RankedEffect& effect : alternatives.effects)
+    if (effect.HasUsableRefit())
+      input->in_place_of_adopted.push_back(
+          {effect.scored.candidate.type, effect.evidence + penalty, {}});
+}
+
+}  // namespace lacuna

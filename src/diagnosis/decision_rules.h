@@ -1,0 +1,53 @@
+// The rules of the decision: prior probabilities, the posterior over hypotheses, and when a name is
+// stated. The same rules serve recorded and simulated residuals.
+//
+// The posterior probability of a hypothesis is its prior probability times its Bayes factor
+// against the model as it is, normalised. A name is stated when its probability is at least
+// kNamingProbability; otherwise the smallest set of hypotheses that reaches this probability.
+#ifndef LACUNA_DIAGNOSIS_DECISION_RULES_H_
+#define LACUNA_DIAGNOSIS_DECISION_RULES_H_
+
+#include <string>
+#include <vector>
+
+#include "record/decision_record.h"
+
+namespace lacuna {
+
+// Prior probabilities: that nothing is missing, and those that all effects, all nuisances and all
+// pairs of effects share. Evidence of some tens of units makes their choice unimportant; a larger
+// value for "nothing" asks for more evidence before an effect is named.
+inline constexpr double kPriorNothing = 0.5, kPriorEffects = 0.3, kPriorNuisances = 0.15,
+                        kPriorPairs = 0.05;
+// A name is stated with at least this posterior probability. By definition one name in twenty may
+// be wrong where the assumptions hold.
+inline constexpr double kNamingProbability = 0.95;
+// The level of the test of adequacy: so often a complete model is said to leave something unknown.
+// Lower: something unknown that is small passes for noise more often.
+inline constexpr double kAdequacyLevel = 0.02;
+// Two effects with a smaller λ (RecordedSeparation) cannot be told apart: with 12 the right one of
+// two is chosen in four cases of five.
+inline constexpr double kSeparableLambda = 12;
+
+// Sets the probabilities from the evidence and the kind of each hypothesis, and sorts by them.
+// Evidence of an effect or nuisance contains its share of the prior among its rivals already
+// (NamedEvidence); that of a pair likewise.
+void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
+
+// What a posterior allows to be said.
+struct Naming {
+  enum class Level {
+    kNothing,  // "nothing is missing" is among the hypotheses that must be kept
+    kMember,   // one hypothesis: an effect, a nuisance or a pair
+    kFamily,   // several effects of one family
+    kSet,      // several hypotheses of different families
+  };
+  Level level = Level::kNothing;
+  // The smallest set that reaches kNamingProbability: indices of the posterior, in its order.
+  std::vector<size_t> kept;
+};
+Naming NameFrom(const std::vector<HypothesisProbability>& posterior);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_DECISION_RULES_H_

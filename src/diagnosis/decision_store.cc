@@ -1,0 +1,158 @@
+#include "diagnosis/decision_store.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/json_number.h"
+#include "core/npy.h"
+#include "record/schema_version.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSchemaVersion = 1;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
+    {HypothesisKind::kEffect, "effect"},
+    {HypothesisKind::kNuisance, "nuisance"},
+    {HypothesisKind::kUnknownForce, "unknown_force"}};
+
+std::filesystem::path ProductsFile(const std::filesystem::path& folder, size_t space) {
+  return folder / fmt::format("products_{}.npy", space);
+}
+
+Eigen::MatrixXd ProductsOf(const LinearGaussianModel& model) {
+  const Eigen::Index size = model.products().rows();
+  Eigen::MatrixXd all(size + 1, size + 1);
+  all(0, 0) = model.squares();
+  all.col(0).tail(size) = model.toward();
+  all.row(0).tail(size) = model.toward().transpose();
+  all.bottomRightCorner(size, size) = model.products();
+  return all;
+}
+
+json SpaceToJson(const HypothesisSpace& space) {
+  json priors = json::array(), hypotheses = json::array();
+  for (const LinearPrior& prior : space.model.priors())
+    priors.push_back({NumberOrNull(prior.deviation), prior.positive});
+  for (const WeighedHypothesis& one : space.hypotheses) {
+    const char* kind = "";
+    for (const auto& [known, name] : kKinds)
+      if (known == one.kind) kind = name;
+    hypotheses.push_back(
+        {{"kind", kind}, {"name", one.name}, {"variant", one.variant}, {"columns", one.columns}});
+  }
+  return {{"variance", space.variance},
+          {"rows", space.rows},
+          {"base", space.base},
+          {"priors", priors},
+          {"hypotheses", hypotheses}};
+}
+
+HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& products) {
+  std::vector<LinearPrior> priors;
+  for (const json& prior : value.at("priors"))
+    priors.push_back({0, NumberOr(prior.at(0), kInfinity), prior.at(1).get<bool>()});
+  const Eigen::MatrixXd all = ReadNpyMatrix(products);
+  const Eigen::Index size = static_cast<Eigen::Index>(priors.size());
+  if (all.rows() != size + 1 || all.cols() != size + 1)
+    throw InputError(fmt::format("{}: has {} rows; expected {}, as in decision.json",
+                                 products.string(), all.rows(), size + 1));
+  HypothesisSpace space;
+  space.model = LinearGaussianModel::FromProducts(
+      all(0, 0), all.col(0).tail(size), all.bottomRightCorner(size, size), std::move(priors));
+  space.variance = value.at("variance");
+  space.rows = value.at("rows");
+  space.base = value.at("base").get<std::vector<int>>();
+  for (const json& one : value.at("hypotheses")) {
+    WeighedHypothesis& hypothesis = space.hypotheses.emplace_back();
+    for (const auto& [kind, name] : kKinds)
+      if (one.at("kind") == name) hypothesis.kind = kind;
+    hypothesis.name = one.at("name");
+    hypothesis.variant = one.at("variant");
+    hypothesis.columns = one.at("columns").get<std::vector<int>>();
+  }
+  return space;
+}
+
+json RefitsToJson(const std::vector<WeighedRefit>& refits) {
+  json all = json::array();
+  for (const WeighedRefit& refit : refits)
+    all.push_back({{"effect", refit.effect},
+                   {"evidence", refit.evidence},
+                   {"space", SpaceToJson(refit.space)}});
+  return all;
+}
+
+}  // namespace
+
+void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& folder) {
+  MakeFolder(folder);
+  json nuisances = json::array(), families = json::object();
+  for (const WeighedNuisance& nuisance : input.nuisances)
+    nuisances.push_back({{"name", nuisance.name}, {"evidence", nuisance.evidence}});
+  for (const auto& [effect, family] : input.families) families[effect] = FamilyName(family);
+  json in_place = json::array();
+  for (const WeighedRefit& refit : input.in_place_of_adopted)
+    in_place.push_back({{"effect", refit.effect}, {"evidence", refit.evidence}});
+  const json all = {{"schema_version", kSchemaVersion},
+                    {"baseline", SpaceToJson(input.baseline)},
+                    {"refits", RefitsToJson(input.refits)},
+                    {"nuisances", nuisances},
+                    {"adopted", input.adopted},
+                    {"adopted_evidence", input.adopted_evidence},
+                    {"in_place_of_adopted", in_place},
+                    {"families", families},
+                    {"natural_value", input.natural_value},
+                    {"discretisation", input.discretisation},
+                    {"noise_is_known", input.noise_is_known},
+                    {"is_anything_detectable", input.is_anything_detectable},
+                    {"seed", input.seed}};
+  WriteNpy(ProductsFile(folder, 0), ProductsOf(input.baseline.model));
+  for (size_t k = 0; k < input.refits.size(); ++k)
+    WriteNpy(ProductsFile(folder, k + 1), ProductsOf(input.refits[k].space.model));
+  WriteFileAtomically(folder / "decision.json", all.dump(1) + "\n");
+}
+
+DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "decision.json";
+  std::ifstream stream(file);
+  if (!stream) throw InputError(file.string() + ": cannot be opened");
+  try {
+    const json value = json::parse(stream);
+    RequireSchemaVersion(value, kSchemaVersion, "lacuna diagnose");
+    DecisionInput input;
+    input.baseline = SpaceFromJson(value.at("baseline"), ProductsFile(folder, 0));
+    for (const json& one : value.at("refits"))
+      input.refits.push_back(
+          {one.at("effect"), one.at("evidence"),
+           SpaceFromJson(one.at("space"), ProductsFile(folder, input.refits.size() + 1))});
+    for (const json& one : value.at("nuisances"))
+      input.nuisances.push_back({one.at("name"), one.at("evidence")});
+    input.adopted = value.at("adopted").get<std::vector<std::string>>();
+    input.adopted_evidence = value.at("adopted_evidence");
+    for (const json& one : value.at("in_place_of_adopted"))
+      input.in_place_of_adopted.push_back({one.at("effect"), one.at("evidence"), {}});
+    for (const auto& [effect, family] : value.at("families").items())
+      input.families[effect] = FamilyFromName(family);
+    input.natural_value = value.at("natural_value").get<std::map<std::string, double>>();
+    input.discretisation = value.at("discretisation");
+    input.noise_is_known = value.at("noise_is_known");
+    input.is_anything_detectable = value.at("is_anything_detectable");
+    input.seed = value.at("seed");
+    return input;
+  } catch (const json::exception& problem) {
+    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
+  }
+}
+
+}  // namespace lacuna

@@ -1,0 +1,79 @@
+// The evidence of hypotheses beside columns that are already in the model, for one residual after
+// another.
+//
+// Let B be the columns that are taken, with the prior covariance P, and v the variance of the
+// noise. Marginalising over the amounts of B turns the products of the other columns and the
+// residual into
+//   t' = t − G_B M⁻¹ t_B,   S = G − G_B M⁻¹ G_Bᵀ,   M = BᵀB + v P⁻¹,
+// with t = Aᵀr and G = AᵀA. The logarithm of the Bayes factor of a hypothesis with columns h and
+// the prior covariance Q is then
+//   ½ t'_hᵀ (S_hh + v Q⁻¹)⁻¹ t'_h / v − ½ ln det(I + Q S_hh / v).
+// A prior that requires a positive amount is truncated at 0. An unknown smooth force has the prior
+// covariance s² I with unknown s: its Bayes factor is the mean over kForceScales.
+//
+// The matrices depend on the columns alone, so that thousands of simulated residuals cost little.
+#ifndef LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_
+#define LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnosis/hypothesis_space.h"
+
+namespace lacuna {
+
+// Standard deviations of an unknown smooth force, m/s², each as probable as the others: from a
+// hundredth of gravity to gravity.
+inline constexpr double kForceScales[] = {0.1, 0.3, 1, 3, 10};
+
+// The products of one residual: rᵀr and t.
+struct ResidualProducts {
+  double squares = 0;
+  Eigen::VectorXd toward;
+};
+
+class ProjectedHypotheses {
+ public:
+  // `further`: columns beside the base that are taken, too. The space must outlive this.
+  explicit ProjectedHypotheses(const HypothesisSpace& space, const std::vector<int>& further = {});
+
+  // t'
+  Eigen::VectorXd Project(const Eigen::VectorXd& toward) const;
+  // min over the taken columns of ‖r + B b‖² + v bᵀP⁻¹b.
+  double Misfit(const ResidualProducts& residual) const;
+  // The logarithm of the Bayes factor of each hypothesis of the space against the taken columns
+  // alone, from t'. 0 for a hypothesis whose columns are taken.
+  Eigen::VectorXd LogBayesFactors(const Eigen::VectorXd& projected) const;
+  // The amounts with the largest posterior density of a hypothesis that is not an unknown force,
+  // and their covariance matrix.
+  struct Amounts {
+    Eigen::VectorXd value;
+    Eigen::MatrixXd covariance;
+  };
+  Amounts AmountsOf(size_t hypothesis, const Eigen::VectorXd& projected) const;
+  // S
+  const Eigen::MatrixXd& products() const { return products_; }
+
+ private:
+  struct Scale {
+    Eigen::MatrixXd gain;  // ½ (S_hh + v Q⁻¹)⁻¹ / v
+    double occam = 0;      // ½ ln det(I + Q S_hh / v)
+  };
+  struct Own {
+    bool taken = false;
+    bool positive = false;
+    std::vector<Scale> scales;  // one, or one per entry of kForceScales
+  };
+  Own Prepare(const WeighedHypothesis& hypothesis) const;
+
+  const HypothesisSpace& space_;
+  std::vector<int> taken_;
+  Eigen::MatrixXd weights_;   // M⁻¹ G_Bᵀ, taken × columns
+  Eigen::MatrixXd inverse_;   // M⁻¹
+  Eigen::MatrixXd products_;  // S
+  std::vector<Own> own_;
+};
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_

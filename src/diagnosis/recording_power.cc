@@ -1,0 +1,213 @@
+#include "diagnosis/recording_power.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "diagnosis/adequacy.h"
+#include "diagnosis/decision.h"
+#include "diagnosis/decision_rules.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = HypothesisProbability::Kind;
+
+// Simulated recordings for each truth, and draws of noise from which the tests of adequacy take
+// their distributions. More: finer frequencies; 200 give them to within 0.035.
+constexpr int kDraws = 200;
+
+// The statistics of a test of adequacy under noise, beside one variant.
+struct NullOfVariant {
+  std::unique_ptr<ProjectedHypotheses> projected;
+  // The value that noise exceeds with a third of kAdequacyLevel (Bonferroni), for each statistic.
+  double unknown_force = 0, further = 0, variance = 0;
+};
+
+class SimulatedDecisions {
+ public:
+  explicit SimulatedDecisions(const DecisionInput& input)
+      : input_(input), space_(input.baseline), beside_nothing_(space_), noise_(space_) {
+    for (int k = 0; k < kDraws; ++k)
+      draws_.push_back(noise_.Draw(input.seed + 2, static_cast<uint64_t>(k)));
+  }
+
+  const ProjectedHypotheses& beside_nothing() const { return beside_nothing_; }
+  const ResidualProducts& draw(int k) const { return draws_[static_cast<size_t>(k)]; }
+
+  // What the rules say of a residual: names, or none; whether something unknown is left.
+  struct Outcome {
+    std::vector<std::string> names;
+    bool is_unknown_left = false;
+  };
+  Outcome Decide(const ResidualProducts& residual) {
+    const std::vector<NamedEvidence> evidence = SumVariants(
+        space_, beside_nothing_.LogBayesFactors(beside_nothing_.Project(residual.toward)));
+    std::vector<HypothesisProbability> posterior =
+        HypothesesOf(evidence, input_.families, input_.discretisation);
+    SetPosterior(&posterior);
+    const HypothesisProbability& best = posterior.front();
+    int variant = -1;
+    for (const NamedEvidence& named : evidence)
+      if (!best.names.empty() && named.name == best.names.front())
+        variant = static_cast<int>(named.best);
+    const NullOfVariant& null = NullOf(variant);
+    const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, residual);
+    Outcome outcome;
+    outcome.is_unknown_left =
+        left.unknown_force > null.unknown_force || left.further > null.further ||
+        (input_.noise_is_known && left.variance / space_.variance > null.variance);
+    const Naming naming = NameFrom(posterior);
+    if (naming.level == Naming::Level::kNothing) return outcome;
+    for (const size_t k : naming.kept)
+      for (const std::string& name : posterior[k].names) outcome.names.push_back(name);
+    return outcome;
+  }
+
+ private:
+  // `variant`: a hypothesis of the space; −1: none.
+  const NullOfVariant& NullOf(int variant) {
+    const auto [at, is_new] = nulls_.try_emplace(variant);
+    NullOfVariant& null = at->second;
+    if (!is_new) return null;
+    null.projected = std::make_unique<ProjectedHypotheses>(
+        space_,
+        variant < 0 ? std::vector<int>{} : space_.hypotheses[static_cast<size_t>(variant)].columns);
+    std::vector<double> drawn[3];
+    for (const ResidualProducts& draw : draws_) {
+      const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, draw);
+      drawn[0].push_back(left.unknown_force);
+      drawn[1].push_back(left.further);
+      drawn[2].push_back(left.variance / space_.variance);
+    }
+    const auto quantile = [](std::vector<double>* values) {
+      std::sort(values->begin(), values->end());
+      return (*values)[static_cast<size_t>((1 - kAdequacyLevel / 3) * kDraws)];
+    };
+    null.unknown_force = quantile(&drawn[0]);
+    null.further = quantile(&drawn[1]);
+    null.variance = quantile(&drawn[2]);
+    return null;
+  }
+
+  const DecisionInput& input_;
+  const HypothesisSpace& space_;
+  ProjectedHypotheses beside_nothing_;
+  NoiseDraws noise_;
+  std::vector<ResidualProducts> draws_;
+  std::map<int, NullOfVariant> nulls_;
+};
+
+// The best variant of an effect in the recorded residual, and its amounts there.
+struct FoundEffect {
+  std::vector<int> columns;
+  Eigen::VectorXd amounts;
+};
+
+FoundEffect Find(const DecisionInput& input, const ProjectedHypotheses& beside_nothing,
+                 const std::string& effect) {
+  const Eigen::VectorXd projected = beside_nothing.Project(input.baseline.model.toward());
+  FoundEffect found;
+  for (const NamedEvidence& named :
+       SumVariants(input.baseline, beside_nothing.LogBayesFactors(projected)))
+    if (named.kind == HypothesisKind::kEffect && named.name == effect) {
+      found.columns = input.baseline.hypotheses[named.best].columns;
+      found.amounts = beside_nothing.AmountsOf(named.best, projected).value;
+    }
+  return found;
+}
+
+// The products of the residual that an effect leaves in a model without it, and noise:
+// r = ε − C a.
+ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& effect,
+                            ResidualProducts noise) {
+  if (effect.columns.empty()) return noise;
+  const Eigen::MatrixXd& products = space.model.products();
+  noise.squares += effect.amounts.dot(products(effect.columns, effect.columns) * effect.amounts) -
+                   2 * effect.amounts.dot(noise.toward(effect.columns));
+  noise.toward -= products(Eigen::all, effect.columns) * effect.amounts;
+  return noise;
+}
+
+EffectFamily FamilyOf(const DecisionInput& input, const std::string& name) {
+  const auto family = input.families.find(name);
+  return family != input.families.end() ? family->second : EffectFamily::kOther;
+}
+
+}  // namespace
+
+std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
+                                         const std::vector<std::string>& effects) {
+  SimulatedDecisions decisions(input);
+  std::vector<RecordedPower> power;
+  std::vector<std::string> truths = {""};
+  truths.insert(truths.end(), effects.begin(), effects.end());
+  for (const std::string& truth : truths) {
+    RecordedPower& own = power.emplace_back();
+    FoundEffect effect;
+    if (!truth.empty()) {
+      own.truth = {truth};
+      effect = Find(input, decisions.beside_nothing(), truth);
+    }
+    std::map<std::string, int> wrong;
+    for (int k = 0; k < kDraws; ++k) {
+      const auto outcome = decisions.Decide(WithEffect(input.baseline, effect, decisions.draw(k)));
+      constexpr double kShare = 1.0 / kDraws;
+      if (outcome.is_unknown_left)
+        own.unknown += kShare;
+      else if (outcome.names.size() > 1 || (outcome.names.empty() && !truth.empty()))
+        own.open += kShare;
+      else if (outcome.names.empty() || outcome.names.front() == truth)
+        own.named += kShare;
+      else {
+        const std::string& name = outcome.names.front();
+        const bool is_member = !truth.empty() && input.families.count(name) > 0 &&
+                               FamilyOf(input, name) == FamilyOf(input, truth);
+        (is_member ? own.wrong_member : own.wrong) += kShare;
+        ++wrong[name];
+      }
+    }
+    int most = 0;
+    for (const auto& [name, count] : wrong) {
+      if (count <= most) continue;
+      most = count;
+      own.most_wrong = name;
+    }
+  }
+  return power;
+}
+
+std::vector<RecordedSeparation> Separations(const DecisionInput& input,
+                                            const std::vector<std::string>& effects) {
+  const HypothesisSpace& space = input.baseline;
+  const ProjectedHypotheses beside_nothing(space);
+  // The squared distance of the prediction of `found` from the nearest one of another effect.
+  const auto distance = [&](const FoundEffect& found, const std::string& other) {
+    const Eigen::MatrixXd& visible = beside_nothing.products();
+    double least = found.amounts.dot(visible(found.columns, found.columns) * found.amounts);
+    const double own = least;
+    for (const WeighedHypothesis& hypothesis : space.hypotheses) {
+      if (hypothesis.kind != HypothesisKind::kEffect || hypothesis.name != other) continue;
+      const Eigen::VectorXd toward = visible(hypothesis.columns, found.columns) * found.amounts;
+      const Eigen::MatrixXd square = visible(hypothesis.columns, hypothesis.columns);
+      const double explained = toward.dot(square.completeOrthogonalDecomposition().solve(toward));
+      least = std::min(least, own - explained);
+    }
+    return std::max(0.0, least) / space.variance;
+  };
+  std::vector<FoundEffect> found;
+  for (const std::string& effect : effects) found.push_back(Find(input, beside_nothing, effect));
+  std::vector<RecordedSeparation> separations;
+  for (size_t a = 0; a < effects.size(); ++a)
+    for (size_t b = a + 1; b < effects.size(); ++b) {
+      if (found[a].columns.empty() || found[b].columns.empty()) continue;
+      separations.push_back(
+          {effects[a], effects[b],
+           std::min(distance(found[a], effects[b]), distance(found[b], effects[a]))});
+    }
+  return separations;
+}
+
+}  // namespace lacuna

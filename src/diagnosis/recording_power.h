@@ -1,0 +1,31 @@
+// How well these recordings could have told: the decision is repeated on simulated residuals.
+//
+// For each hypothesis that is still of interest, residuals are drawn as if it were true at the size
+// that was found, with the noise of the recordings, from the products of the recordings themselves
+// (hypothesis_space.h). The same rules decide upon each of them to first order. The frequencies say
+// what the recordings would have shown, and are the probabilities of a right and of a wrong name.
+#ifndef LACUNA_DIAGNOSIS_RECORDING_POWER_H_
+#define LACUNA_DIAGNOSIS_RECORDING_POWER_H_
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/decision_input.h"
+#include "record/decision_record.h"
+
+namespace lacuna {
+
+// `effects`: the effects that are taken for the truth, one after another, after "nothing". The
+// result depends on the arguments and on DecisionInput::seed alone.
+std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
+                                         const std::vector<std::string>& effects);
+
+// λ between each pair of these effects: how far the prediction of the first at the size that was
+// found is from the nearest prediction of any variant of the second, the smaller of the two
+// directions.
+std::vector<RecordedSeparation> Separations(const DecisionInput& input,
+                                            const std::vector<std::string>& effects);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_DIAGNOSIS_RECORDING_POWER_H_

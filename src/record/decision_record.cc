@@ -1,0 +1,110 @@
+#include "record/decision_record.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "core/json_number.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+using Kind = HypothesisProbability::Kind;
+
+constexpr std::pair<Kind, const char*> kKinds[] = {{Kind::kNothing, "nothing"},
+                                                   {Kind::kEffect, "effect"},
+                                                   {Kind::kNuisance, "nuisance"},
+                                                   {Kind::kPair, "pair"}};
+
+std::string KindName(Kind kind) {
+  for (const auto& [known, name] : kKinds)
+    if (known == kind) return name;
+  return "";
+}
+
+Kind KindFromName(const std::string& name) {
+  for (const auto& [kind, known] : kKinds)
+    if (known == name) return kind;
+  throw InputError("unknown kind of hypothesis \"" + name + "\"");
+}
+
+}  // namespace
+
+double DecisionRecord::FamilyProbability(EffectFamily family) const {
+  double sum = 0;
+  for (const HypothesisProbability& hypothesis : probabilities)
+    if (hypothesis.kind == Kind::kEffect && hypothesis.family == family)
+      sum += hypothesis.probability;
+  return sum;
+}
+
+json DecisionToJson(const DecisionRecord& decision) {
+  json probabilities = json::array(), power = json::array(), separations = json::array();
+  for (const HypothesisProbability& one : decision.probabilities)
+    probabilities.push_back({{"kind", KindName(one.kind)},
+                             {"names", one.names},
+                             {"family", FamilyName(one.family)},
+                             {"evidence", NumberOrNull(one.evidence)},
+                             {"probability", one.probability}});
+  for (const RecordedPower& one : decision.power)
+    power.push_back({{"truth", one.truth},
+                     {"named", one.named},
+                     {"wrong_member", one.wrong_member},
+                     {"wrong", one.wrong},
+                     {"open", one.open},
+                     {"unknown", one.unknown},
+                     {"most_wrong", one.most_wrong}});
+  for (const RecordedSeparation& one : decision.separations)
+    separations.push_back(
+        {{"first", one.first}, {"second", one.second}, {"lambda", NumberOrNull(one.lambda)}});
+  const RecordedAdequacy& adequacy = decision.adequacy;
+  return {{"probabilities", probabilities},
+          {"adequacy",
+           {{"beside", adequacy.beside},
+            {"p_unknown_force", adequacy.p_unknown_force},
+            {"p_further", adequacy.p_further},
+            {"p_variance", adequacy.p_variance},
+            {"p", adequacy.p},
+            {"is_adequate", adequacy.is_adequate},
+            {"further", adequacy.further},
+            {"further_evidence", NumberOrNull(adequacy.further_evidence)},
+            {"rms_over_sigma", adequacy.rms_over_sigma}}},
+          {"power", power},
+          {"separations", separations},
+          {"chance", NumberOrNull(decision.chance)}};
+}
+
+std::vector<HypothesisProbability> ProbabilitiesFromJson(const json& value) {
+  std::vector<HypothesisProbability> probabilities;
+  for (const json& one : value)
+    probabilities.push_back({KindFromName(one.at("kind")), one.at("names"),
+                             FamilyFromName(one.at("family")), NumberOr(one.at("evidence")),
+                             one.at("probability")});
+  return probabilities;
+}
+
+DecisionRecord DecisionFromJson(const json& value) {
+  DecisionRecord decision;
+  decision.probabilities = ProbabilitiesFromJson(value.at("probabilities"));
+  for (const json& one : value.at("power"))
+    decision.power.push_back({one.at("truth"), one.at("named"), one.at("wrong_member"),
+                              one.at("wrong"), one.at("open"), one.at("unknown"),
+                              one.at("most_wrong")});
+  for (const json& one : value.at("separations"))
+    decision.separations.push_back({one.at("first"), one.at("second"), NumberOr(one.at("lambda"))});
+  const json& adequacy = value.at("adequacy");
+  decision.adequacy = {adequacy.at("beside"),
+                       adequacy.at("p_unknown_force"),
+                       adequacy.at("p_further"),
+                       adequacy.at("p_variance"),
+                       adequacy.at("p"),
+                       adequacy.at("is_adequate"),
+                       adequacy.at("further"),
+                       NumberOr(adequacy.at("further_evidence")),
+                       adequacy.at("rms_over_sigma")};
+  decision.chance = NumberOr(value.at("chance"));
+  return decision;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,76 @@
+// What a diagnosis believes, and how well the recordings could have told: the part of
+// diagnosis/diagnosis.json from which the verdict follows.
+#ifndef LACUNA_RECORD_DECISION_RECORD_H_
+#define LACUNA_RECORD_DECISION_RECORD_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "record/effect_card.h"
+
+namespace lacuna {
+
+// The posterior probability of one hypothesis about what is missing.
+struct HypothesisProbability {
+  enum class Kind { kNothing, kEffect, kNuisance, kPair };
+  Kind kind = Kind::kNothing;
+  std::vector<std::string> names;              // none for "nothing", two for a pair of effects
+  EffectFamily family = EffectFamily::kOther;  // of an effect
+  // The log Bayes factor against the model as it is, variants summed, without prior odds.
+  double evidence = 0;
+  double probability = 0;
+};
+
+// Whether the most probable hypothesis leaves what noise leaves: tail probabilities under noise
+// alone (diagnosis/adequacy.h).
+struct RecordedAdequacy {
+  std::vector<std::string> beside;  // the hypothesis that was tested; empty: nothing
+  double p_unknown_force = 1, p_further = 1, p_variance = 1;
+  double p = 1;                 // of the smallest of the three
+  bool is_adequate = true;      // p is not below the level of the test
+  std::string further;          // the best further effect or nuisance beside it
+  double further_evidence = 0;  // its log Bayes factor, with the prior among its rivals
+  double rms_over_sigma = 0;    // of the whitened residual of all frames
+};
+
+// What these recordings would have said, had this hypothesis been true at the size that was found:
+// frequencies among simulated recordings. They sum to 1.
+struct RecordedPower {
+  std::vector<std::string> truth;  // empty: nothing is missing
+  double named = 0;                // this hypothesis was named (or nothing, where that is true)
+  double wrong_member = 0;         // another effect of its family was named
+  double wrong = 0;                // an effect of another family, or a nuisance, was named
+  double open = 0;                 // several hypotheses were left
+  double unknown = 0;              // something unknown was reported to be left
+  std::string most_wrong;          // the wrong name that occurred most often; empty: none did
+};
+
+// How well the recordings separate two effects at the sizes that were found: λ is the squared
+// distance of their predictions in units of the noise, after everything that is fitted has been
+// projected out. λ = 12 gives a right decision in four cases of five.
+struct RecordedSeparation {
+  std::string first, second;
+  double lambda = 0;
+};
+
+struct DecisionRecord {
+  std::vector<HypothesisProbability> probabilities;  // the most probable one first
+  RecordedAdequacy adequacy;
+  std::vector<RecordedPower> power;
+  std::vector<RecordedSeparation> separations;
+  double chance = 0;  // the evidence that noise gives to the best effect in 1 of 20 recordings
+
+  // The summed probability of a family.
+  double FamilyProbability(EffectFamily family) const;
+};
+
+nlohmann::json DecisionToJson(const DecisionRecord& decision);
+// Both throw nlohmann::json::exception and InputError. The first reads the list under the key
+// "probabilities" alone.
+std::vector<HypothesisProbability> ProbabilitiesFromJson(const nlohmann::json& value);
+DecisionRecord DecisionFromJson(const nlohmann::json& value);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_DECISION_RECORD_H_

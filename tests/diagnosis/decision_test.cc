@@ -1,0 +1,225 @@
+#include "diagnosis/decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "diagnosis/decision_maker.h"
+#include "diagnosis/decision_rules.h"
+#include "diagnosis/decision_store.h"
+#include "diagnosis/recording_power.h"
+#include "diagnosis/synthetic_space.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+using Kind = HypothesisProbability::Kind;
+
+DecisionInput InputOf(const SyntheticSpace& synthetic, const Eigen::VectorXd& residual) {
+  DecisionInput input;
+  input.baseline = synthetic.With(residual);
+  input.families = {{"drag", EffectFamily::kLossOutside},
+                    {"mass_damping", EffectFamily::kLossOutside},
+                    {"gravity", EffectFamily::kSteadyForce},
+                    {"fibres", EffectFamily::kStiffnessDistribution}};
+  input.noise_is_known = true;
+  return input;
+}
+
+HypothesisProbability One(Kind kind, const std::string& name, double evidence,
+                          EffectFamily family = EffectFamily::kOther) {
+  HypothesisProbability one;
+  one.kind = kind;
+  if (!name.empty()) one.names = {name};
+  one.evidence = evidence;
+  one.family = family;
+  return one;
+}
+
+TEST(DecisionRules, PosteriorIsPriorTimesBayesFactor) {
+  std::vector<HypothesisProbability> all = {One(Kind::kNothing, "", 0), One(Kind::kEffect, "a", 2),
+                                            One(Kind::kNuisance, "n", 1)};
+  SetPosterior(&all);
+  const double a = kPriorEffects * std::exp(2), n = kPriorNuisances * std::exp(1);
+  EXPECT_EQ(all[0].names, std::vector<std::string>{"a"});
+  EXPECT_NEAR(all[0].probability, a / (a + n + kPriorNothing), 1e-12);
+  EXPECT_NEAR(all[0].probability + all[1].probability + all[2].probability, 1, 1e-12);
+}
+
+TEST(DecisionRules, NamesAMemberAFamilyOrASet) {
+  const auto naming = [](std::vector<HypothesisProbability> all) {
+    SetPosterior(&all);
+    return NameFrom(all);
+  };
+  const auto loss = EffectFamily::kLossOutside, steady = EffectFamily::kSteadyForce;
+  const HypothesisProbability nothing = One(Kind::kNothing, "", 0);
+  EXPECT_EQ(
+      naming({nothing, One(Kind::kEffect, "a", 20, loss), One(Kind::kEffect, "b", 9, loss)}).level,
+      Naming::Level::kMember);
+  const Naming family =
+      naming({nothing, One(Kind::kEffect, "a", 20, loss), One(Kind::kEffect, "b", 19, loss),
+              One(Kind::kEffect, "c", 5, steady)});
+  EXPECT_EQ(family.level, Naming::Level::kFamily);
+  EXPECT_THAT(family.kept, ElementsAre(0, 1));
+  EXPECT_EQ(
+      naming({nothing, One(Kind::kEffect, "a", 20, loss), One(Kind::kEffect, "b", 19, steady)})
+          .level,
+      Naming::Level::kSet);
+  EXPECT_EQ(naming({nothing, One(Kind::kEffect, "a", 2, loss)}).level, Naming::Level::kNothing);
+}
+
+TEST(Decide, CallsNoiseAdequate) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(11));
+  Decision decision = Decide(input);
+  EXPECT_EQ(decision.verdict, Verdict::kAdequate);
+  EXPECT_THAT(decision.names, testing::IsEmpty());
+  EXPECT_EQ(decision.record.probabilities.front().kind, Kind::kNothing);
+  input.is_anything_detectable = false;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kNoPower);
+}
+
+TEST(Decide, NamesAnEffectANuisanceOrTheEffectsOfOneFamily) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(12);
+  const Decision gravity =
+      Decide(InputOf(synthetic, noise - synthetic.Of("gravity") * Eigen::Vector3d(9, -7, 5)));
+  EXPECT_EQ(gravity.verdict, Verdict::kMissing);
+  EXPECT_THAT(gravity.names, ElementsAre("gravity"));
+  const Decision clock = Decide(InputOf(synthetic, noise - 9 * synthetic.Of("clock")));
+  EXPECT_EQ(clock.verdict, Verdict::kNuisance);
+  EXPECT_THAT(clock.names, ElementsAre("clock"));
+  // λ between drag and mass damping is about (8 · 0.3)² = 6.
+  const Decision drag = Decide(InputOf(synthetic, noise - 8 * synthetic.Of("drag")));
+  EXPECT_GT(drag.record.FamilyProbability(EffectFamily::kLossOutside), 0.99);
+  const SyntheticSpace alike(0.05);
+  const Decision either = Decide(InputOf(alike, noise - 8 * alike.Of("drag")));
+  EXPECT_EQ(either.verdict, Verdict::kAmbiguous);
+  EXPECT_THAT(either.names, UnorderedElementsAre("drag", "mass_damping"));
+}
+
+TEST(Decide, NamesTwoEffectsThatAreBothMissing) {
+  const SyntheticSpace synthetic;
+  const Decision decision = Decide(InputOf(
+      synthetic, SyntheticSpace::Noise(13) - synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8) -
+                     10 * synthetic.Of("fibres")));
+  EXPECT_EQ(decision.verdict, Verdict::kMissing);
+  EXPECT_THAT(decision.names, UnorderedElementsAre("gravity", "fibres"));
+  EXPECT_TRUE(decision.record.adequacy.is_adequate);
+}
+
+// An effect that explains a part of an unknown force is not named as what is missing.
+TEST(Decide, SaysThatSomethingUnknownIsLeft) {
+  const SyntheticSpace synthetic;
+  const Decision decision =
+      Decide(InputOf(synthetic, SyntheticSpace::Noise(14) - 8 * synthetic.Of("fibres") +
+                                    4 * synthetic.unknown.rowwise().sum()));
+  EXPECT_EQ(decision.verdict, Verdict::kNotInLibrary);
+  EXPECT_THAT(decision.names, ElementsAre("fibres"));
+  EXPECT_FALSE(decision.record.adequacy.is_adequate);
+}
+
+// A refit replaces the first-order evidence, and its own residual is tested.
+TEST(Decide, BelievesARefitMoreThanFirstOrder) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(15);
+  DecisionInput input = InputOf(synthetic, noise - 8 * synthetic.Of("drag"));
+  input.refits.push_back({"drag", 3, synthetic.With(noise)});
+  input.refits.push_back({"mass_damping", 40, synthetic.With(noise)});
+  const Decision decision = Decide(input);
+  EXPECT_THAT(decision.names, ElementsAre("mass_damping"));
+  // The uncertainty in the discretisation error counts against every effect.
+  input.discretisation = 50;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
+}
+
+// Nuisances in the base compete with effects in their place.
+TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(16));
+  input.adopted = {"jitter"};
+  input.adopted_evidence = 200;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kNuisance);
+  EXPECT_THAT(Decide(input).names, ElementsAre("jitter"));
+  input.in_place_of_adopted.push_back({"drag", 199, {}});
+  EXPECT_EQ(Decide(input).verdict, Verdict::kAmbiguous);
+  input.in_place_of_adopted.front().evidence = 220;
+  EXPECT_THAT(Decide(input).names, ElementsAre("drag"));
+}
+
+TEST(NaturalValue, IsBelievedWhereItIsMet) {
+  const Eigen::Vector3d narrow = Eigen::Vector3d::Constant(0.3);
+  const double met = NaturalValueEvidence({-2.7, 0.2, -9.4}, narrow, 9.8, 9.80665);
+  EXPECT_GT(met, 1.5);
+  const double missed = NaturalValueEvidence({-2.7, 0.2, -5}, narrow, 9.8, 9.80665);
+  EXPECT_NEAR(missed, std::log(0.5), 0.01);
+  EXPECT_EQ(NaturalValueEvidence({-2.7, 0.2, -9.4}, {5, 5, 5}, 9.8, 9.80665), 0);
+  // Against the integral over the sphere by brute force.
+  const Eigen::Vector3d mean(0, 0, 9.6), deviation(0.2, 0.2, 0.3);
+  const auto density = [](const Eigen::Vector3d& x, const Eigen::Vector3d& m,
+                          const Eigen::Vector3d& s) {
+    return std::exp(-0.5 * (x - m).cwiseQuotient(s).squaredNorm()) /
+           (s.prod() * std::pow(2 * M_PI, 1.5));
+  };
+  double sum = 0;
+  constexpr int kSteps = 2000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = 1 - 0.01 * (i + 0.5) / kSteps;  // the posterior is narrow about the pole
+    for (int j = 0; j < 16; ++j) {
+      const double angle = 2 * M_PI * j / 16, r = std::sqrt(1 - z * z);
+      sum += density(9.80665 * Eigen::Vector3d(r * std::cos(angle), r * std::sin(angle), z), mean,
+                     deviation) *
+             0.01 / 2 / kSteps / 16;
+    }
+  }
+  const double factor = sum / density({0, 0, 9.80665}, {0, 0, 0}, Eigen::Vector3d::Constant(9.8));
+  EXPECT_NEAR(NaturalValueEvidence(mean, deviation, 9.8, 9.80665), std::log(0.5 + 0.5 * factor),
+              0.1);
+}
+
+TEST(RecordingPower, SaysWhatTheRecordingsCouldTell) {
+  const SyntheticSpace alike(0.05);
+  const DecisionInput input =
+      InputOf(alike, SyntheticSpace::Noise(17) - 8 * alike.Of("drag") - 10 * alike.Of("fibres"));
+  const std::vector<RecordedPower> power = SimulatePower(input, {"drag", "fibres"});
+  ASSERT_EQ(power.size(), 3u);
+  for (const RecordedPower& one : power)
+    EXPECT_NEAR(one.named + one.wrong_member + one.wrong + one.open + one.unknown, 1, 1e-9);
+  EXPECT_GT(power[0].named, 0.9);  // nothing
+  EXPECT_GT(power[1].open, 0.7);   // drag, or mass damping
+  EXPECT_GT(power[2].named, 0.9);  // fibres
+  const std::vector<RecordedSeparation> separations =
+      Separations(input, {"drag", "mass_damping", "fibres"});
+  ASSERT_EQ(separations.size(), 3u);
+  EXPECT_LT(separations[0].lambda, 1);
+  EXPECT_GT(separations[1].lambda, kSeparableLambda);
+}
+
+TEST(DecisionStore, DecidesAgainAsBefore) {
+  const SyntheticSpace synthetic;
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(18) - 9 * synthetic.Of("drag"));
+  input.refits.push_back({"drag", 30, synthetic.With(SyntheticSpace::Noise(18))});
+  input.nuisances.push_back({"clock", 2});
+  input.natural_value["gravity"] = 1.5;
+  const TemporaryFolder folder;
+  SaveDecisionInput(input, folder / "decision");
+  const DecisionInput read = LoadDecisionInput(folder / "decision");
+  const Decision before = Decide(input), after = Decide(read);
+  EXPECT_EQ(after.verdict, before.verdict);
+  EXPECT_EQ(after.names, before.names);
+  ASSERT_EQ(after.record.probabilities.size(), before.record.probabilities.size());
+  for (size_t k = 0; k < before.record.probabilities.size(); ++k)
+    EXPECT_EQ(after.record.probabilities[k].probability,
+              before.record.probabilities[k].probability);
+  EXPECT_EQ(after.record.adequacy.p, before.record.adequacy.p);
+  std::filesystem::remove(folder / "decision" / "products_1.npy");
+  EXPECT_THROW(LoadDecisionInput(folder / "decision"), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
