@@ -97,7 +97,8 @@ void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, cons
       if (effect.scored.candidate.type != best || !ranked.IsUsable(k)) continue;
       for (WeighedRefit& refit : input.refits)
         if (refit.effect == best)
-          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without);
+          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without,
+                                   context.ranking.scene);
       decision = Decide(input);
     }
   }

@@ -158,10 +158,12 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 }
 
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                           const EffectRefit& refit, const std::vector<std::string>& without) {
+                           const EffectRefit& refit, const std::vector<std::string>& without,
+                           SceneColumns scene) {
+  if (effect.candidate.replaces_material) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
-  return RankEffects(with, refit.calibration.parameters, baseline.progress, without).space;
+  return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene).space;
 }
 
 namespace {
