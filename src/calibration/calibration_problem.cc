@@ -272,16 +272,14 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
 
 CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     size_t r, const Eigen::VectorXd& values, bool with_jacobian,
-    const std::vector<MisfitDirection>& directions,
-    const std::vector<Observed>* compared_with) const {
+    const std::vector<MisfitDirection>& directions, const PredictionHints& hints) const {
   const RecordingModel model = ModelAt(r, values);
   const PredictedRecording& item = model.item();
   // The clock comes last: the derivative by its delay is minus the speed.
   std::vector<MisfitDirection> wanted;
   if (with_jacobian) wanted = DirectionsFor(model, directions);
   wanted.push_back({MisfitDirection::Kind::kClock});
-  Misfit misfit =
-      model.Predict(item.frames, NuisanceOf(r, values), wanted, {.observed = compared_with});
+  Misfit misfit = model.Predict(item.frames, NuisanceOf(r, values), wanted, hints);
   LinearisedRecording linearised;
   if (!misfit.summary.IsUsable()) {
     linearised.message = item.name + ": " + misfit.summary.message;
@@ -300,6 +298,7 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
   part.layout.deformation = std::move(misfit.deformation);
   part.observed = std::move(misfit.observed);
+  part.held = std::move(misfit.summary.held);
   part.speed = -misfit.jacobian.rightCols<1>();
   if (with_jacobian)
     linearised.jacobian = ColumnsOf(r, misfit.jacobian.leftCols(misfit.jacobian.cols() - 1),
@@ -310,14 +309,17 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
 
 LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                                                const std::vector<MisfitDirection>& directions,
-                                               const LinearisedMisfit* same) const {
+                                               const LinearisedMisfit* same,
+                                               const LinearisedMisfit* near) const {
   ThrowIfInterrupted();
   const std::vector<size_t> fitted = FittedRecordings();
   std::vector<LinearisedRecording> recordings(fitted.size());
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
     const size_t k = static_cast<size_t>(at);
-    recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions,
-                                       same != nullptr ? &same->parts[k].observed : nullptr);
+    PredictionHints hints;
+    if (same != nullptr) hints.observed = &same->parts[k].observed;
+    if (near != nullptr && near->usable) hints.near_equilibrium = &near->parts[k].held;
+    recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions, hints);
   });
   LinearisedMisfit all;
   Eigen::Index rows = 0;

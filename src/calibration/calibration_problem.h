@@ -33,6 +33,7 @@ struct LinearisedMisfit {
     std::vector<char> fitted;        // for each frame: 1 where it was fitted, 0 where held out
     Eigen::VectorXd speed;           // d(predicted)/dt, one entry per row, m/s
     std::vector<Observed> observed;  // for each frame: what the prediction was compared with
+    Eigen::VectorXd held;            // 3n, m: the equilibrium before the motion
   };
   bool usable = false;
   std::string message;
@@ -110,11 +111,13 @@ class CalibrationProblem {
                      FitMemory* memory = nullptr) const;
 
   // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
-  // the same for each recording. `same`, if given, provides the correspondences. Throws
+  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a similar
+  // model on the same mesh; the search for the equilibria starts from those there. Throws
   // Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                              const std::vector<MisfitDirection>& directions = {},
-                             const LinearisedMisfit* same = nullptr) const;
+                             const LinearisedMisfit* same = nullptr,
+                             const LinearisedMisfit* near = nullptr) const;
 
  private:
   // The errors of the marker places, 3 × markers, m, estimated from RecordingWithSamePlaces().
@@ -142,7 +145,7 @@ class CalibrationProblem {
   LinearisedRecording LineariseRecording(size_t recording, const Eigen::VectorXd& values,
                                          bool with_jacobian,
                                          const std::vector<MisfitDirection>& directions,
-                                         const std::vector<Observed>* compared_with) const;
+                                         const PredictionHints& hints) const;
 
   const PredictionStudy& study_;
   std::shared_ptr<const Body> body_;

@@ -87,6 +87,12 @@ Eigen::VectorXd BestChange(const LinearGaussianModel& model, const Eigen::Vector
   }
 }
 
+PredictionStudy WithLongSteps(const CalibrationProblem& problem) {
+  PredictionStudy study = problem.WithEstimatedNoise();
+  study.time_step *= kLongSteps;
+  return study;
+}
+
 }  // namespace
 
 double FinerMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
@@ -108,44 +114,60 @@ std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStud
 std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only) {
-  PredictionStudy study = problem.WithEstimatedNoise();
-  study.time_step *= kLongSteps;
-  const double ratio = RatioFor(problem);
-  const auto fine_problem = WithFinerElements(study, ratio);
+  const PredictionStudy study = WithLongSteps(problem);
+  FinerMesh finer{RatioFor(problem), Eigen::VectorXd::Zero(values.size()), {}, {}};
+  const auto fine_problem = WithFinerElements(study, finer.ratio);
   if (fine_problem == nullptr) return std::nullopt;
-  FinerMesh finer{ratio, fine_problem->body()->mesh, Eigen::VectorXd::Zero(values.size())};
-  const Eigen::VectorXd coarse =
-      CalibrationProblem(study, problem.body()->mesh).Linearise(values, false).residual;
-  // The whitened difference between the two motions; empty where one of them is not available.
-  const auto difference = [&](const Eigen::VectorXd& change) -> Eigen::VectorXd {
-    const Eigen::VectorXd fine =
-        fine_problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
-    if (fine.size() != misfit.residual.size() || coarse.size() != fine.size() || fine == coarse)
-      return {};
-    return WhitenedRows(fine - coarse, misfit, 0, fitted_only);
+  finer.coarse = CalibrationProblem(study, problem.body()->mesh)
+                     .Linearise(values, false, {}, nullptr, &misfit)
+                     .residual;
+  // The difference is whitened; empty where one of the two motions is not available.
+  struct Tried {
+    Eigen::VectorXd fine, difference;
+  };
+  LinearisedMisfit latest;
+  const auto at = [&](const Eigen::VectorXd& change) {
+    LinearisedMisfit here = fine_problem->Linearise(MovedBy(problem.parameters(), values, change),
+                                                    false, {}, nullptr, &latest);
+    Tried tried{here.residual, {}};
+    if (here.usable) latest = std::move(here);
+    if (tried.fine.size() == misfit.residual.size() && finer.coarse.size() == tried.fine.size() &&
+        tried.fine != finer.coarse)
+      tried.difference = WhitenedRows(tried.fine - finer.coarse, misfit, 0, fitted_only);
+    return tried;
   };
   const Eigen::MatrixXd by =
       WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only);
   const ChangePrior prior = PriorOfChange(problem, values);
-  Eigen::VectorXd left = difference(finer.change);
-  const bool is_finer = left.size() > 0;
+  Tried best = at(finer.change);
+  if (best.difference.size() == 0) return std::nullopt;
   const LinearGaussianModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
   double length = 1;
-  for (int step = 0; step < kMostSteps && left.size() > 0 && length >= kShortestStep; ++step) {
+  for (int step = 0; step < kMostSteps && length >= kShortestStep; ++step) {
+    const Eigen::VectorXd& left = best.difference;
     const Eigen::VectorXd way = BestChange(model, left, by, finer.change, prior) - finer.change;
     const double promised = left.squaredNorm() - (left + by * way).squaredNorm();
     if (!(promised > kSettled)) break;
-    const Eigen::VectorXd there = difference(finer.change + length * way);
-    if (there.size() > 0 && there.squaredNorm() < left.squaredNorm()) {
+    Tried there = at(finer.change + length * way);
+    if (there.difference.size() > 0 && there.difference.squaredNorm() < left.squaredNorm()) {
       finer.change += length * way;
-      left = there;
+      best = std::move(there);
       length = 1;
     } else {
       length /= 2;
     }
   }
-  if (!is_finer) return std::nullopt;
+  finer.fine = std::move(best.fine);
   return finer;
+}
+
+Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                const FinerMesh& finer, double ratio) {
+  const PredictionStudy study = WithLongSteps(problem);
+  const auto other = WithFinerElements(study, ratio);
+  if (other == nullptr) return {};
+  const Eigen::VectorXd change = finer.ToRatio(ratio) * finer.change;
+  return other->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
 }
 
 std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,

@@ -36,9 +36,31 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   return measure;
 }
 
+// The misfit of a recording with markers as `known` has it; nothing if it is not there.
+std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
+                                  const LinearisedMisfit* known) {
+  if (known == nullptr || model.Markers() == nullptr) return std::nullopt;
+  for (const LinearisedMisfit::Part& part : known->parts) {
+    if (part.recording != recording) continue;
+    const Eigen::Index components = model.observer().Components();
+    Misfit misfit;
+    misfit.frames = model.item().frames;
+    misfit.points = model.PointCount();
+    misfit.residual = known->residual.segment(part.first_row, part.layout.Rows());
+    for (size_t k = 0; k < part.layout.count.size(); k += static_cast<size_t>(components))
+      misfit.count.push_back(part.layout.count[k]);
+    misfit.deformation = part.layout.deformation;
+    misfit.observed = part.observed;
+    misfit.summary.status = PredictionSummary::Status::kReached;
+    return misfit;
+  }
+  return std::nullopt;
+}
+
 // `places` are the offsets of the markers, where another recording has determined them.
 RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorXd& values, size_t r,
-                         const std::optional<Eigen::MatrixXd>& places) {
+                         const std::optional<Eigen::MatrixXd>& places,
+                         const LinearisedMisfit* known) {
   const RecordingModel model = problem.ModelAt(r, values);
   const PredictedRecording& item = model.item();
   const MeasurementErrors errors = problem.ErrorsOf(model);
@@ -46,7 +68,9 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
   recording.name = item.name;
   recording.nuisance =
       item.fitted ? problem.NuisanceOf(r, values) : FitRecordingNuisances(model, errors, places);
-  recording.misfit = model.Predict(item.frames, recording.nuisance);
+  std::optional<Misfit> predicted = KnownMisfit(model, r, known);
+  recording.misfit =
+      predicted ? *std::move(predicted) : model.Predict(item.frames, recording.nuisance);
   // A held-out recording determines the offsets of its places only from the frames before its
   // motion, and only where no fitted recording determines them.
   std::vector<char> tells_places;
@@ -68,7 +92,8 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
 }  // namespace
 
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
-                                       const Eigen::VectorXd& values) {
+                                       const Eigen::VectorXd& values,
+                                       const LinearisedMisfit* known) {
   std::vector<RecordingMisfit> all(problem.models().size());
   // Recordings that determine the places come before those that take them over.
   for (const bool is_told : {false, true}) {
@@ -81,7 +106,7 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
       if (const std::optional<size_t> teller = problem.RecordingWithSamePlaces(r);
           teller && all[*teller].misfit.summary.IsUsable())
         places = all[*teller].place_offset;
-      all[r] = MisfitOf(problem, values, r, places);
+      all[r] = MisfitOf(problem, values, r, places, known);
     });
   }
   return all;

@@ -26,8 +26,11 @@ struct RecordingMisfit {
 // The misfits of all recordings at these values of the problem's parameters. For a recording that
 // is not fitted, the nuisances and the places are those of CalibrationProblem::NuisanceOf and
 // RecordingWithSamePlaces.
+// `known`, if given: the misfit of the problem at `values`, from which the predictions of fitted
+// recordings with markers are taken.
 std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
-                                       const Eigen::VectorXd& values);
+                                       const Eigen::VectorXd& values,
+                                       const LinearisedMisfit* known = nullptr);
 
 }  // namespace lacuna
 

@@ -38,17 +38,19 @@ PredictionStudy EarlyPart(const CalibrationProblem& problem) {
   return early;
 }
 
-// The effects ranked along a fit of the early part; none if that cannot be fitted.
+// The effects ranked along a fit of the early part; none if that cannot be fitted. `whole`: the
+// ranking of all frames.
 std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
-                                    const Eigen::VectorXd& values,
+                                    const Eigen::VectorXd& values, const EffectRanking& whole,
                                     const DiagnosisSetting& setting) {
   const PredictionStudy early = EarlyPart(problem);
   const CalibrationProblem of_early(early, problem.body()->mesh);
   const Calibration first = FitFromStart(of_early, setting.progress);
   std::vector<ScoredEffect> found;
   if (first.parameters.size() == values.size())
-    found =
-        RankEffects(of_early, first.parameters, setting.progress, setting.options.without).effects;
+    found = RankEffects(of_early, first.parameters, setting.progress, setting.options.without,
+                        whole.scene.ForFirstFrames(whole.misfit.parts, early.recordings))
+                .effects;
   return found;
 }
 
@@ -95,7 +97,8 @@ void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, cons
       if (effect.scored.candidate.type != best || !ranked.IsUsable(k)) continue;
       for (WeighedRefit& refit : input.refits)
         if (refit.effect == best)
-          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without);
+          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without,
+                                   context.ranking.scene);
       decision = Decide(input);
     }
   }
@@ -117,7 +120,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.noise = problem.noise();
   diagnosis.scan_noise = problem.scan_noise();
   diagnosis.time_step = problem.study().time_step;
-  diagnosis.errors = ErrorsOf(problem, fitted);
+  diagnosis.errors = ErrorsOf(problem, fitted, &ranking.misfit);
   diagnosis.scored = ranking.variants;
   diagnosis.untried = std::move(ranking.untried);
 
@@ -128,7 +131,8 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
   if (diagnosis.baseline_rms_over_sigma > kFarFromTruth)
-    RefitAsRankedEarly(context, RankEarly(problem, fitted, setting), options.refits, &ranked);
+    RefitAsRankedEarly(context, RankEarly(problem, fitted, ranking, setting), options.refits,
+                       &ranked);
   WeighRefits(context, &ranked);
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
   const RefitNoise noise = WeighRefits(context, &ranked);
@@ -143,12 +147,15 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
 }
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const DiagnosisSetting& setting);
+                               int halvings, const DiagnosisSetting& setting,
+                               const SceneColumns& known = {});
 
-// Fits and diagnoses the study with half the time step; nothing if that cannot be fitted.
+// Fits and diagnoses the study with half the time step; nothing if that cannot be fitted. `scene`:
+// of the study's ranking.
 std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
                                               const Eigen::VectorXd& fitted, int halvings,
-                                              const DiagnosisSetting& setting) {
+                                              const DiagnosisSetting& setting,
+                                              const SceneColumns& scene) {
   PredictionStudy study = problem.WithEstimatedNoise();
   study.time_step /= 2;
   setting.progress->Begin("time step", 0);
@@ -158,14 +165,16 @@ std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
   const CalibrationProblem shorter(study, problem.body()->mesh);
   const Calibration fit = RefineFit(shorter, fitted, setting.progress);
   if (fit.parameters.size() != fitted.size()) return std::nullopt;
-  return DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting);
+  return DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting, scene.ForOtherStep());
 }
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                               int halvings, const DiagnosisSetting& setting) {
-  EffectRanking ranking = RankEffects(problem, fitted, setting.progress, setting.options.without);
+                               int halvings, const DiagnosisSetting& setting,
+                               const SceneColumns& known) {
+  EffectRanking ranking =
+      RankEffects(problem, fitted, setting.progress, setting.options.without, known);
   if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking))
-    if (auto diagnosis = DiagnoseWithHalfStep(problem, fitted, halvings, setting))
+    if (auto diagnosis = DiagnoseWithHalfStep(problem, fitted, halvings, setting, ranking.scene))
       return *std::move(diagnosis);
   return DiagnoseRanked(problem, fitted, std::move(ranking), setting);
 }

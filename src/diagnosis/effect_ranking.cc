@@ -59,7 +59,7 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
 class HypothesisRanking {
  public:
   HypothesisRanking(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                    const std::vector<std::string>& without);
+                    const std::vector<std::string>& without, const SceneColumns& known);
 
   // Scores everything, adopts the nuisances that are certain, and moves the result out.
   EffectRanking Rank() &&;
@@ -110,7 +110,8 @@ class HypothesisRanking {
 
 HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
                                      const Eigen::VectorXd& values,
-                                     const std::vector<std::string>& without)
+                                     const std::vector<std::string>& without,
+                                     const SceneColumns& known)
     : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
   candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
@@ -124,13 +125,16 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
 
   parameters_ = base_ =
       hypotheses_.Add(misfit_.jacobian.leftCols(known_), PriorsAbout(problem.parameters(), values));
-  AddEffects(misfit_.jacobian.middleCols(known_, of_effects),
-             RunPilots(problem, values, misfit_, without));
+  ranking_.scene.pilots =
+      known.pilots ? *known.pilots : RunPilots(problem, values, misfit_, without);
+  AddEffects(misfit_.jacobian.middleCols(known_, of_effects), *ranking_.scene.pilots);
   const Eigen::MatrixXd grip_columns =
       misfit_.jacobian.rightCols(misfit_.jacobian.cols() - known_ - of_effects);
   for (NuisanceCandidate& nuisance :
-       ModelNuisances({problem, values, misfit_, grips, grip_columns}))
+       ModelNuisances({problem, values, misfit_, grips, grip_columns}, known.nuisances)) {
+    if (nuisance.card.is_shared_in_scene) ranking_.scene.nuisances.push_back(nuisance);
     AddNuisance(std::move(nuisance));
+  }
   always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
 
   // The noise is what remains when every hypothesis explains as much as it can.
@@ -384,9 +388,10 @@ AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const 
 }
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress, const std::vector<std::string>& without) {
+                          Progress* progress, const std::vector<std::string>& without,
+                          const SceneColumns& known) {
   progress->Begin("score", 0);
-  EffectRanking ranking = HypothesisRanking(problem, values, without).Rank();
+  EffectRanking ranking = HypothesisRanking(problem, values, without, known).Rank();
   progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));
   return ranking;
 }

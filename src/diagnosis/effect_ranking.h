@@ -24,6 +24,7 @@
 #include "diagnosis/hypothesis_score.h"
 #include "diagnosis/hypothesis_space.h"
 #include "diagnosis/pilot_hypotheses.h"
+#include "diagnosis/scene_columns.h"
 #include "diagnosis/scored_effect.h"
 
 namespace lacuna {
@@ -46,6 +47,7 @@ struct EffectRanking {
   Eigen::MatrixXd unknown_force;  // the columns of UnknownForceColumns (unknown_force.h)
   HypothesisSpace space;          // of all hypotheses beside the parameters and adopted nuisances
   int variants = 0;               // number of variants scored
+  SceneColumns scene;             // for further rankings
 };
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of
@@ -56,9 +58,11 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
                             const std::string& without, const NoiseLevel& noise);
 
 // Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
-// with the fitted `values` of CalibrationProblem::parameters. Throws Interrupted.
+// with the fitted `values` of CalibrationProblem::parameters. What `known` has is taken from there
+// instead of simulated. Throws Interrupted.
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                          Progress* progress, const std::vector<std::string>& without = {});
+                          Progress* progress, const std::vector<std::string>& without = {},
+                          const SceneColumns& known = {});
 
 }  // namespace lacuna
 

@@ -28,11 +28,12 @@ std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
 
 }  // namespace
 
-ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
+ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                     const LinearisedMisfit* known) {
   double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
   double unfitted_noise = 0;
   int fitted_points = 0, held_out_points = 0, unfitted_points = 0;
-  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values);
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values, known);
   for (size_t r = 0; r < misfits.size(); ++r) {
     const MisfitMeasure &in_fit = misfits[r].in_fit, &out = misfits[r].held_out;
     if (!problem.models()[r].item().fitted) {
@@ -64,14 +65,30 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
 
 namespace {
 
+// `misfit` with the residuals whitened as those of `correspondences`, which belong to other values
+// of the parameters. For recordings with markers.
+LinearisedMisfit ComparedAs(LinearisedMisfit misfit, const LinearisedMisfit& correspondences) {
+  for (size_t k = 0; k < misfit.parts.size(); ++k) {
+    misfit.parts[k].layout.deformation = correspondences.parts[k].layout.deformation;
+    misfit.parts[k].observed = correspondences.parts[k].observed;
+  }
+  return misfit;
+}
+
 // The model at `values`, with the residuals between the same points as in `correspondences`. Given
-// `near`, its Jacobian is used instead of a new one.
+// `near`, its Jacobian is used instead of a new one; given `known`, the misfit with Jacobian at
+// `values`, nothing is predicted.
 FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                               const AdoptedNuisances& adopted,
                               const LinearisedMisfit& correspondences,
-                              const FittedHypothesis* near = nullptr) {
+                              const FittedHypothesis* near = nullptr,
+                              const LinearisedMisfit* known = nullptr) {
   FittedHypothesis hypothesis;
-  hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences);
+  if (known != nullptr)
+    hypothesis.misfit = ComparedAs(*known, correspondences);
+  else
+    hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences,
+                                          near != nullptr ? &near->misfit : &correspondences);
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
@@ -141,10 +158,12 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 }
 
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                           const EffectRefit& refit, const std::vector<std::string>& without) {
+                           const EffectRefit& refit, const std::vector<std::string>& without,
+                           SceneColumns scene) {
+  if (effect.candidate.replaces_material) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
-  return RankEffects(with, refit.calibration.parameters, baseline.progress, without).space;
+  return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene).space;
 }
 
 namespace {
@@ -187,23 +206,23 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
   return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
 }
 
-Calibration FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
+ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
                         RefitFrom from) {
   const Eigen::Index own = extended.OwnCount();
   Eigen::VectorXd start;
   if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
   if (start.size() == 0) start = extended.Start();
-  Calibration calibration = extended.CalibrateFrom(start, stage);
+  ExtendedFit fit = extended.CalibrateFrom(start, stage);
   const bool converged =
-      !calibration.estimates.empty() && calibration.rms <= kThresholds.refit.converged_rms;
+      !fit.calibration.estimates.empty() && fit.calibration.rms <= kThresholds.refit.converged_rms;
   // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
   // with the effect held at a size has given another one already.
-  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return calibration;
+  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return fit;
   const Calibration afresh = extended.CalibrateAfresh();
-  if (afresh.parameters.size() != own) return calibration;
+  if (afresh.parameters.size() != own) return fit;
   start.head(own) = afresh.parameters;
-  Calibration other = extended.CalibrateFrom(start, stage + " from there");
-  return IsBetter(other, calibration) ? other : calibration;
+  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there");
+  return IsBetter(other.calibration, fit.calibration) ? other : fit;
 }
 
 }  // namespace
@@ -231,9 +250,11 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
   EffectRefit refit;
-  refit.calibration =
+  ExtendedFit fit =
       FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
                   effect != nullptr && is_far_off, from);
+  refit.calibration = std::move(fit.calibration);
+  const LinearisedMisfit* known = fit.misfit.usable ? &fit.misfit : nullptr;
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
@@ -241,8 +262,9 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
         refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    refit.hypothesis = HypothesisAt(with, refit.calibration.parameters, adopted, misfit);
-    refit.errors = ErrorsOf(with, refit.calibration.parameters);
+    refit.hypothesis =
+        HypothesisAt(with, refit.calibration.parameters, adopted, misfit, nullptr, known);
+    refit.errors = ErrorsOf(with, refit.calibration.parameters, known);
     if (effect != nullptr) {
       refit.effect = extended.OwnParameters(refit.calibration.parameters);
       refit.sizes = extended.SizesIn(refit.calibration);

@@ -17,8 +17,10 @@
 
 namespace lacuna {
 
-// The errors of a model with these parameter values, over all recordings.
-ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values);
+// The errors of a model with these parameter values, over all recordings. `known`, if given: its
+// misfit there, which is then not predicted again.
+ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                     const LinearisedMisfit* known = nullptr);
 
 // A fitted model, linearised about its parameters.
 struct FittedHypothesis {
@@ -64,10 +66,12 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
                         const std::string& type, const NoiseLevel& noise);
 
-// The same with columns along the motion of the refitted model, from a new ranking. Throws
-// Interrupted.
+// The same with columns along the motion of the refitted model, from a new ranking. `scene`: of the
+// baseline's ranking; its pilots are tried again only beside another elasticity law, which they are
+// compared with. Throws Interrupted.
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                           const EffectRefit& refit, const std::vector<std::string>& without);
+                           const EffectRefit& refit, const std::vector<std::string>& without,
+                           SceneColumns scene);
 
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a

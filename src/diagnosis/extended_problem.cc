@@ -43,6 +43,24 @@ Eigen::MatrixXd FittedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& 
   return kept;
 }
 
+// The prediction of a fit, of the fitted frames.
+Prediction FittedPart(const LinearisedMisfit& misfit) {
+  Prediction prediction;
+  prediction.usable = misfit.usable;
+  prediction.message = misfit.message;
+  if (!misfit.usable) return prediction;
+  prediction.residual = FittedRows(WhitenedRows(misfit.residual, misfit, 0, true), misfit);
+  prediction.jacobian = FittedRows(WhitenedRows(misfit.jacobian, misfit, 0, true), misfit);
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const Eigen::Index first = static_cast<Eigen::Index>(prediction.before.size());
+    const Eigen::Index series = part.layout.series;
+    const Eigen::Index rows = series * std::count(part.fitted.begin(), part.fitted.end(), 1);
+    for (Eigen::Index row = 0; row < rows; ++row)
+      prediction.before.push_back(row < series ? -1 : first + row - series);
+  }
+  return prediction;
+}
+
 // The null value of a parameter that makes the effect's size; nothing for another parameter.
 std::optional<double> NullOf(const ScoredVariant& scored, const ModelParameter& parameter) {
   const int index = parameter.places.front().index;
@@ -135,7 +153,7 @@ Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) cons
     const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
     Eigen::VectorXd at = start.size() > 0 ? start : part_way;
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
-    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true);
+    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true).calibration;
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
     start = fitted.parameters;
@@ -183,10 +201,10 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
   return calibration;
 }
 
-Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                                            bool holds_effect) const {
   const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
-  CalibrationProblem::FitMemory memory;
+  Memory memory;
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     const Prediction prediction = Predict(at, with_jacobian, &memory);
@@ -198,10 +216,13 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
   const Calibration calibration = Kept("fit", parameters, [&] {
     return Calibrate(parameters, predict,
                      {.max_iterations = holds_effect ? kHoldIterations : kIterations,
-                      .cost_tolerance = kTolerance});
+                      .cost_tolerance = kTolerance,
+                      .near_rms = kInfinity});
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);
-  return calibration;
+  ExtendedFit fit{calibration, {}};
+  if (memory.values == calibration.parameters) fit.misfit = std::move(memory.latest);
+  return fit;
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
@@ -210,11 +231,18 @@ Calibration ExtendedProblem::CalibrateAfresh() const {
 }
 
 Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
-                                    CalibrationProblem::FitMemory* memory) const {
-  CalibrationProblem::FitMemory of_one;
-  CalibrationProblem::FitMemory& known = memory != nullptr ? *memory : of_one;
-  known.correspondences.clear();  // each prediction finds its own
-  Prediction prediction = with_.Predict(at.head(own_), with_jacobian, kInfinity, &known);
+                                    Memory* memory) const {
+  Prediction prediction;
+  if (with_jacobian && !with_.HasScans()) {
+    // All frames, so that the model at the solution need not be predicted again.
+    memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr,
+                                     memory->latest.usable ? &memory->latest : &baseline_.misfit);
+    memory->values = at;
+    prediction = FittedPart(memory->latest);
+  } else {
+    memory->of_problem.correspondences.clear();  // each prediction finds its own
+    prediction = with_.Predict(at.head(own_), with_jacobian, kInfinity, &memory->of_problem);
+  }
   if (!prediction.usable) return prediction;
   prediction.residual += nuisance_columns_ * at.tail(at.size() - own_);
   if (with_jacobian) {
@@ -225,7 +253,8 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
 }
 
 double ExtendedProblem::ResidualNorm(const Eigen::VectorXd& at) const {
-  const Prediction prediction = Predict(at, /*with_jacobian=*/false);
+  Memory memory;
+  const Prediction prediction = Predict(at, /*with_jacobian=*/false, &memory);
   return prediction.usable ? prediction.residual.norm() : kInfinity;
 }
 

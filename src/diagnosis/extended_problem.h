@@ -29,6 +29,13 @@ struct NamedEstimate {
   ParameterEstimate estimate;
 };
 
+struct ExtendedFit {
+  Calibration calibration;
+  // At the solution, with its Jacobian, where the fit has predicted all frames there: not usable
+  // for scans and for fits that were kept.
+  LinearisedMisfit misfit;
+};
+
 // The baseline model with an effect and the adopted nuisances. The order of its parameters is:
 // those of the baseline study, those of the effect, the nuisance parameters of the recordings, and
 // the amounts of the adopted nuisances, which change the residual by the same columns as at the
@@ -61,7 +68,7 @@ class ExtendedProblem {
 
   // Fits all parameters. `holds_effect`: the effect stays near its start, by a narrow prior. Throws
   // Interrupted.
-  Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+  ExtendedFit CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                             bool holds_effect = false) const;
   // Fits the model with the effect, but without adopted nuisances, from the study's own start.
   Calibration CalibrateAfresh() const;
@@ -75,8 +82,13 @@ class ExtendedProblem {
                    const std::function<Calibration()>& fit) const;
   std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
                     const std::string& purpose) const;
-  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian,
-                     CalibrationProblem::FitMemory* memory = nullptr) const;
+  // What one prediction of a fit hands on to the next.
+  struct Memory {
+    CalibrationProblem::FitMemory of_problem;
+    LinearisedMisfit latest;  // the latest prediction with a Jacobian, of recordings with markers
+    Eigen::VectorXd values;   // where that was
+  };
+  Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
   // The baseline's values moved by a share of the way to `target`, and the effect by the same share
   // of the way from its null value to its start.

@@ -72,10 +72,17 @@ std::vector<NuisanceTrial> NuisanceControls() {
   return controls;
 }
 
-std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context) {
+std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
+                                              const std::vector<NuisanceCandidate>& known) {
   std::vector<NuisanceCandidate> candidates;
   ForEach<ModelNuisance>([&](const NuisanceCard& card, ModelNuisance make) {
-    if (auto candidate = make(context)) Add(card, *std::move(candidate), &candidates);
+    const auto same = std::find_if(known.begin(), known.end(), [&](const NuisanceCandidate& other) {
+      return other.card.name == card.name;
+    });
+    if (same != known.end())
+      candidates.push_back(*same);
+    else if (auto candidate = make(context))
+      Add(card, *std::move(candidate), &candidates);
   });
   return candidates;
 }

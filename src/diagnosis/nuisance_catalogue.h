@@ -72,7 +72,9 @@ std::vector<NuisanceTrial> NuisanceControls();
 
 // The nuisances of the model: what a finer mesh and a shorter step change beyond what the
 // parameters can compensate for, the object's dimensions, and the noise of the grips' markers.
-std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context);
+// Those that are in `known`, by the names of their cards, are taken from there.
+std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
+                                              const std::vector<NuisanceCandidate>& known = {});
 
 // The nuisances of each grip; `grip_columns` as in NuisanceContext, after the simulation.
 std::vector<NuisanceCandidate> GripNuisances(const GripMotions& grips,

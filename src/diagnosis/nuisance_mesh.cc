@@ -4,7 +4,6 @@
 // can compensate for (calibration/mesh_limit.h), the second the last part of that change, from an
 // intermediate mesh. The prior of the first expects the extrapolation to infinitely fine elements.
 #include <algorithm>
-#include <memory>
 
 #include "calibration/linear_misfit.h"
 #include "calibration/mesh_limit.h"
@@ -28,6 +27,7 @@ NuisanceCard Card() {
   card.advice = "choose a smaller mesh.max_volume";
   card.source = NuisanceSource::kDiscretisation;
   card.is_always_in_model = true;
+  card.is_shared_in_scene = true;
   card.trial.limits_detection = true;
   card.trial.control = "coarse_mesh";
   card.trial.control_position = 3;
@@ -39,22 +39,11 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const std::optional<FinerMesh> finer =
       MakeFinerMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false);
   if (!finer) return std::nullopt;
-  const PredictionStudy study = at.problem.WithEstimatedNoise();
-  const auto residual = [&](const CalibrationProblem& finer_problem, double ratio) {
-    const Eigen::VectorXd change = finer->ToRatio(ratio) * finer->change;
-    return finer_problem.Linearise(MovedBy(at.problem.parameters(), at.values, change), false)
-        .residual;
-  };
-  const std::unique_ptr<const CalibrationProblem> half_way =
-      WithFinerElements(study, finer->ratio / 2);
-  if (half_way == nullptr) return std::nullopt;
-  const Eigen::VectorXd fine = residual(CalibrationProblem(study, finer->mesh), finer->ratio);
-  const Eigen::VectorXd between = residual(*half_way, finer->ratio / 2);
-  if (fine.size() != at.misfit.residual.size() || between.size() != fine.size())
-    return std::nullopt;
+  const Eigen::VectorXd between = ResidualAtRatio(at.problem, at.values, *finer, finer->ratio / 2);
+  if (between.size() != finer->fine.size()) return std::nullopt;
   NuisanceCandidate candidate;
-  candidate.columns.resize(fine.size(), 2);
-  candidate.columns << fine - at.misfit.residual, fine - between;
+  candidate.columns.resize(between.size(), 2);
+  candidate.columns << finer->fine - finer->coarse, finer->fine - between;
   const double limit = finer->ToLimit();
   const NuisanceThresholds& thresholds = kThresholds.nuisances;
   candidate.priors = {{limit, std::max(thresholds.mesh_limit, limit - 1), false},

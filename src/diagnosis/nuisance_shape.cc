@@ -21,6 +21,7 @@ NuisanceCard Card() {
   card.advice = "measure the object again";
   card.source = NuisanceSource::kShape;
   card.is_always_in_model = true;
+  card.is_shared_in_scene = true;
   card.trial.limits_detection = true;
   return card;
 }
@@ -40,7 +41,8 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
     TetMesh larger = mesh;
     larger.nodes.row(axis).array() +=
         kProbe * kThresholds.nuisances.shape * (mesh.nodes.row(axis).array() - centre[axis]);
-    const LinearisedMisfit changed = CalibrationProblem(study, larger).Linearise(at.values, false);
+    const LinearisedMisfit changed =
+        CalibrationProblem(study, larger).Linearise(at.values, false, {}, nullptr, &at.misfit);
     if (!changed.usable || changed.residual.size() != residual.size()) return std::nullopt;
     candidate.columns.col(axis) = (changed.residual - residual) / kProbe;
     candidate.priors.push_back({0, 1, false});

@@ -27,6 +27,7 @@ NuisanceCard Card() {
   card.advice = "choose a smaller motion.time_step";
   card.source = NuisanceSource::kDiscretisation;
   card.is_always_in_model = true;
+  card.is_shared_in_scene = true;
   card.shrinks_with_time_step = true;
   card.trial.limits_detection = true;
   return card;
@@ -48,7 +49,9 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const auto with_steps = [&](double ratio) {
     PredictionStudy study = at.problem.WithEstimatedNoise();
     study.time_step /= ratio;
-    return CalibrationProblem(study, at.problem.body()->mesh).Linearise(at.values, false).residual;
+    return CalibrationProblem(study, at.problem.body()->mesh)
+        .Linearise(at.values, false, {}, nullptr, &at.misfit)
+        .residual;
   };
   const Eigen::VectorXd& whole = at.misfit.residual;
   const Eigen::VectorXd half = with_steps(2), quarter = with_steps(4);

@@ -96,7 +96,7 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
   for (CandidateEffect& candidate : candidates) {
     const PredictionStudy changed = WithCandidate(study, candidate);
     const CalibrationProblem pilot(changed, problem.body()->mesh);
-    const LinearisedMisfit run = pilot.Linearise(values, false, {}, &misfit);
+    const LinearisedMisfit run = pilot.Linearise(values, false, {}, &misfit, &misfit);
     if (!run.usable) {
       failed.try_emplace(candidate.type, "its pilot cannot be simulated: " + run.message);
     } else {

@@ -36,20 +36,20 @@ void AddStiffness(const CorotationalTangent& tangent,
     turned[b].col(1) = spin.col(2) * x - spin.col(0) * z;
     turned[b].col(2) = spin.col(0) * y - spin.col(1) * x;
   }
-  int pair = 0;
   for (int a = 0; a < kNodes; ++a) {
     const double x = h(0, a), y = h(1, a), z = h(2, a);
     for (int b = a; b < kNodes; ++b) {
-      Eigen::Matrix3d& block = stiffness->block[pair++];
+      Eigen::Matrix3d block;
       const double diagonal = two_mu * h.col(a).dot(h.col(b));
       for (int k = 0; k < 3; ++k) {
         const Eigen::Matrix3d& t = turned[b];
         const double dilatation = lambda * h(k, b);
-        block(0, k) += dilatation * x + (z * t(1, k) - y * t(2, k));
-        block(1, k) += dilatation * y + (x * t(2, k) - z * t(0, k));
-        block(2, k) += dilatation * z + (y * t(0, k) - x * t(1, k));
+        block(0, k) = dilatation * x + (z * t(1, k) - y * t(2, k));
+        block(1, k) = dilatation * y + (x * t(2, k) - z * t(0, k));
+        block(2, k) = dilatation * z + (y * t(0, k) - x * t(1, k));
         block(k, k) += diagonal;
       }
+      stiffness->Add(a, b, block);
     }
   }
 }

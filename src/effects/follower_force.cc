@@ -231,11 +231,11 @@ class FollowerForceEffect final : public CloneableEffect<FollowerForceEffect> {
           std::array<Eigen::Matrix3d, kNodes> by_node;  // half of ∂(s t)/∂x_b
           for (int b = 0; b < kNodes; ++b) by_node[b] = turn * CrossProduct(h.col(b));
           ElementStiffness<kNodes> stiffness;
-          int pair = 0;
+          stiffness.SetZero();
           for (int a = 0; a < kNodes; ++a) {
             for (int b = a; b < kNodes; ++b) {
-              stiffness.block[pair++] =
-                  shape[a] * by_node[b] + kMirror * shape[b] * by_node[a].transpose();
+              stiffness.Add(a, b,
+                            shape[a] * by_node[b] + kMirror * shape[b] * by_node[a].transpose());
             }
           }
           ScatterStiffness<kNodes, kMirror>(at.body, e, stiffness, tangent);

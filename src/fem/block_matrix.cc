@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "fem/target_clones.h"
 
 namespace lacuna {
 namespace {
@@ -33,6 +34,34 @@ NodeElements ElementsOfNodes(int nodes, const Eigen::MatrixXi& elements) {
     }
   }
   return of;
+}
+
+// sum += block · node for three rows of `width` entries each, one row after the other.
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void AddBlockProduct(const double* block, const double* node, int width, double* sum) {
+  const double *x = node, *y = node + width, *z = node + 2 * static_cast<int64_t>(width);
+  double *a = sum, *b = sum + width, *c = sum + 2 * static_cast<int64_t>(width);
+#pragma omp simd
+  for (int k = 0; k < width; ++k) {
+    a[k] += block[0] * x[k] + block[3] * y[k] + block[6] * z[k];
+    b[k] += block[1] * x[k] + block[4] * y[k] + block[7] * z[k];
+    c[k] += block[2] * x[k] + block[5] * y[k] + block[8] * z[k];
+  }
+}
+
+// y = Σ block · x over the blocks of a row. Each column of a block is read together with the entry
+// behind it, which is ignored; hence values_ has one more entry.
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void MultiplyRow(const double* block, const int* column, int count, const double* x, double* y) {
+  typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+  Four sum = {0, 0, 0, 0};
+  for (int k = 0; k < count; ++k, block += 9) {
+    const double* node = x + 3 * static_cast<int64_t>(column[k]);
+    sum += *reinterpret_cast<const Four*>(block) * node[0] +
+           *reinterpret_cast<const Four*>(block + 3) * node[1] +
+           *reinterpret_cast<const Four*>(block + 6) * node[2];
+  }
+  for (int a = 0; a < 3; ++a) y[a] = sum[a];
 }
 
 }  // namespace
@@ -67,7 +96,8 @@ BlockPattern MakeBlockPattern(int nodes, const Eigen::MatrixXi& elements) {
 }
 
 BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern)
-    : pattern_(std::move(pattern)), values_(9 * static_cast<size_t>(pattern_->BlockCount()), 0.0) {}
+    : pattern_(std::move(pattern)),
+      values_(9 * static_cast<size_t>(pattern_->BlockCount()) + 1, 0.0) {}
 
 void BlockMatrix::SetZero() { std::fill(values_.begin(), values_.end(), 0.0); }
 
@@ -77,16 +107,12 @@ Eigen::MatrixXd BlockMatrix::operator*(const Eigen::MatrixXd& x) const {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Rows of_nodes = x;
   Rows product(x.rows(), x.cols());
+  const int width = static_cast<int>(x.cols());
   ParallelFor(pattern_->nodes, kRowsPerBlock, [&](int64_t i) {
-    auto sum = product.middleRows<3>(3 * i);
-    sum.setZero();
-    for (int k = pattern_->row_begin[i]; k < pattern_->row_begin[i + 1]; ++k) {
-      const auto block = Block(k);
-      const auto node = of_nodes.middleRows<3>(3 * pattern_->column[k]);
-      for (int a = 0; a < 3; ++a)
-        sum.row(a) +=
-            block(a, 0) * node.row(0) + block(a, 1) * node.row(1) + block(a, 2) * node.row(2);
-    }
+    product.middleRows<3>(3 * i).setZero();
+    for (int k = pattern_->row_begin[i]; k < pattern_->row_begin[i + 1]; ++k)
+      AddBlockProduct(&values_[9 * k], of_nodes.row(3 * pattern_->column[k]).data(), width,
+                      product.row(3 * i).data());
   });
   return product;
 }
@@ -96,11 +122,9 @@ void BlockMatrix::Multiply(const Eigen::VectorXd& x, Eigen::VectorXd* y) const {
   CHECK_NE(&x, y) << "the product cannot overwrite its argument";
   y->resize(x.size());
   ParallelFor(pattern_->nodes, kRowsPerBlock, [&](int64_t i) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (int k = pattern_->row_begin[i]; k < pattern_->row_begin[i + 1]; ++k) {
-      sum += Block(k) * x.segment<3>(3 * pattern_->column[k]);
-    }
-    y->segment<3>(3 * i) = sum;
+    const int begin = pattern_->row_begin[i];
+    MultiplyRow(&values_[9 * static_cast<size_t>(begin)], &pattern_->column[begin],
+                pattern_->row_begin[i + 1] - begin, x.data(), y->data() + 3 * i);
   });
 }
 

@@ -51,7 +51,7 @@ class BlockMatrix {
 
  private:
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<double> values_;  // 9 per block, column-major
+  std::vector<double> values_;  // 9 per block, column-major, and one that is not used
 };
 
 }  // namespace lacuna

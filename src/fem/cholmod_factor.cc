@@ -44,12 +44,39 @@ LowerTriangle LowerTriangleOf(const BlockPattern& pattern, const EliminationOrde
   return lower;
 }
 
+// The same matrix with its rows and columns in the order `pivots`.
+LowerTriangle Reordered(const LowerTriangle& lower, const std::vector<int>& pivots) {
+  const int size = static_cast<int>(pivots.size());
+  std::vector<int> place(pivots.size());
+  for (int k = 0; k < size; ++k) place[pivots[k]] = k;
+  std::vector<std::vector<std::pair<int, int>>> columns(pivots.size());  // row, source
+  for (int j = 0; j < size; ++j) {
+    for (int k = lower.begin[j]; k < lower.begin[j + 1]; ++k) {
+      const auto [col, row] = std::minmax(place[lower.row[k]], place[j]);
+      columns[col].emplace_back(row, lower.source[k]);
+    }
+  }
+  LowerTriangle reordered;
+  reordered.begin.push_back(0);
+  for (auto& column : columns) {
+    std::sort(column.begin(), column.end());
+    for (const auto& [row, source] : column) {
+      reordered.row.push_back(row);
+      reordered.source.push_back(source);
+    }
+    reordered.begin.push_back(static_cast<int>(reordered.row.size()));
+  }
+  return reordered;
+}
+
 }  // namespace
 
 struct CholmodFactor::Implementation {
   cholmod_common common;
   LowerTriangle lower;
+  std::vector<int> pivots;  // the elimination order that CHOLMOD prefers, of scalar rows
   std::vector<double> values;
+  Eigen::MatrixXd ordered_right;
   cholmod_sparse matrix = {};
   cholmod_factor* factor = nullptr;
   cholmod_dense *solution = nullptr, *workspace_y = nullptr, *workspace_e = nullptr;
@@ -65,6 +92,25 @@ struct CholmodFactor::Implementation {
   }
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
+
+  // The symbolic analysis of `lower`.
+  void Analyse() {
+    values.assign(lower.row.size(), 0.0);
+    matrix.nrow = matrix.ncol = lower.begin.size() - 1;
+    matrix.nzmax = values.size();
+    matrix.p = lower.begin.data();
+    matrix.i = lower.row.data();
+    matrix.x = values.data();
+    matrix.stype = -1;
+    matrix.itype = CHOLMOD_INT;
+    matrix.xtype = CHOLMOD_REAL;
+    matrix.dtype = CHOLMOD_DOUBLE;
+    matrix.sorted = matrix.packed = true;
+    cholmod_free_factor(&factor, &common);
+    factor = cholmod_analyze(&matrix, &common);
+    CHECK(factor != nullptr) << "CHOLMOD's symbolic analysis failed with status " << common.status;
+  }
+
   ~Implementation() {
     cholmod_free_factor(&factor, &common);
     cholmod_free_dense(&solution, &common);
@@ -78,20 +124,14 @@ CholmodFactor::CholmodFactor(const BlockPattern& pattern, const EliminationOrder
     : implementation_(std::make_unique<Implementation>()) {
   Implementation& self = *implementation_;
   self.lower = LowerTriangleOf(pattern, order);
-  self.values.assign(self.lower.row.size(), 0.0);
-  self.matrix.nrow = self.matrix.ncol = 3 * static_cast<size_t>(order.FreeNodes());
-  self.matrix.nzmax = self.values.size();
-  self.matrix.p = self.lower.begin.data();
-  self.matrix.i = self.lower.row.data();
-  self.matrix.x = self.values.data();
-  self.matrix.stype = -1;
-  self.matrix.itype = CHOLMOD_INT;
-  self.matrix.xtype = CHOLMOD_REAL;
-  self.matrix.dtype = CHOLMOD_DOUBLE;
-  self.matrix.sorted = self.matrix.packed = true;
-  self.factor = cholmod_analyze(&self.matrix, &self.common);
-  CHECK(self.factor != nullptr) << "CHOLMOD's symbolic analysis failed with status "
-                                << self.common.status;
+  self.Analyse();
+  // Given the matrix in the order of the pivots, CHOLMOD need not transpose it at each
+  // factorisation.
+  const int* pivots = static_cast<const int*>(self.factor->Perm);
+  self.pivots.assign(pivots, pivots + self.matrix.nrow);
+  self.lower = Reordered(self.lower, self.pivots);
+  self.common.postorder = false;
+  self.Analyse();
   self.flops = self.common.fl;
   self.entries = self.common.lnz;
 }
@@ -117,19 +157,25 @@ void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::Mat
   CHECK_EQ(static_cast<size_t>(B.rows()), self.matrix.nrow);
   X->resize(B.rows(), B.cols());
   if (B.size() == 0) return;  // CHOLMOD rejects an empty matrix
+  self.ordered_right.resize(B.rows(), B.cols());
+  for (Eigen::Index c = 0; c < B.cols(); ++c)
+    for (Eigen::Index k = 0; k < B.rows(); ++k)
+      self.ordered_right(k, c) = B(self.pivots[static_cast<size_t>(k)], c);
   cholmod_dense right = {};
   right.nrow = self.matrix.nrow;
-  right.d = B.outerStride();
+  right.d = right.nrow;
   right.ncol = B.cols();
   right.nzmax = right.d * right.ncol;
-  right.x = const_cast<double*>(B.data());
+  right.x = self.ordered_right.data();
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   const int solved = cholmod_solve2(CHOLMOD_A, self.factor, &right, nullptr, &self.solution,
                                     nullptr, &self.workspace_y, &self.workspace_e, &self.common);
   CHECK(solved) << "CHOLMOD's triangular solve failed with status " << self.common.status;
-  *X = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(self.solution->x), B.rows(),
-                                         B.cols());
+  const double* solution = static_cast<const double*>(self.solution->x);
+  for (Eigen::Index c = 0; c < B.cols(); ++c)
+    for (Eigen::Index k = 0; k < B.rows(); ++k)
+      (*X)(self.pivots[static_cast<size_t>(k)], c) = solution[c * B.rows() + k];
 }
 
 double CholmodFactor::flops() const { return implementation_->flops; }

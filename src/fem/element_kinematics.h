@@ -72,12 +72,12 @@ template <int kNodes, int kMirror = 1>
 void ScatterStiffness(const Body& body, int element, const ElementStiffness<kNodes>& stiffness,
                       BlockMatrix* tangent) {
   const int* position = &body.schedule->block[static_cast<size_t>(element) * kNodes * kNodes];
-  int pair = 0;
   for (int a = 0; a < kNodes; ++a) {
-    tangent->Block(position[a * kNodes + a]) += stiffness.block[pair++];
+    tangent->Block(position[a * kNodes + a]) += stiffness.Block(a, a);
     for (int b = a + 1; b < kNodes; ++b) {
-      tangent->Block(position[a * kNodes + b]) += stiffness.block[pair];
-      tangent->Block(position[b * kNodes + a]) += kMirror * stiffness.block[pair++].transpose();
+      const Eigen::Matrix3d block = stiffness.Block(a, b);
+      tangent->Block(position[a * kNodes + b]) += block;
+      tangent->Block(position[b * kNodes + a]) += kMirror * block.transpose();
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/target_clones.h"
+
 namespace lacuna {
 namespace {
 
@@ -16,7 +18,53 @@ Vector9d Dyad(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   return dyad;
 }
 
+// Rows a of one matrix of entries, from kFirst to the end of its group of four nodes, and their
+// columns b ≥ kFirst: entry_ab += Σ_j (g_a)_j right_jb.
+template <int kNodes, int kWidth, int kFirst>
+[[gnu::always_inline]] inline void AddRows(const double* gradient, const double (&right)[3][kWidth],
+                                           double* entry) {
+  constexpr int kEnd = std::min(kFirst + 4, kNodes);
+  for (int a = kFirst; a < kEnd; ++a) {
+    const double x = gradient[a], y = gradient[kNodes + a], z = gradient[2 * kNodes + a];
+    double* row = entry + a * kWidth;
+    for (int b = kFirst; b < kWidth; ++b)
+      row[b] += x * right[0][b] + y * right[1][b] + z * right[2][b];
+  }
+  if constexpr (kEnd < kNodes) AddRows<kNodes, kWidth, kEnd>(gradient, right, entry);
+}
+
+// Inlined into one function for each instruction set.
+template <int kNodes>
+[[gnu::always_inline]] inline void AddToEntries(const double* tangent, const double* gradient,
+                                                double scale, double* entry) {
+  constexpr int kWidth = ElementStiffness<kNodes>::kWidth;
+  alignas(64) double g[3][kWidth] = {};
+  for (int l = 0; l < 3; ++l)
+    for (int b = 0; b < kNodes; ++b) g[l][b] = scale * gradient[kNodes * l + b];
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) {
+      alignas(64) double right[3][kWidth];  // [j][b] = Σ_l C_ijkl (g_b)_l
+      for (int j = 0; j < 3; ++j) {
+        const double* C = tangent + (i + 3 * j) + 9 * k;
+        for (int b = 0; b < kWidth; ++b)
+          right[j][b] = C[0] * g[0][b] + C[27] * g[1][b] + C[54] * g[2][b];
+      }
+      AddRows<kNodes, kWidth, 0>(gradient, right, entry + (i + 3 * k) * kNodes * kWidth);
+    }
+  }
+}
+
 }  // namespace
+
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void AddToEntriesOf4(const double* tangent, const double* gradient, double scale, double* entry) {
+  AddToEntries<4>(tangent, gradient, scale, entry);
+}
+
+LACUNA_FOR_EACH_INSTRUCTION_SET
+void AddToEntriesOf10(const double* tangent, const double* gradient, double scale, double* entry) {
+  AddToEntries<10>(tangent, gradient, scale, entry);
+}
 
 PrincipalTangent PrincipalTangent::Zero() {
   return {Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

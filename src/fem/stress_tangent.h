@@ -7,6 +7,8 @@
 #define LACUNA_FEM_STRESS_TANGENT_H_
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <iterator>
 
 #include "fem/polar_decomposition.h"
 
@@ -15,41 +17,38 @@ namespace lacuna {
 // C as a 9 × 9 matrix over column-major vectors: entry (i + 3j, k + 3l) is ∂P_ij/∂F_kl.
 using StressTangent = Eigen::Matrix<double, 9, 9>;
 
-// The stiffness blocks of an element's node pairs a ≤ b, in the order (0,0) (0,1) … (0,n−1) (1,1) …
+// The stiffness blocks K_ab of an element's node pairs a ≤ b. Entries with the same place (i, k) in
+// their blocks stand together, row by row of nodes b, so that sums run over many nodes at once.
 template <int kNodes>
 struct ElementStiffness {
-  static constexpr int kPairs = kNodes * (kNodes + 1) / 2;
-  Eigen::Matrix3d block[kPairs];
-  void SetZero() {
-    for (Eigen::Matrix3d& b : block) b.setZero();
+  static constexpr int kWidth =
+      (kNodes + 3) / 4 * 4;                       // of a row; what is beyond kNodes is not used
+  alignas(64) double entry[9 * kNodes * kWidth];  // entries with a > b are not meaningful
+
+  void SetZero() { std::fill(std::begin(entry), std::end(entry), 0.0); }
+  Eigen::Matrix3d Block(int a, int b) const {
+    Eigen::Matrix3d block;
+    for (int ik = 0; ik < 9; ++ik) block(ik % 3, ik / 3) = entry[(ik * kNodes + a) * kWidth + b];
+    return block;
+  }
+  void Add(int a, int b, const Eigen::Matrix3d& block) {
+    for (int ik = 0; ik < 9; ++ik) entry[(ik * kNodes + a) * kWidth + b] += block(ik % 3, ik / 3);
   }
 };
+
+// Adds scale · K_ab to the entries of ElementStiffness. `gradient`: kNodes × 3, column-major.
+void AddToEntriesOf4(const double* tangent, const double* gradient, double scale, double* entry);
+void AddToEntriesOf10(const double* tangent, const double* gradient, double scale, double* entry);
 
 // Adds scale · K_ab to the stiffness for all pairs of nodes of an element.
 template <int kNodes>
 void AddStiffness(const StressTangent& tangent, const Eigen::Matrix<double, kNodes, 3>& gradient,
                   double scale, ElementStiffness<kNodes>* stiffness) {
-  // right[b](i + 3j, k) = Σ_l C_ijkl (g_b)_l
-  Eigen::Matrix<double, 9, 3> right[kNodes];
-  for (int b = 0; b < kNodes; ++b) {
-    const double x = scale * gradient(b, 0);
-    const double y = scale * gradient(b, 1);
-    const double z = scale * gradient(b, 2);
-    right[b].noalias() = x * tangent.template middleCols<3>(0);
-    right[b].noalias() += y * tangent.template middleCols<3>(3);
-    right[b].noalias() += z * tangent.template middleCols<3>(6);
-  }
-  int pair = 0;
-  for (int a = 0; a < kNodes; ++a) {
-    const double x = gradient(a, 0);
-    const double y = gradient(a, 1);
-    const double z = gradient(a, 2);
-    for (int b = a; b < kNodes; ++b) {
-      stiffness->block[pair++].noalias() += x * right[b].template middleRows<3>(0) +
-                                            y * right[b].template middleRows<3>(3) +
-                                            z * right[b].template middleRows<3>(6);
-    }
-  }
+  static_assert(kNodes == 4 || kNodes == 10);
+  if constexpr (kNodes == 4)
+    AddToEntriesOf4(tangent.data(), gradient.data(), scale, stiffness->entry);
+  else
+    AddToEntriesOf10(tangent.data(), gradient.data(), scale, stiffness->entry);
 }
 
 // Adds scale · ∂²(det F)/∂F² to the tangent.

@@ -63,13 +63,26 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
   ASSERT_TRUE(finer.has_value());
   const PredictionStudy study = coarse.problem.WithEstimatedNoise();
-  const CalibrationProblem on_finer(study, finer->mesh);
+  const auto on_finer = WithFinerElements(study, finer->ratio);
+  ASSERT_NE(on_finer, nullptr);
   const auto part = [&](const Eigen::VectorXd& change) {
     const Eigen::VectorXd there =
-        on_finer.Linearise(MovedBy(coarse.problem.parameters(), values, change), false).residual;
+        on_finer->Linearise(MovedBy(coarse.problem.parameters(), values, change), false).residual;
     return WhitenedRows(there - before, misfit, 0, false).norm();
   };
-  EXPECT_LT(part(finer->change), 0.5 * part(Eigen::VectorXd::Zero(values.size())));
+  const double with_the_same = part(Eigen::VectorXd::Zero(values.size()));
+  EXPECT_LT(part(finer->change), 0.5 * with_the_same);
+  // With long steps on both meshes the difference is nearly the same one.
+  const Eigen::VectorXd with_steps =
+      on_finer
+          ->Linearise(MovedBy(coarse.problem.parameters(), values, finer->change), false)
+          .residual -
+      before;
+  EXPECT_LT((finer->fine - finer->coarse - with_steps).norm(), 0.3 * with_steps.norm());
+  const Eigen::VectorXd again =
+      ResidualAtRatio(coarse.problem, values, *finer, finer->ratio);
+  ASSERT_EQ(again.size(), finer->fine.size());
+  EXPECT_LT((again - finer->fine).norm(), 1e-3 * (finer->fine - finer->coarse).norm());
   EXPECT_EQ(coarse.problem.Linearise(values, false).residual, before)
       << "a prediction depends on nothing that was predicted before it";
 }

@@ -41,5 +41,32 @@ TEST(EffectRanking, TellsOfOtherDirectionsThatAreAsGood) {
   EXPECT_LT(fibres->elsewhere.front().score.size[0] * fibres->score.size[0], 0);
 }
 
+TEST(EffectRanking, TakesOverTheColumnsOfItsScene) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  const PredictionStudy study = ReadBarStudy(folder.Path());
+  const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const EffectRanking first = RankEffects(problem, problem.Start(), &progress);
+  ASSERT_TRUE(first.scene.pilots.has_value());
+  const auto shape = [](const auto& nuisances) {
+    return std::find_if(nuisances.begin(), nuisances.end(),
+                        [](const auto& own) { return own.card.name == "shape"; });
+  };
+  ASSERT_NE(shape(first.scene.nuisances), first.scene.nuisances.end());
+  EXPECT_TRUE(std::all_of(first.scene.nuisances.begin(), first.scene.nuisances.end(),
+                          [](const auto& own) { return own.card.is_shared_in_scene; }));
+  SceneColumns known = first.scene;
+  for (NuisanceCandidate& own : known.nuisances) own.columns *= 2;
+  for (PilotHypothesis& pilot : known.pilots->tried) pilot.change *= 2;
+  const EffectRanking second = RankEffects(problem, problem.Start(), &progress, {}, known);
+  EXPECT_EQ(shape(second.scene.nuisances)->columns, 2 * shape(first.scene.nuisances)->columns);
+  ASSERT_EQ(second.scene.pilots->tried.size(), first.scene.pilots->tried.size());
+  for (size_t k = 0; k < first.scene.pilots->tried.size(); ++k)
+    EXPECT_EQ(second.scene.pilots->tried[k].change, 2 * first.scene.pilots->tried[k].change);
+}
+
 }  // namespace
 }  // namespace lacuna
