@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "diagnosis/adequacy.h"
 #include "diagnosis/decision_rules.h"
@@ -32,11 +33,14 @@ double LogSum(double a, double b) {
 void CompareWithAdopted(const DecisionInput& input, double effects,
                         std::vector<HypothesisProbability>* hypotheses) {
   if (input.adopted.empty()) return;
+  // The prior probability that there is such a nuisance, and that nothing else is missing.
+  const double adopted = input.adopted_evidence + std::log(kPriorNuisances);
   for (HypothesisProbability& one : *hypotheses) {
-    one.evidence += input.adopted_evidence;
+    one.evidence += adopted;
     if (one.kind == Kind::kNothing) {
       one.kind = Kind::kNuisance;
       one.names = input.adopted;
+      one.evidence += std::log(kPriorNothing / kPriorNuisances);
     } else if (one.kind == Kind::kEffect) {
       for (const WeighedRefit& refit : input.in_place_of_adopted)
         if (refit.effect == one.names.front())
@@ -107,7 +111,9 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
   return {&input.baseline, {}};
 }
 
-RecordedAdequacy RecordOf(const AdequacyTest& test, std::vector<std::string> beside) {
+// `removed`: the misfit, σ², that the hypothesis removes.
+RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
+                          std::vector<std::string> beside) {
   RecordedAdequacy adequacy;
   adequacy.beside = std::move(beside);
   adequacy.p_unknown_force = test.p_unknown_force;
@@ -118,6 +124,8 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, std::vector<std::string> bes
   adequacy.further = test.found.best_further.name;
   adequacy.further_evidence = test.found.further;
   adequacy.rms_over_sigma = std::sqrt(std::max(0.0, test.found.variance));
+  adequacy.left_share = removed > 0 ? std::max(0.0, test.found.left) / removed
+                                    : std::numeric_limits<double>::infinity();
   return adequacy;
 }
 
@@ -146,7 +154,7 @@ bool TryPair(const DecisionInput& input, const TestedSpace& tested, const Adequa
       TestAdequacy(*tested.space, columns, input.noise_is_known, input.seed + 1);
   if (both.p < kAdequacyLevel) return false;
   decision->record.probabilities = std::move(posterior);
-  decision->record.adequacy = RecordOf(both, pair.names);
+  decision->record.adequacy = RecordOf(both, 2 * pair.evidence, pair.names);
   return true;
 }
 
@@ -181,11 +189,14 @@ Decision Decide(const DecisionInput& input) {
   const TestedSpace tested = SpaceOf(input, first_order, best);
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  record.adequacy = RecordOf(test, best.names);
+  record.adequacy = RecordOf(test, 2 * best.evidence, best.names);
   record.chance = test.chance;
 
   const Naming naming = NameFrom(record.probabilities);
-  if (!record.adequacy.is_adequate && !TryPair(input, tested, test, &decision)) {
+  const bool explains = record.adequacy.is_adequate ||
+                        record.adequacy.left_share < kToleratedModelError ||
+                        TryPair(input, tested, test, &decision);
+  if (!explains) {
     decision.verdict = Verdict::kNotInLibrary;
     if (naming.level != Naming::Level::kNothing)
       for (const size_t k : naming.kept)

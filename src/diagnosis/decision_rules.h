@@ -25,6 +25,10 @@ inline constexpr double kNamingProbability = 0.95;
 // The level of the test of adequacy: so often a complete model is said to leave something unknown.
 // Lower: something unknown that is small passes for noise more often.
 inline constexpr double kAdequacyLevel = 0.02;
+// No model is exact. What an effect leaves is no reason to withhold its name if it is less than
+// this share of the misfit that the effect removes: a model error of a tenth of the amplitude.
+// Higher: effects that compensate for one outside the catalogue are named more often.
+inline constexpr double kToleratedModelError = 0.01;
 // Two effects with a smaller λ (RecordedSeparation) cannot be told apart: with 12 the right one of
 // two is chosen in four cases of five.
 inline constexpr double kSeparableLambda = 12;

@@ -57,6 +57,22 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
       products_.col(k).setZero();
     }
   for (const WeighedHypothesis& hypothesis : space.hypotheses) own_.push_back(Prepare(hypothesis));
+  for (const WeighedHypothesis& hypothesis : space.hypotheses) {
+    if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
+    const auto decomposed = Eigen::MatrixXd(products_(hypothesis.columns, hypothesis.columns))
+                                .completeOrthogonalDecomposition();
+    force_inverse_ = decomposed.pseudoInverse();
+    force_rank_ = decomposed.rank();
+  }
+}
+
+double ProjectedHypotheses::ForceMisfit(const Eigen::VectorXd& projected) const {
+  for (const WeighedHypothesis& hypothesis : space_.hypotheses) {
+    if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
+    const Eigen::VectorXd own = projected(hypothesis.columns);
+    return own.dot(force_inverse_ * own) / space_.variance - static_cast<double>(force_rank_);
+  }
+  return 0;
 }
 
 ProjectedHypotheses::Own ProjectedHypotheses::Prepare(const WeighedHypothesis& hypothesis) const {

@@ -69,7 +69,8 @@ json DecisionToJson(const DecisionRecord& decision) {
             {"is_adequate", adequacy.is_adequate},
             {"further", adequacy.further},
             {"further_evidence", NumberOrNull(adequacy.further_evidence)},
-            {"rms_over_sigma", adequacy.rms_over_sigma}}},
+            {"rms_over_sigma", adequacy.rms_over_sigma},
+            {"left_share", NumberOrNull(adequacy.left_share)}}},
           {"power", power},
           {"separations", separations},
           {"chance", NumberOrNull(decision.chance)}};
@@ -102,7 +103,8 @@ DecisionRecord DecisionFromJson(const json& value) {
                        adequacy.at("is_adequate"),
                        adequacy.at("further"),
                        NumberOr(adequacy.at("further_evidence")),
-                       adequacy.at("rms_over_sigma")};
+                       adequacy.at("rms_over_sigma"),
+                       NumberOr(adequacy.at("left_share"))};
   decision.chance = NumberOr(value.at("chance"));
   return decision;
 }

@@ -5,6 +5,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cmath>
 #include <variant>
 #include <vector>
 
@@ -128,10 +129,14 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
       adequacy.beside.empty() ? "The model as it is" : "The model with " + NamesOf(adequacy.beside);
   if (adequacy.is_adequate)
     return fmt::format("{} leaves no more than noise does (p = {:.2f}).", beside, adequacy.p);
+  const std::string share =
+      std::isfinite(adequacy.left_share)
+          ? fmt::format(", {:.1f} % of what it explains", 100 * adequacy.left_share)
+          : "";
   return fmt::format(
       "Something unknown is left: {} leaves more than noise does (p = {:.3f}, {:.2f} σ over all "
-      "frames).",
-      beside, adequacy.p, adequacy.rms_over_sigma);
+      "frames{}).",
+      beside, adequacy.p, adequacy.rms_over_sigma, share);
 }
 
 // What the verdict names.

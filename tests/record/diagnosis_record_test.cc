@@ -37,7 +37,7 @@ DiagnosisRecord SmallDiagnosis() {
   using Kind = HypothesisProbability::Kind;
   decision.probabilities = {{Kind::kEffect, {"drag"}, EffectFamily::kLossOutside, 300, 0.9},
                             {Kind::kNothing, {}, EffectFamily::kOther, 0, 0.1}};
-  decision.adequacy = {{"drag"}, 0.2, 0.3, 0.4, 0.25, true, "gravity", 1.5, 1.01};
+  decision.adequacy = {{"drag"}, 0.2, 0.3, 0.4, 0.25, true, "gravity", 1.5, 1.01, 0.03};
   decision.power = {{{"drag"}, 0.7, 0.1, 0.05, 0.1, 0.05, "mass_damping"}};
   decision.separations = {{"drag", "mass_damping", 6.8}};
   decision.chance = 2.5;

@@ -70,7 +70,9 @@ TEST(VerdictText, StatesProbabilitiesOfFamiliesAndMembers) {
                         "drag leaves no more than noise does (p = 0.40)."));
   record.decision.adequacy.is_adequate = false;
   record.decision.adequacy.p = 0.001;
+  record.decision.adequacy.left_share = 0.25;
   EXPECT_THAT(ExplainVerdict(record), HasSubstr("Something unknown is left"));
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("25.0 % of what it explains"));
 }
 
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
