@@ -17,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-using Of = MisfitDirection::Kind;
+using Kind = MisfitDirection::Kind;
 
 constexpr double kFewestSeen = 0.05;  // smallest share of the patches in the first scan
 
