@@ -261,7 +261,7 @@ struct TangentLinear::Implementation {
   std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd residual,
                                          const Update& update) {
     constexpr int kMaxIterations = 60;
-    constexpr double kTolerance = 1e-7;  // of each column, relative
+    constexpr double kTolerance = 1e-7;  // relative residual of each column
     const Eigen::RowVectorXd wanted = kTolerance * right.colwise().norm();
     Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
     ClearFixed(&residual);
