@@ -41,7 +41,7 @@ struct CameraCorrection {
   Eigen::Isometry3d correction = Eigen::Isometry3d::Identity();
   double angle = 0;         // rad, angle of the correction
   double translation = 0;   // m, how far the centroid of the camera's cloud moves
-  int free_directions = 0;  // number, of six, that the overlap does not determine; left unchanged
+  int free_directions = 0;  // number of the six directions that are left unchanged
   double rms_before = -1;   // m, root mean square distance of the pairs along their normals; −1:
   double rms_after = -1;    // there are no pairs
 };

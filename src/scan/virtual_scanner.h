@@ -45,12 +45,11 @@ struct ScannerOptions {
   double noise_growth = 0;       // about 2 for stereo cameras
   double reference_range = 0.5;  // m
   double quantum = 1e-4;         // m; depths are rounded to its multiples; 0: they are not rounded
-  double flying_fraction =
-      0.3;                     // fraction of the pixels at depth edges that measure a depth between
-  double flying_reach = 0.01;  // m; how far flying pixels lie behind the near surface at most
-  double edge_jump = 0.005;    // m; a larger step of depth between neighbours is an edge
-  double max_incidence = 1.4;  // rad between ray and normal; beyond it nothing is measured
-  double dropout = 0.01;       // fraction of the pixels that measure nothing, at random
+  double flying_fraction = 0.3;  // fraction of pixels at depth edges with a depth in between
+  double flying_reach = 0.01;    // m; how far flying pixels lie behind the near surface at most
+  double edge_jump = 0.005;      // m; a larger step of depth between neighbours is an edge
+  double max_incidence = 1.4;    // rad between ray and normal; beyond it nothing is measured
+  double dropout = 0.01;         // fraction of the pixels that measure nothing, at random
   uint64_t seed = 1;
 };
 
