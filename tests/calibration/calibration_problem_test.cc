@@ -11,6 +11,7 @@
 #include <random>
 
 #include "calibration/calibration_fits.h"
+#include "calibration/linear_misfit.h"
 #include "calibration/recording_misfit.h"
 #include "core/parallel.h"
 #include "effects/catalogue.h"
