@@ -25,8 +25,14 @@ Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& ce
 }  // namespace
 
 SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(About(points, points.rowwise().mean()),
-                                                 Eigen::ComputeThinU);
+  Eigen::Matrix3Xd about = About(points, points.rowwise().mean());
+  if (about.cols() < 3) {
+    // The decomposition of a matrix with three rows wants as many columns. Zeros change nothing.
+    const Eigen::Index given = about.cols();
+    about.conservativeResize(Eigen::NoChange, 3);
+    about.rightCols(3 - given).setZero();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(about, Eigen::ComputeThinU);
   const Eigen::VectorXd& extent = shape.singularValues();
   Eigen::Index count = 0;
   while (count < extent.size() && extent[count] > kWidth * extent[0]) ++count;
