@@ -78,9 +78,9 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
     ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
       const size_t r = some[static_cast<size_t>(k)];
       std::optional<Eigen::MatrixXd> places;
-      if (const std::optional<size_t> teller = problem.RecordingWithSamePlaces(r);
-          teller && all[*teller].misfit.summary.IsUsable())
-        places = all[*teller].place_offset;
+      if (const std::optional<size_t> source = problem.RecordingWithSamePlaces(r);
+          source && all[*source].misfit.summary.IsUsable())
+        places = all[*source].place_offset;
       all[r] = MisfitOf(problem, values, r, places);
     });
   }

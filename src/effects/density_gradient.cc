@@ -4,7 +4,6 @@
 // It uses the nodal volumes of the lumped mass, so that the total mass is exact.
 #include <glog/logging.h>
 
-
 #include "effects/added_mass.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"

@@ -5,7 +5,6 @@
 // The law neglects the wake and the added mass of the medium; the shape enters through c only.
 #include <glog/logging.h>
 
-
 #include "effects/catalogue.h"
 #include "effects/rest_quantity.h"
 #include "fem/cloneable_effect.h"

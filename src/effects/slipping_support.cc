@@ -11,7 +11,6 @@
 // incremental potential is convex: quadratic up to the limit and linear beyond it.
 #include <glog/logging.h>
 
-
 #include "effects/bedding.h"
 #include "effects/catalogue.h"
 #include "fem/cloneable_effect.h"

@@ -1,6 +1,7 @@
 #include "geometry/rigid_fit.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -25,13 +26,9 @@ Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& ce
 }  // namespace
 
 SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
-  Eigen::Matrix3Xd about = About(points, points.rowwise().mean());
-  if (about.cols() < 3) {
-    // The decomposition of a matrix with three rows wants as many columns. Zeros change nothing.
-    const Eigen::Index given = about.cols();
-    about.conservativeResize(Eigen::NoChange, 3);
-    about.rightCols(3 - given).setZero();
-  }
+  // A decomposition of three rows wants three columns or more. Columns of zeros change nothing.
+  Eigen::Matrix3Xd about = Eigen::Matrix3Xd::Zero(3, std::max<Eigen::Index>(3, points.cols()));
+  about.leftCols(points.cols()) = About(points, points.rowwise().mean());
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(about, Eigen::ComputeThinU);
   const Eigen::VectorXd& extent = shape.singularValues();
   Eigen::Index count = 0;
