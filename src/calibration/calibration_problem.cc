@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
-#include "prediction/recorded_motion.h"
+#include "prediction/recording_noise.h"
 #include "prediction/recording_nuisances.h"
 
 namespace lacuna {

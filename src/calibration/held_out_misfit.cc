@@ -1,4 +1,4 @@
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 
 #include <algorithm>
 #include <cmath>
