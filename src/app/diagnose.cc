@@ -93,10 +93,11 @@ void AddDiagnose(CLI::App* app, std::function<int()>* command) {
       app->add_subcommand("diagnose", "Find the physical effect that a fitted model lacks");
   diagnose->footer(
       "RUN is the folder of a finished `lacuna fit`. Every effect of the catalogue is scored by\n"
-      "linearisation along the fitted motion; the best are fitted and judged by the held-out\n"
-      "frames and recordings. With --until-done, the missing effect is added and the new model is\n"
-      "diagnosed in turn, until no effect can be named any more; RUN/ledger.txt lists what was\n"
-      "tried and how much it reduced the error. The same command resumes an interrupted run.");
+      "linearisation along the fitted motion; the best are fitted and compared by their evidence,\n"
+      "which counts the held-out frames too. With --until-done, the missing effect is added and\n"
+      "the new model is diagnosed in turn, until no effect can be named any more; RUN/ledger.txt\n"
+      "lists what was tried and how much it reduced the error. The same command resumes an\n"
+      "interrupted run.");
   auto arguments = std::make_shared<DiagnoseArguments>();
   diagnose->add_option("run", arguments->run, "Folder of the run")->required();
   diagnose->add_option("--refits", arguments->refits, "How many of the best effects to fit")

@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
 
   CLI::App app{
       "Turns recordings of a deforming soft object into a finite-element model that moves like "
-      "it."};
+      "it, and finds out which physical effect the model still lacks."};
   app.footer(kFooter);
   app.set_version_flag("--version", lacuna::ProgramVersion());
   app.allow_extras();  // reported below, with a suggestion

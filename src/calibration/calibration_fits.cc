@@ -132,8 +132,7 @@ class Fitter {
     calibration.usable = false;
     calibration.message =
         "the correspondences between scanned points and the surface did not settle: start nearer "
-        "to "
-        "the solution, fit fewer parameters at once, or give scan.reach a smaller value";
+        "to the solution, fit fewer parameters at once, or give scan.reach a smaller value";
     return calibration;
   }
 

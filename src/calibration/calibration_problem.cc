@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/parallel.h"
-#include "prediction/recorded_motion.h"
+#include "prediction/recording_noise.h"
 #include "prediction/recording_nuisances.h"
 
 namespace lacuna {
@@ -156,10 +156,10 @@ std::optional<size_t> CalibrationProblem::RecordingWithSamePlaces(size_t recordi
 
 std::optional<Eigen::MatrixXd> CalibrationProblem::PlacesFromFitted(
     size_t recording, const Eigen::VectorXd& values) const {
-  const std::optional<size_t> teller = RecordingWithSamePlaces(recording);
-  if (!teller) return std::nullopt;
-  const RecordingModel fitted = ModelAt(*teller, values);
-  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*teller, values));
+  const std::optional<size_t> source = RecordingWithSamePlaces(recording);
+  if (!source) return std::nullopt;
+  const RecordingModel fitted = ModelAt(*source, values);
+  const Misfit misfit = fitted.Predict(fitted.FittedFrames(), NuisanceOf(*source, values));
   if (!misfit.summary.IsUsable()) return std::nullopt;
   return CommonError(misfit.residual, misfit.count, misfit.points, ErrorsOf(fitted),
                      std::vector<char>(misfit.frames.size(), 1), misfit.deformation);

@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calibration/adaptive_time_step.h"
 #include "calibration/mesh_limit.h"
 #include "calibration/misfit_report.h"
 #include "calibration/prior_conflicts.h"
-#include "calibration/stepped_fit.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
-#include "prediction/recorded_motion.h"
+#include "prediction/recording_noise.h"
 #include "record/csv_table.h"
 #include "record/run_stage.h"
 
@@ -30,7 +30,7 @@ struct CalibrationStage {
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
                             Progress* progress) {
-  const SteppedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
+  const FitWithTimeStep fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
   const Calibration& calibration = fit.calibration;
   const CalibrationProblem problem(study, reference.mesh);
   CalibrationStage stage;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 #include "record/calibration_record.h"
 #include "record/csv_table.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 #include "record/prior_conflict.h"
 
 namespace lacuna {

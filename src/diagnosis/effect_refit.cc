@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/thresholds.h"
 

@@ -124,7 +124,7 @@ class ActiveContractionLaw {
   }
 
   double tension_;        // T, Pa
-  Eigen::Vector3d axis_;  // unit
+  Eigen::Vector3d axis_;  // a, unit length
   double start_, rise_;   // s
 };
 

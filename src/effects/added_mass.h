@@ -4,7 +4,7 @@
 // acceleration of free fall g (m/s²) and the accelerations a of the nodes (m/s²).
 //
 // A derived class gives the field and its derivatives; the card must begin with θ and end with the
-// setting `gravity`. The field is kept for the body that was asked about last (rest_quantity.h), so
+// setting `gravity`. The field is kept for each mesh on which the effect acts (rest_quantity.h), so
 // that the effect may be used by several threads.
 #ifndef LACUNA_EFFECTS_ADDED_MASS_H_
 #define LACUNA_EFFECTS_ADDED_MASS_H_

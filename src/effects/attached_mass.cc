@@ -52,7 +52,7 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
             "Timoshenko, D. H. Young & W. Weaver, Vibration Problems in Engineering, 4th ed., "
             "Wiley 1974 (bars and beams that carry a mass)",
         .parameters = {{.name = "mass",
-                        .meaning = "mass added, m; a negative one is missing there, as in a void",
+                        .meaning = "mass added, m; negative where mass is missing, as in a void",
                         .dimension = kMass,
                         .bounds = kAnyValue,
                         .null_value = 0,

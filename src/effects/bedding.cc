@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-
 #include "core/error.h"
 #include "effects/rest_region.h"
 #include "effects/vector_parameters.h"
@@ -38,7 +37,7 @@ void AppendBeddedPart(EffectCard* card) {
                Eigen::Vector3d::Zero(), card);
   AppendDirectionSetting("normal",
                          "the support holds the boundary nodes that at rest lie on this side "
-                         "of the plane; left out, on both;",
+                         "of the plane; if omitted, on both sides;",
                          Eigen::Vector3d::Zero(), card);
   card->parameters.push_back({.name = "radius",
                               .meaning = "the support fades within this distance of the point "

@@ -19,8 +19,8 @@ ParameterCard BeddingModulus();
 // not fade.
 void AppendBeddedPart(EffectCard* card);
 
-// The bedded part for an effect whose card ends with these settings. The areas are kept for the
-// body that was asked about last, and may be asked for by several threads.
+// The bedded part for an effect whose card ends with these settings. The areas are computed once
+// for each mesh (rest_quantity.h), and several threads may call Areas.
 class BeddedPart {
  public:
   // All parameters of the effect, in the order of its card; the last seven are the settings.

@@ -59,7 +59,7 @@ std::shared_ptr<const Effect> MakeMaterial(const Config& config);
 
 // An effect from parameter values by name, SI. An omitted parameter takes the default value of the
 // card. The caller must know the catalogue (CHECK): a type or a parameter that does not exist, a
-// parameter without a value, and an effect that only YAML can describe are errors of the program.
+// parameter without a value, and an effect that only YAML can describe are programming errors.
 std::shared_ptr<const Effect> MakeEffect(const std::string& type,
                                          const std::map<std::string, double>& parameters);
 

@@ -66,7 +66,7 @@ class CorotationalLaw {
             "P = 2μ (F − R) + λ (tr(RᵀF) − 3) R",
         .citation =
             "M. Müller, M. Gross, Interactive Virtual Materials, Graphics Interface 2004; "
-            "exact tangent and its definite stand-in: A. McAdams et al., Efficient "
+            "exact tangent and its definite approximation: A. McAdams et al., Efficient "
             "Elasticity for Character Skinning with Contact and Collisions, ACM TOG 30(4), "
             "2011",
         .parameters = ElasticParameters(),

@@ -39,7 +39,7 @@ inline std::vector<ParameterCard> ElasticParameters() {
 inline std::vector<ParameterCard> ElasticSettings() {
   std::vector<ParameterCard> settings = ElasticParameters();
   for (ParameterCard& setting : settings) {
-    setting.meaning += "; if left out: the material's";
+    setting.meaning += "; if omitted, that of the material";
     setting.setting = true;
   }
   return settings;

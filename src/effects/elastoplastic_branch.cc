@@ -10,7 +10,8 @@
 // stated as a strain so that E_p does not depend on m.
 //
 // Radial return at the end of the step (Wilkins 1964); its incremental potential is quadratic up to
-// yield and linear beyond. Independent of rate, so statics is a step like any other.
+// yield and linear beyond. The law does not depend on the rate, so statics is a step like any
+// other.
 #include <cmath>
 
 #include "effects/catalogue.h"
@@ -67,7 +68,7 @@ class ElastoplasticLaw {
   }
 
  private:
-  static constexpr double kTwoMu = 2.0 / 3;                         // for m = 1
+  static constexpr double kTwoMu = 2.0 / 3;                         // 2μ for m = 1
   static constexpr double kNormOfUnitStretch = 1.2247448713915890;  // ‖diag(1, −½, −½)‖ = √(3/2)
 
   static EffectCard MakeCard() {

@@ -44,7 +44,7 @@ const EffectCard& TheCard() {
           "per: mass, force: [0, 0, \"-k * exp(-z/d)\"], parameters: {k: {value: 3 N/kg, "
           "plausible: [0, 10 N/kg]}, d: {value: 5 mm, setting: true}}}; docs/expression.md "
           "describes it in full",
-      .citation = "the user's own",
+      .citation = "given by the user",
       .parameters = {},
       .residual_when_missing =
           "The residual is a force that depends on place, velocity and time as the expression "
@@ -269,7 +269,7 @@ class ExpressionForceEffect final : public CloneableEffect<ExpressionForceEffect
   }
 
   ExpressionLaw law_;
-  // Shared by copies with other parameter values: one warning will do.
+  // Shared by copies with other parameter values, because one warning is enough.
   std::shared_ptr<std::atomic<bool>> warned_ = std::make_shared<std::atomic<bool>>(false);
 };
 

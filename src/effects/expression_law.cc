@@ -36,7 +36,7 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
   card.log_scale = config.Flag("log_scale", false);
   if (config.Has("min")) card.bounds.min = ReadLike(config, "min", card.dimension, kAnyValue);
   if (config.Has("max")) card.bounds.max = ReadLike(config, "max", card.dimension, kAnyValue);
-  if (!(card.bounds.min < card.bounds.max)) config.Fail("max", "expected more than min");
+  if (!(card.bounds.min < card.bounds.max)) config.Fail("max", "expected a value above min");
   if (card.log_scale && card.bounds.min <= 0) {
     card.bounds.min = 0;
     card.bounds.open_min = true;
@@ -57,15 +57,15 @@ ParameterCard ReadParameterCard(const Config& config, const std::string& name, d
   } else {
     const std::string unit = card.dimension.unit;
     config.Fail("plausible",
-                fmt::format("expected the least and the largest value that make sense, e.g. "
-                            "[-10{0}, 10{0}]; a parameter that is not to be fitted needs none if "
-                            "it says `setting: true`",
+                fmt::format("expected the smallest and the largest plausible value, e.g. "
+                            "[-10{0}, 10{0}]; a parameter with `setting: true`, which is never "
+                            "fitted, needs none",
                             unit.empty() ? "" : " " + unit));
   }
   if (card.plausible_min < card.bounds.min || card.plausible_max > card.bounds.max)
     config.Fail("plausible", "reaches beyond the bounds min and max");
   if (card.log_scale && card.plausible_min <= 0)
-    config.Fail("plausible", "a logarithmic scale has only values > 0");
+    config.Fail("plausible", "expected values > 0, because the scale is logarithmic");
   return card;
 }
 
@@ -83,15 +83,15 @@ void ReadLawParameters(const Config& config, Law* law) {
     if (std::find(reserved.begin(), reserved.end(), name) != reserved.end() ||
         std::find(kVariableNames, kVariableNames + Law::kVariables, name) !=
             kVariableNames + Law::kVariables)
-      list.Fail(name, "this name means something else in an expression");
+      list.Fail(name, "this name has another meaning in an expression");
     values.push_back(0);
     law->card.parameters.push_back(ReadParameterCard(list.Child(name), name, &values.back()));
     if (!law->card.parameters.back().setting) amplitudes.emplace_back(name, values.size() - 1);
   }
   if (amplitudes.empty()) {
-    config.Fail(
-        "parameters",
-        "expected one that is not a setting: the size of the force, with which it vanishes");
+    config.Fail("parameters",
+                "expected at least one that is not a setting: the amplitude, with which the force "
+                "vanishes");
   }
   const size_t amplitude = config.Choice("amplitude", amplitudes, amplitudes.front().first);
   auto& cards = law->card.parameters;
@@ -132,7 +132,7 @@ void ReadForce(const Config& config, Law* law) {
     if (std::none_of(law->force.begin(), law->force.end(),
                      [&](const Expression& force) { return force.Uses(Law::kVariables + k); })) {
       config.Child("parameters")
-          .Fail(law->card.parameters[k].name, "stands in none of the three expressions");
+          .Fail(law->card.parameters[k].name, "does not occur in any of the three expressions");
     }
   }
 }
@@ -239,8 +239,8 @@ ExpressionLaw ReadExpressionLaw(const Config& config, const EffectCard& card) {
   law.per = config.Choice<Measure>(
       "per", {{"mass", Measure::kMass}, {"volume", Measure::kVolume}, {"area", Measure::kArea}});
   law.card = card;
-  law.card.title = fmt::format("{}, a force law of the user's own", law.name);
-  law.card.citation = config.Text("citation", "the user's own; language: docs/expression.md");
+  law.card.title = fmt::format("{}, a user-defined force law", law.name);
+  law.card.citation = config.Text("citation", "given by the user; language: docs/expression.md");
   ReadLawParameters(config, &law);
   ReadForce(config, &law);
   const char* measure = law.per == Measure::kMass     ? "m_i"

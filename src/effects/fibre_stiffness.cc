@@ -42,8 +42,8 @@ class FibreStiffnessLaw {
     return modulus_ * UnitStress(F);
   }
 
-  // δP = k/2 (2 (b·δb) b + q δb) ⊗ a with b = F a, δb = δF a, q = b·b − 1; of the map of δb the
-  // eigenvalues are 3 b·b − 1 along b and q across.
+  // δP = k/2 (2 (b·δb) b + q δb) ⊗ a with b = F a, δb = δF a, q = b·b − 1. The map of δb has the
+  // eigenvalues 3 b·b − 1 along b and q across b.
   StressTangent Tangent(const Eigen::Matrix3d& F, const MaterialPoint& /*at*/,
                         bool convexify) const {
     const Eigen::Vector3d b = F * axis_;
@@ -114,8 +114,9 @@ class FibreStiffnessLaw {
                                .plausible_max = 1e6,
                                .default_value = kMustBeGiven});
     card.parameters.push_back({.name = "azimuth",
-                               .meaning = "angle from the x axis to the fibres' shadow on the xy "
-                                          "plane, φ; without meaning for fibres along z",
+                               .meaning =
+                                   "angle from the x axis to the projection of the fibres "
+                                   "onto the xy plane, φ; without meaning for fibres along z",
                                .dimension = kAngle,
                                .bounds = kAnyValue,
                                .null_value = kNoNullValue,
@@ -137,14 +138,14 @@ class FibreStiffnessLaw {
 
   static double Elongation(const Eigen::Vector3d& stretched) { return stretched.squaredNorm() - 1; }
 
-  // For k = 1.
+  // The stress for k = 1.
   Eigen::Matrix3d UnitStress(const Eigen::Matrix3d& F) const {
     const Eigen::Vector3d b = F * axis_;
     return 0.5 * Elongation(b) * b * axis_.transpose();
   }
 
   double modulus_;        // k, Pa
-  Eigen::Vector3d axis_;  // unit
+  Eigen::Vector3d axis_;  // a, unit length
   Eigen::Vector3d axis_by_azimuth_, axis_by_inclination_;
 };
 

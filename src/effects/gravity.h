@@ -1,4 +1,4 @@
-// Gravity as code outside this module needs it: the acceleration of free fall of a model.
+// The part of gravity that other modules use: the acceleration of free fall of a model.
 //
 //   f_i = m_i g   (I. Newton, Philosophiæ Naturalis Principia Mathematica, 1687),
 // with the lumped mass m_i of node i. Other accelerations of the laboratory are described alike.

@@ -27,7 +27,8 @@ class LinearLaw {
             "neither",
         .look_alikes = {"corotational", "st_venant_kirchhoff", "neo_hookean", "strain_stiffening"},
         .conserves_momentum = true,
-        // Torques balance about the rest positions only: the law does not know of rotations.
+        // Torques balance about the rest positions only, because the law is not invariant under
+        // rotations.
         .conserves_angular_momentum = false};
     return card;
   }

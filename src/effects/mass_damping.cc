@@ -1,4 +1,4 @@
-// Mass-proportional damping, the first half of Rayleigh's.
+// Mass-proportional damping, the first term of Rayleigh damping.
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"

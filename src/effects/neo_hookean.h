@@ -1,5 +1,5 @@
-// The neo-Hookean elasticity law as code outside this module needs it: its card, so that the law is
-// referred to without its name. The energy and its source stand in neo_hookean_energy.h.
+// The card of the neo-Hookean elasticity law, by which other modules refer to the law without
+// spelling its name. The energy and its source are in neo_hookean_energy.h.
 #ifndef LACUNA_EFFECTS_NEO_HOOKEAN_H_
 #define LACUNA_EFFECTS_NEO_HOOKEAN_H_
 

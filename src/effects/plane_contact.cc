@@ -53,10 +53,11 @@ Penalty PenaltyAt(double depth, double smoothing) {
 // the gradient of the convex dissipation μ p √(|u|² + w²), hence smooth and never a source of
 // energy. A body that should stick under a tangential force of r times the limit creeps at
 // w r/√(1 − r²); one that slides at |u| ≫ w lacks 1/2 (w/|u|)² of the limit. In statics there is
-// no velocity and hence no friction. p is that of the end of the step, not lagged, so that it is
-// exact at long steps and at the first touch. In return ∂f/∂x = A p′ (−n + μ u/√…) nᵀ is
-// unsymmetric; AddTangents adds its symmetric part, or with `convexify` −A p′ n nᵀ, with which the
-// normal problem is solved exactly and the tangential one converges after it.
+// no velocity and hence no friction. p is taken at the end of the step, not at its start, so
+// that it is exact for long steps and at the first touch. As a consequence, ∂f/∂x =
+// A p′ (−n + μ u/√…) nᵀ is not symmetric; AddTangents adds its symmetric part, or with `convexify`
+// −A p′ n nᵀ, with which the normal problem is solved exactly and the tangential one converges
+// after it.
 class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
  public:
   enum Parameter { kStiffness, kNormal, kOffset = kNormal + 3, kFriction, kSlip, kSmoothing };
@@ -136,7 +137,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
   struct Contact {
     int node;
     double area;           // m²
-    Penalty penalty;       // at its depth
+    Penalty penalty;       // penalty at the depth of the node
     Eigen::Vector3d slip;  // u, m/s
     double slip_norm;      // √(|u|² + w²), m/s
   };
@@ -247,7 +248,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
     }
   }
 
-  // Of the traction, relative to the pressure.
+  // The traction divided by the pressure.
   Eigen::Vector3d Direction(const Contact& contact) const {
     return normal_ - Friction() * contact.slip / contact.slip_norm;
   }
@@ -286,7 +287,7 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
   }
 
   Eigen::VectorXd parameters_;           // in the order of the card
-  Eigen::Vector3d normal_;               // unit
+  Eigen::Vector3d normal_;               // unit length
   RestQuantity<Eigen::VectorXd> areas_;  // n, m²
 };
 

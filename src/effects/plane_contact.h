@@ -1,7 +1,7 @@
-// Contact with a plane as code outside this module needs it: to add a plane to a model, and to find
-// the plane of a model.
+// The part of plane contact that other modules use: adding a plane to a model, and finding the
+// plane of a model.
 //
-// The body touches the half-space n·x < c. The law, its source and its parameters stand in
+// The body touches the half-space n·x < c. The law, its source and its parameters are in
 // plane_contact.cc.
 #ifndef LACUNA_EFFECTS_PLANE_CONTACT_H_
 #define LACUNA_EFFECTS_PLANE_CONTACT_H_

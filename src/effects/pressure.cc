@@ -8,10 +8,10 @@
 // are exactly −p times the derivative of the enclosed volume V: there is an energy p V and their
 // sum and moment vanish.
 //
-// With s_b = ∂N_b/∂η t₁ − ∂N_b/∂ξ t₂, d(t₁ × t₂) = Σ s_b × dx_b, and of the tangent the symmetric
-// part has the blocks −½ p ∫ [N_a s_b − N_b s_a]× dξ dη. On a closed surface this is the whole
-// tangent; on a part of it the skew-symmetric rest belongs to the rim of the part. The tangent is
-// indefinite, and small against the elastic stiffness while p is below the modulus; with
+// With s_b = ∂N_b/∂η t₁ − ∂N_b/∂ξ t₂, d(t₁ × t₂) = Σ s_b × dx_b, and the symmetric part of the
+// tangent has the blocks −½ p ∫ [N_a s_b − N_b s_a]× dξ dη. On a closed surface this is the whole
+// tangent; on a part of it the skew-symmetric remainder belongs to the rim of the part. The tangent
+// is indefinite, and small against the elastic stiffness while p is below the modulus; with
 // `convexify` it is omitted.
 #include <fmt/format.h>
 #include <glog/logging.h>
@@ -77,8 +77,8 @@ const auto& FaceRule() {
 // The faces under pressure.
 struct PressedFaces {
   Eigen::MatrixXi nodes;   // 3 or 6 × faces
-  std::vector<int> block;  // of nodes a, b of face f in the matrix: block[(f·n + a)·n + b]
-  bool closed = false;     // all of the boundary
+  std::vector<int> block;  // matrix block of nodes a, b of face f: entry (f·n + a)·n + b
+  bool closed = false;     // whether the faces make up the whole boundary
 };
 
 // Calls visit(std::integral_constant<int, nodes per face>).
@@ -189,7 +189,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                  Eigen::Vector3d::Zero(), &card);
     AppendDirectionSetting("normal",
                            "the pressure acts on the faces that at rest lie wholly on this side "
-                           "of the plane; left out, everywhere;",
+                           "of the plane; if omitted, on all faces;",
                            Eigen::Vector3d::Zero(), &card);
     return card;
   }
@@ -287,7 +287,7 @@ class PressureEffect final : public CloneableEffect<PressureEffect> {
                          });
   }
 
-  // Enclosed by the surface: ⅓ ∫ (x − a) · n dA, with a point a nearby.
+  // The volume enclosed by the surface, ⅓ ∫ (x − a) · n dA, with a point a nearby.
   template <int kNodes>
   double Volume(const Body& body, const Eigen::VectorXd& position) const {
     const Eigen::Vector3d apex = position.head<3>();

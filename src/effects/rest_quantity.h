@@ -11,10 +11,10 @@
 
 namespace lacuna {
 
-// One value for each body that lives; safe to ask from several threads. Copies share the values, so
-// that an effect with other parameter values need not derive them again. `T` may depend on the mesh
-// at rest and on the effect's settings (call Forget when they change), but not on the density,
-// which another body of the same mesh may have different.
+// Keeps one value for each mesh in use; may be called from several threads. Copies share the
+// values, so that an effect with other parameter values need not derive them again. `T` may depend
+// on the mesh at rest and on the effect's settings (call Forget when they change), but not on the
+// density, which another body of the same mesh may have different.
 template <typename T>
 class RestQuantity {
  public:
@@ -22,7 +22,7 @@ class RestQuantity {
   template <typename Make>
   std::shared_ptr<const T> Of(const Body& body, const Make& make) const {
     const std::scoped_lock lock(kept_->mutex);
-    // Bodies of one mesh share its schedule, which stands for the mesh.
+    // Bodies of one mesh share its schedule, which therefore identifies the mesh.
     for (const auto& [mesh, value] : kept_->values)
       if (mesh.lock() == body.schedule) return value;
     std::erase_if(kept_->values, [](const auto& entry) { return entry.first.expired(); });

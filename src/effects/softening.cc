@@ -21,7 +21,7 @@ namespace {
 class SofteningLaw {
  public:
   enum Parameter { kModulus, kSofteningStrain, kPoissonRatio };
-  static constexpr int kStateSize = 1;  // κ at the start
+  static constexpr int kStateSize = 1;  // κ at the start of the step
   using State = Eigen::Matrix<double, kStateSize, 1>;
 
   static const EffectCard& Card() {
@@ -81,8 +81,8 @@ class SofteningLaw {
             "Damage Model, Computer Methods in Applied Mechanics and Engineering 60, 1987",
         .parameters = {{.name = "modulus",
                         .meaning =
-                            "Young's modulus that the untouched body has more than one softened "
-                            "for good, m; for filled rubbers up to that of the material",
+                            "Young's modulus that the undamaged body has in addition to that of a "
+                            "fully softened one, m; for filled rubbers up to that of the material",
                         .dimension = kPressure,
                         .bounds = kNotNegative,
                         .null_value = 0,
@@ -101,7 +101,7 @@ class SofteningLaw {
                         .log_scale = true,
                         .trial = {.min = 0.03, .max = 0.2, .draw = 3}},
                        {.name = "poisson_ratio",
-                        .meaning = "Poisson's ratio of the branch (if left out: the material's)",
+                        .meaning = "Poisson's ratio of the branch (of the material if omitted)",
                         .dimension = kDimensionless,
                         .bounds = {-1, 0.5, true, true},
                         .null_value = kNoNullValue,

@@ -22,7 +22,8 @@ Eigen::Matrix3d ViscousStress(const LameConstants& viscosity, const Eigen::Matri
   return stress;
 }
 
-// Stiffness-proportional damping, the second half of Rayleigh's, for large rotations and strains.
+// Stiffness-proportional damping, the second term of Rayleigh damping, for large rotations and
+// strains.
 //
 // The textbook force −β K v is unsuitable for a nonlinear body with any choice of K. With the
 // stiffness of the rest shape it brakes a body that merely rotates (a rigid rotation is a null
@@ -138,8 +139,8 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
                                .default_value = kMustBeGiven,
                                .log_scale = false});
     for (ParameterCard parameter : ElasticParameters()) {
-      parameter.meaning =
-          "of the stiffness that β refers to (if left out: the material's): " + parameter.meaning;
+      parameter.meaning = "of the stiffness that β refers to (if omitted, that of the material): " +
+                          parameter.meaning;
       card.parameters.push_back(std::move(parameter));
     }
     return card;

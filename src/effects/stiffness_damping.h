@@ -1,5 +1,5 @@
-// Stiffness-proportional damping as code outside this module needs it: its card, so that the effect
-// is referred to without its name. The law and its source stand in stiffness_damping.cc.
+// The card of stiffness-proportional damping, by which other modules refer to the effect without
+// spelling its name. The law and its source are in stiffness_damping.cc.
 #ifndef LACUNA_EFFECTS_STIFFNESS_DAMPING_H_
 #define LACUNA_EFFECTS_STIFFNESS_DAMPING_H_
 

@@ -1,8 +1,6 @@
 #include "effects/vector_parameters.h"
 
-
 namespace lacuna {
-namespace {}  // namespace
 
 void AppendVector(const ParameterCard& common, const Eigen::Vector3d& default_value,
                   EffectCard* card) {

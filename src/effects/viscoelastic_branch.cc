@@ -4,7 +4,7 @@
 // Over-stress Q with  Q̇ + Q/τ = C : Ė,  C Hooke's moduli for m and ν. This is Simo's model with the
 // second Piola–Kirchhoff stress of a branch linear in E, for the reasons in fem/memory_branch.h;
 // for τ → 0 at constant m τ it becomes stiffness_damping. The free energy of the branch is ½ Q :
-// C⁻¹ : Q, what it dissipates Q : C⁻¹ : Q/τ ≥ 0, at any strain.
+// C⁻¹ : Q, its dissipation Q : C⁻¹ : Q/τ ≥ 0, at any strain.
 //
 // C is that of a full isotropic solid, not only of its deviator: with the Poisson ratio of the
 // material (the default) the branch is a scaled copy of it, so that m is the extra Young's modulus
@@ -14,7 +14,7 @@
 // Update (R. L. Taylor, K. S. Pister, G. L. Goudreau 1970): exact for a strain that changes
 // linearly in the step,
 //   e₁ = a e₀ + b (E₁ − E₀),    a = exp(−h/τ),    b = (1 − a) τ/h,    Q = C : e,
-// hence exact in a hold, of second order else, and stable for any h/τ. A point remembers e and E.
+// hence exact in a hold, otherwise of second order, and stable for any h/τ. A point stores e and E.
 // Statics is the limit of a very slow motion: e = 0.
 #include <cmath>
 
@@ -97,8 +97,8 @@ class ViscoelasticLaw {
                         .log_scale = false},
                        {.name = "relaxation_time",
                         .meaning =
-                            "time in which the stress of the branch falls to 37 % in a hold, τ; "
-                            "a recording tells those between its frame interval and its duration",
+                            "time in which the stress of the branch falls to 37 % in a hold, τ; a "
+                            "recording determines values between its frame interval and duration",
                         .dimension = kTime,
                         .bounds = kPositive,
                         .null_value = kNoNullValue,
@@ -108,7 +108,7 @@ class ViscoelasticLaw {
                         .log_scale = true,
                         .trial = {.min = 0.02, .max = 0.3, .draw = 1}},
                        {.name = "poisson_ratio",
-                        .meaning = "Poisson's ratio of the branch (if left out: the material's)",
+                        .meaning = "Poisson's ratio of the branch (of the material if omitted)",
                         .dimension = kDimensionless,
                         .bounds = {-1, 0.5, true, true},
                         .null_value = kNoNullValue,

@@ -112,8 +112,8 @@ std::vector<int> ColumnCounts(const Graph& graph, const std::vector<int>& parent
 
 // Supernodes as sets of columns of a postordered elimination tree.
 struct Partition {
-  std::vector<int> supernode_of;  // by column
-  std::vector<int> parent;        // by supernode
+  std::vector<int> supernode_of;  // supernode of each column
+  std::vector<int> parent;        // parent of each supernode
 };
 
 int Find(std::vector<int>* representative, int s) {

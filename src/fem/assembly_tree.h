@@ -33,7 +33,7 @@ struct AssemblyTree {
   std::vector<int> row;           // update rows, places in `order`, ascending
   std::vector<int> parent;        // −1 for a root
   std::vector<std::vector<int>> children;
-  std::vector<std::vector<RowRun>> runs;  // from each supernode into the front of its parent
+  std::vector<std::vector<RowRun>> runs;  // runs of each supernode in the front of its parent
 
   int SupernodeCount() const { return static_cast<int>(parent.size()); }
   int Columns(int s) const { return column_begin[s + 1] - column_begin[s]; }

@@ -22,7 +22,7 @@ NodeElements ElementsOfNodes(int nodes, const Eigen::MatrixXi& elements) {
   of.begin.assign(nodes + 1, 0);
   for (Eigen::Index k = 0; k < elements.size(); ++k) {
     const int node = elements.data()[k];
-    CHECK(node >= 0 && node < nodes) << "an element names node " << node << " of " << nodes;
+    CHECK(node >= 0 && node < nodes) << "an element refers to node " << node << " of " << nodes;
     ++of.begin[node + 1];
   }
   for (int i = 0; i < nodes; ++i) of.begin[i + 1] += of.begin[i];

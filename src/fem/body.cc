@@ -22,8 +22,8 @@ void CheckNodeNumbers(const TetMesh& mesh) {
   for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
     for (const int node : mesh.tets.col(e)) {
       if (node < 0 || node >= mesh.NodeCount()) {
-        throw InputError(fmt::format("tetrahedron {} names node {}; the mesh has nodes 0 to {}", e,
-                                     node, mesh.NodeCount() - 1));
+        throw InputError(fmt::format("tetrahedron {} refers to node {}; the mesh has nodes 0 to {}",
+                                     e, node, mesh.NodeCount() - 1));
       }
       used[node] = 1;
     }

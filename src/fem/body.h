@@ -33,8 +33,8 @@ struct Body {
 
   Eigen::VectorXd node_mass;  // n, lumped, kg; the sum is density·volume
 
-  std::shared_ptr<const BlockPattern> pattern;      // of all matrices of this body
-  std::shared_ptr<const ElementSchedule> schedule;  // order in which elements are visited
+  std::shared_ptr<const BlockPattern> pattern;      // shared by all matrices of this body
+  std::shared_ptr<const ElementSchedule> schedule;  // the order in which elements are visited
 
   int NodeCount() const { return static_cast<int>(mesh.NodeCount()); }
   int ElementCount() const { return static_cast<int>(mesh.TetCount()); }

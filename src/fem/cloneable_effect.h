@@ -11,7 +11,8 @@ namespace lacuna {
 
 // The base of a class that can be copied and has a SetParameters(values):
 //   class DragEffect final : public CloneableEffect<DragEffect> { … };
-// Only the copy, which nobody else has yet, is changed. `Base` is Effect or a class derived from it.
+// Only the new copy, which is not shared yet, is changed. `Base` is Effect or a class derived from
+// it.
 template <typename Derived, typename Base = Effect>
 class CloneableEffect : public Base {
  public:

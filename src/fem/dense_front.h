@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-// The verdict of the pivots on a matrix whose entries are at most of order one.
+// Whether the pivots show a matrix, with entries at most of order one, to be positive definite.
 enum class Pivots {
   kPositive,
   kInDoubt,   // a pivot is not positive, possibly because of rounding, or it is not finite

@@ -84,7 +84,7 @@ class Effect {
  public:
   virtual ~Effect() = default;
 
-  // Name, equation, parameters and look-alikes of the effect. Lives as long as the program.
+  // Name, equation, parameters and look-alikes of the effect. Must exist until the program ends.
   virtual const EffectCard& Card() const = 0;
 
   // The values of the parameters in the order of the card, SI.

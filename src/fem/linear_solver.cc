@@ -48,14 +48,14 @@ struct LinearSolver::Implementation {
   std::optional<SupernodalFactor> single_factor;
   std::optional<CholmodFactor> double_factor;
   bool single_precision_fails = false;
-  std::vector<Eigen::Matrix3d> factor_rotations;  // at the factorisation; empty: not given
+  std::vector<Eigen::Matrix3d> factor_rotations;  // node rotations at the factorisation, if given
 
   int factorisations = 0;
   double factorisation_cost = 0, iteration_cost = 0;
   double spent = 0;  // cost since the factorisation, including its own
-  int solves = 0;    // with the current factor
+  int solves = 0;    // number of solves with the current factor
 
-  std::vector<Eigen::Matrix3d> rotation;  // since the factorisation, per node; empty: none
+  std::vector<Eigen::Matrix3d> rotation;  // rotation of each node since the factorisation, if any
   Eigen::VectorXf single_reduced;
   Eigen::VectorXd double_reduced;
   Eigen::MatrixXd double_solution;  // one column

@@ -32,7 +32,7 @@ struct LinearSolveSummary {
   enum class Status { kNotRun, kSolved, kNotPositiveDefinite, kNoConvergence };
   Status status = Status::kNotRun;
   std::string message;
-  int iterations = 0;            // of CG
+  int iterations = 0;            // iterations of CG
   bool factorised = false;       // whether a numeric factorisation was needed
   double relative_residual = 0;  // the achieved ‖b − A x‖ / ‖b‖
   bool IsUsable() const { return status == Status::kSolved; }

@@ -113,7 +113,7 @@ class Newton {
   // is nearly as effective as a new tangent, whose assembly costs more than a step. Returns false
   // and leaves `at` unchanged if the residual does not decrease enough.
   bool FollowChord(Iterate* at) {
-    constexpr double kSufficientRatio = 0.2;  // of the new residual to the old one
+    constexpr double kSufficientRatio = 0.2;  // largest ratio of the new residual to the old one
     if (!has_tangent_ || convexify_) return false;
     has_tangent_ = false;
     Eigen::VectorXd step;
@@ -283,7 +283,7 @@ class Newton {
   bool convexify_ = false;
   bool may_climb_ = true;
   bool has_tangent_ = false;                // `tangent_` is exact for an earlier iterate
-  std::vector<Eigen::Matrix3d> rotations_;  // of the nodes at that iterate
+  std::vector<Eigen::Matrix3d> rotations_;  // rotations of the nodes at that iterate
   Iterate beyond_;
   // Residuals below this norm, N, are rounding errors. Infinite until a tangent has been assembled.
   double rounding_ = std::numeric_limits<double>::infinity();

@@ -21,7 +21,7 @@ struct NewtonProblem {
   const StepEquation& equation;
   const Eigen::VectorXd& applied_force;  // 3n, N
   const std::vector<char>& fixed;        // n flags
-  double relative_tolerance = 0;         // of ‖r − applied‖, relative to the acting forces
+  double relative_tolerance = 0;  // bound on ‖r − applied‖ relative to the acting forces
   int max_iterations = 0;
 };
 

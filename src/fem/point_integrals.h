@@ -2,7 +2,7 @@
 // stress P, its tangent ∂P/∂F and the energy density ψ at the quadrature points:
 //   f_a = −Σ_q w_q P_q g_a(q),    ∂f_a/∂x_b = −Σ_q w_q K_ab(q),    E = Σ_q w_q ψ_q
 // with quadrature weights w_q and shape gradients g_a of the body (Bonet & Wood, Nonlinear
-// Continuum Mechanics for Finite Element Analysis); K_ab as in stress_tangent.h.
+// Continuum Mechanics for Finite Element Analysis); stress_tangent.h defines K_ab.
 //
 // Laws are evaluated for batches of points, since some are faster for many points at once. For the
 // elements [begin, end), at most ElementSchedule::kElementsPerBatch, an object Points<kNodes>(at,

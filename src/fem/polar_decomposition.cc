@@ -16,7 +16,7 @@ constexpr double kConvergedChange = 1e-17;
 // Whether F is sufficiently far from singular or inverted matrices for Newton's iteration to be
 // fast and accurate.
 bool IsRegular(const Eigen::Matrix3d& F) {
-  constexpr double kSmallestDeterminant = 1e-3;  // for a matrix of norm 1
+  constexpr double kSmallestDeterminant = 1e-3;  // smallest determinant of a matrix of norm 1
   const double size = F.squaredNorm();
   return F.determinant() > kSmallestDeterminant * size * std::sqrt(size);
 }

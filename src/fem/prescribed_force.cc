@@ -45,7 +45,7 @@ const EffectCard& PrescribedForce::Card() const {
       .type = "prescribed_force",
       .title = "Known external force",
       .equation = "f_i = gain · share_i · F(t)",
-      .citation = "the recording's own measurement",
+      .citation = "measured during the recording",
       .parameters = {{.name = "gain",
                       .meaning = "true force divided by the measured force",
                       .dimension = kDimensionless,

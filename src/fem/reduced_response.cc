@@ -123,7 +123,7 @@ ReducedResponse::ReducedResponse(const Model& model, const std::vector<Trajector
       answers.push_back(std::move(*answer));
   }
   if (answers.empty()) {
-    message_ = "the model's stiffness is nowhere definite";
+    message_ = "the model's stiffness is not positive definite at any of the states";
     return;
   }
   Eigen::MatrixXd all(shapes.rows(), 0);

@@ -21,7 +21,7 @@ std::vector<char> FixedNodes(const Model& model) {
         throw InputError(
             fmt::format("a grip holds node {}; the mesh has nodes 0 to {}", node, nodes - 1));
       }
-      if (fixed[node]) throw InputError(fmt::format("node {} is held twice", node));
+      if (fixed[node]) throw InputError(fmt::format("node {} belongs to more than one grip", node));
       fixed[node] = 1;
     }
   }

@@ -19,7 +19,7 @@ namespace lacuna {
 
 struct StepOptions {
   TimeScheme scheme = TimeScheme::kBdf2;
-  int max_iterations = 50;  // of Newton's method; a larger value delays giving up
+  int max_iterations = 50;  // Newton iterations of a step; a larger value delays its failure
   // ‖r‖ over the free nodes relative to the acting forces, the sum of the norms of inertia, of each
   // effect and of the external force. A smaller value costs one or two more iterations.
   double relative_tolerance = 1e-8;
@@ -33,7 +33,7 @@ struct StepSummary {
   enum class Status { kNotRun, kConverged, kNoConvergence, kInvertedElement, kLinearSolverFailed };
   Status status = Status::kNotRun;
   std::string message;  // why the step failed, with time and node or element
-  int iterations = 0;   // of Newton's method
+  int iterations = 0;   // Newton iterations
   int factorisations = 0;
   int load_increments = 0;  // 0: reached directly
   double residual = 0;      // ‖r‖∞ over the free nodes, N

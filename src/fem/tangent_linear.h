@@ -60,8 +60,8 @@ class TangentLinear {
   TangentLinear& operator=(TangentLinear&&) noexcept;
 
   // Advances the sensitivities over a step from `before` to `position` (3n, m) that a Stepper has
-  // found; for an equilibrium the scheme is kQuasiStatic and the step length 0, and the place from
-  // which it was searched has no influence. If the tangent cannot be solved, the status is
+  // found; for an equilibrium the scheme is kQuasiStatic and the step length 0, and the start of
+  // the search for it has no influence. If the tangent cannot be solved, the status is
   // kNotPositiveDefinite and the sensitivities are those before the step.
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
                                const Eigen::VectorXd& position);

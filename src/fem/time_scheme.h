@@ -50,8 +50,8 @@ struct SchemeWeights {
   }
 };
 
-// The weights of a step of length h (s, > 0) after `steps_before` steps, of which only 0, 1 and
-// more are distinguished. `last` is the length of the previous step, s; 0: h.
+// The weights of a step of length h (s, > 0) after `steps_before` steps; only 0, 1 and larger
+// values are distinguished. `last` is the length of the previous step, s; 0: h.
 SchemeWeights WeightsOf(TimeScheme scheme, double h, int steps_before, double last = 0);
 
 }  // namespace lacuna

@@ -370,7 +370,7 @@ class BoundedDescent {
   std::vector<double*> blocks_;
   ceres::Problem problem_;
   ceres::Solver::Options solver_;
-  double cost_ = 0;  // at the current parameters
+  double cost_ = 0;  // cost at the current parameters
 };
 
 }  // namespace

@@ -22,7 +22,7 @@ struct DescentEnd {
   Eigen::VectorXd parameters;  // θ, SI, within the bounds
   bool usable = false;         // whether the search has converged
   std::string message;         // why it has not
-  int iterations = 0;          // of Ceres, summed over all rounds
+  int iterations = 0;          // iterations of Ceres in all rounds
 };
 
 // Searches from the starts of the parameters, of which there must be at least one. `first` is the

@@ -13,13 +13,12 @@
 namespace lacuna {
 
 struct CalibratedParameter {
-  std::string name;  // for messages and records, e.g. "material.young_modulus"
+  std::string name;  // name in messages and records, e.g. "material.young_modulus"
   double start = 0;  // SI
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool log_scale = false;  // φ = ln θ; `min` must be ≥ 0
-  // The prior is Gaussian in φ. A NaN mean stands for `start`; an infinite deviation stands for no
-  // prior.
+  // The prior is Gaussian in φ. A mean of NaN means `start`; an infinite deviation means no prior.
   double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI
   double prior_deviation = std::numeric_limits<double>::infinity();
   // A change of φ that would matter to the user, > 0. The fit scales the parameter by it, and the

@@ -22,12 +22,12 @@ namespace lacuna {
 struct Calibration {
   bool usable = false;
   std::string message;                       // why the result is not usable
-  int iterations = 0;                        // of the optimiser
+  int iterations = 0;                        // iterations of the optimiser
   int predictions = 0;                       // evaluations of the prediction function
   Eigen::VectorXd parameters;                // θ, SI
   std::vector<ParameterEstimate> estimates;  // empty if the first prediction failed
-  Eigen::MatrixXd covariance;                // of φ, with prior, `inflation` and `memory` included
-  double start_rms = 0, rms = 0;             // √(‖r‖²/n) at the start and at the solution
+  Eigen::MatrixXd covariance;     // covariance of φ with prior, `inflation` and `memory`
+  double start_rms = 0, rms = 0;  // √(‖r‖²/n) at the start and at the solution
   // √v = max(1, rms). All variances of the noise are multiplied by v, because a model that misses
   // the data by more than the noise determines its parameters less well than the noise would allow.
   double inflation = 1;

@@ -14,8 +14,8 @@
 namespace lacuna {
 namespace {
 
-constexpr double kBalanceTolerance = 1e-10;  // of Newton's method, relative to the acting forces
-constexpr double kSolverTolerance = 1e-7;    // of the linear system of a Newton step
+constexpr double kBalanceTolerance = 1e-10;  // Newton residual relative to the acting forces
+constexpr double kSolverTolerance = 1e-7;    // residual of the linear system of a Newton step
 constexpr int kNewtonIterations = 30;
 constexpr int kMaxLoadParts = 8;
 

@@ -12,20 +12,20 @@
 namespace lacuna {
 
 struct ForceFitOptions {
-  // Only where the positions are unknowns: the force imbalance of a node is measured by the length
-  // that it would displace this node alone (imbalance divided by the node's own stiffness), m. An
-  // imbalance of this length costs as much as a residual of one standard deviation. Smaller values
-  // enforce the balance more tightly but are harder numerically (below 1e-7 of the object's size
-  // the number of iterations multiplies); with larger ones more fits are needed before the
+  // Used only where the positions are unknowns, m. The force imbalance of a node is measured by the
+  // length by which it would displace this node alone (imbalance divided by the node's stiffness).
+  // An imbalance of this length costs as much as a residual of one standard deviation. Smaller
+  // values enforce the balance more tightly but are harder numerically (below 1e-7 of the object's
+  // size the number of iterations multiplies); with larger ones more fits are needed before the
   // multiplier has converged, and above 1e-4 of the size it may not converge.
   double balance_tolerance = 1e-6;
-  // Expected size of the change of a free node's force since the previous step, as such a length,
+  // Expected change of a free node's force since the previous step, as a length in the same sense,
   // m. Larger values follow the data more closely, including their noise.
   double free_force_scale = 1e-3;
   // Residuals beyond this many standard deviations contribute linearly (Huber's loss); 0 disables
   // the robust loss.
   double robust_threshold = 3;
-  int max_iterations = 100;          // of Levenberg–Marquardt, with one factorisation each
+  int max_iterations = 100;          // Levenberg–Marquardt steps with one factorisation each
   double function_tolerance = 1e-6;  // the iteration ends at this relative decrease of the cost
 };
 
@@ -37,10 +37,10 @@ struct ForceFit {
   Eigen::VectorXd position;      // 3n, m: the fitted end of the step
   Eigen::VectorXd force;         // 3n, N: the fitted external force; 0 where the model allows none
   Eigen::VectorXd coefficients;  // K, in the order of the force model's basis
-  Eigen::VectorXd multiplier;    // 3n, N: of the balance constraint, if positions are unknowns
+  Eigen::VectorXd multiplier;    // 3n, N: for the balance constraint, if positions are unknowns
   int factorisations = 0;
   double initial_cost = 0, final_cost = 0;
-  double weighted_rms = 0;  // of the observations, in their standard deviations
+  double weighted_rms = 0;  // rms residual of the observations in standard deviations
   double imbalance = 0;     // rms of the forces that the model does not allow, as a length, m
   bool IsUsable() const { return status == Status::kConverged; }
 };

@@ -17,7 +17,7 @@
 namespace lacuna {
 
 struct GradientSearchOptions {
-  double initial_radius = 0.25;  // as in search/cobyla.h: length of the first step in mid-range
+  double initial_radius = 0.25;  // length of the first step in mid-range, as in search/cobyla.h
   double final_radius = 1e-3;    // the search ends at a step of this relative length in t
   // Half-width of the differences, as a fraction of the range. A larger value reduces the influence
   // of noise and increases the truncation error.

@@ -29,7 +29,7 @@ struct StepForceFitter::Implementation {
   const Model& model;
   const StepEquation& equation;
   const ForceModel& force_model;
-  PositionFitStart start;                           // for the next fit
+  PositionFitStart start;                           // start of the next fit
   std::unique_ptr<CoefficientFitter> coefficients;  // null: positions are unknowns
 };
 

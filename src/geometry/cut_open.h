@@ -16,7 +16,7 @@ struct CutMesh {
 };
 
 // Keeps the tetrahedra whose centroid c satisfies n·(c − p) ≤ 0, with p = `point` (m) and n =
-// `normal`, of any length. Both results are empty if none remains.
+// `normal`, of any length but 0. Both results are empty if none remains.
 CutMesh CutOpen(const TetMesh& mesh, const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 
 }  // namespace lacuna

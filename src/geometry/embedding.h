@@ -15,13 +15,13 @@ struct Embedding {
   Eigen::VectorXi tet;     // n: the tetrahedron of each point
   Eigen::MatrixXd weight;  // (nodes per tet) × n: shape functions N_a at the points, sum 1
   std::vector<Eigen::MatrixX3d> gradient;  // n of (nodes per tet) × 3: ∂N_a/∂X at the points, 1/m
-  Eigen::VectorXd
-      outside;  // n: 0 for a point inside the mesh, else −(least barycentric coordinate)
+  // n: 0 for a point inside the mesh, else minus its least barycentric coordinate.
+  Eigen::VectorXd outside;
 };
 
-// Locates each point (3 × n, m) in the tetrahedron of the undeformed `mesh` that contains it. A
-// point outside the mesh gets the nearby tetrahedron whose least barycentric coordinate is largest,
-// so that its weights extrapolate.
+// Locates each point (3 × n, m, finite) in the tetrahedron of the undeformed `mesh` that contains
+// it. The mesh must have a tetrahedron (CHECK). A point outside the mesh gets the nearby
+// tetrahedron whose least barycentric coordinate is largest, so that its weights extrapolate.
 Embedding Embed(const TetMesh& mesh, const Eigen::Matrix3Xd& points);
 
 // The positions of the points (3 × n, m) for the node positions `nodes` (3 × nodes, m).

@@ -9,16 +9,17 @@
 namespace lacuna {
 
 // A point on one face of BoundarySurface::faces: x = Σ_a weight[a] · x_a over the face's nodes.
-// The derivatives of the weights refer to two coordinates of the face, whose directions are
-// counter-clockwise seen from outside. Only the first `count` entries of the vectors are used.
+// `by_first` and `by_second` are the derivatives of the weights with respect to two coordinates of
+// the face, whose directions are counter-clockwise seen from outside. Only the first `count`
+// entries of the vectors are used.
 struct FacePoint {
   int face = -1;
   int count = 0;  // nodes of the face: 3 or 6
   Eigen::Matrix<double, 6, 1> weight, by_first, by_second;
 };
 
-// The point with these barycentric coordinates in triangle `triangle` of BoundarySurface::surface,
-// four of which make up a quadratic face.
+// The point with these barycentric coordinates (sum 1) in triangle `triangle` of
+// BoundarySurface::surface, four of which make up a quadratic face. The index must be in range.
 FacePoint PlaceOnFace(const BoundarySurface& boundary, int triangle,
                       const Eigen::Vector3d& barycentric);
 

@@ -29,7 +29,7 @@ TriMeshFile ReadTriMesh(const std::filesystem::path& file);
 
 struct TetMeshFile {
   TetMesh mesh;
-  Eigen::VectorXi node_in_file;  // for each node, its index among the nodes of the file, from 0
+  Eigen::VectorXi node_in_file;  // index of each node among the nodes of the file, from 0
   std::vector<std::string> notes;
 };
 
@@ -38,8 +38,7 @@ struct TetMeshFile {
 //   .node, .ele   TetGen, order 1; either file is named and both are read
 //   .mesh         MEDIT, text, order 1
 //   .tet          lines "v x y z" and "t i j k l", indices from 0
-//   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra with indices from
-//   0
+//   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
 // Tetrahedra with negative volume are reoriented and unused nodes are dropped, each with a note.
 // Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
 // three are refused.

@@ -1,6 +1,7 @@
 #include "geometry/rigid_fit.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -25,8 +26,10 @@ Eigen::Matrix3Xd About(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& ce
 }  // namespace
 
 SpannedAxes AxesOf(const Eigen::Matrix3Xd& points) {
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(About(points, points.rowwise().mean()),
-                                                 Eigen::ComputeThinU);
+  // A decomposition of three rows wants three columns or more. Columns of zeros change nothing.
+  Eigen::Matrix3Xd about = Eigen::Matrix3Xd::Zero(3, std::max<Eigen::Index>(3, points.cols()));
+  about.leftCols(points.cols()) = About(points, points.rowwise().mean());
+  const Eigen::JacobiSVD<Eigen::Matrix3Xd> shape(about, Eigen::ComputeThinU);
   const Eigen::VectorXd& extent = shape.singularValues();
   Eigen::Index count = 0;
   while (count < extent.size() && extent[count] > kWidth * extent[0]) ++count;

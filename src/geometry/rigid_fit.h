@@ -11,7 +11,8 @@ struct SpannedAxes {
   Eigen::Matrix3Xd axis;   // 3 × k, k ≤ 3, orthonormal
   Eigen::VectorXd extent;  // k, m: root of the sum of squared deviations from the mean
 };
-// Omits axes with less than a twentieth of the largest extent. `points`: 3 × n, m, n > 0.
+// The spanned axes of `points` (3 × n, m, n > 0); axes with less than a twentieth of the largest
+// extent are omitted.
 SpannedAxes AxesOf(const Eigen::Matrix3Xd& points);
 
 struct RigidFit {

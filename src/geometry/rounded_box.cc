@@ -42,7 +42,7 @@ TriMesh RoundedBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, d
     coordinates[axis] = SideCoordinates(size[axis], edge_radius, edge_length);
   const Eigen::Vector3d inner = 0.5 * size.array() - edge_radius;
 
-  std::map<std::tuple<int, int, int>, int> number;  // of grid points on the box's surface
+  std::map<std::tuple<int, int, int>, int> number;  // vertex of each grid point on the surface
   std::vector<Eigen::Vector3d> vertices;
   const auto vertex = [&](const Eigen::Vector3i& index) {
     const auto [found, is_new] =

@@ -14,7 +14,7 @@ namespace {
 
 void RefuseUnlessOpenSheet(const TriMesh& sheet) {
   SurfaceReport report = CheckSurface(sheet, false);
-  if (report.IsClosed()) throw InputError("the sheet to thicken is closed: it is no open sheet");
+  if (report.IsClosed()) throw InputError("the sheet to thicken is closed; expected an open sheet");
   if (report.unused_vertices > 0) {
     throw InputError(fmt::format("{} vertices of the sheet to thicken belong to no triangle",
                                  report.unused_vertices));

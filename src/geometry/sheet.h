@@ -20,8 +20,9 @@ struct ThickSheet {
 
 // Offsets copies of the sheet along its vertex normals, `thickness` (m) apart, and closes the rim.
 // The sheet must be manifold, consistently oriented, open, and thin compared with its radius of
-// curvature. Throws InputError with the fault and its location if the sheet is not manifold, not
-// oriented or closed, or if a prism over one of its triangles would be inverted.
+// curvature. Throws InputError with the fault and its location if the sheet is not manifold, is not
+// oriented or is closed, if a vertex belongs to no triangle, or if a prism over one of its
+// triangles would be inverted. `thickness` must be positive (CHECK).
 ThickSheet ThickenSheet(const TriMesh& sheet, double thickness,
                         SheetPosition position = SheetPosition::kMiddle);
 

@@ -37,7 +37,7 @@ class DisjointSets {
 struct HalfEdge {
   int low, high;
   int triangle, corner;
-  bool forward;  // from low to high
+  bool forward;  // whether it runs from the lower to the higher vertex index
   bool operator<(const HalfEdge& other) const {
     return std::tie(low, high, triangle, corner) <
            std::tie(other.low, other.high, other.triangle, other.corner);

@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Triangle {
   Vector3d a, b, c;
-  int index;  // in the mesh
+  int index;  // index of the triangle in the mesh
 };
 
 // Nodes are stored in depth-first order, so the left child follows its parent.
@@ -112,7 +112,7 @@ struct SurfaceSearch::Tree {
     Build(middle, end);
   }
 
-  // Of equally near triangles the one with the lowest index wins, whatever the order of traversal.
+  // The lowest index wins among equally near triangles, whatever the order of traversal.
   void Consider(const Triangle& t, const Vector3d& query, Hit& best) const {
     const Vector3d barycentric = NearestOnTriangle(t.a - query, t.b - query, t.c - query);
     const Vector3d point = barycentric[0] * t.a + barycentric[1] * t.b + barycentric[2] * t.c;

@@ -16,7 +16,8 @@ struct SurfaceTracks {
 
   Eigen::Index Count() const { return offset.cols(); }
 };
-// Attaches `points` (3 × n, m, in the reference configuration). A point at NaN stays at NaN.
+// Attaches `points` (3 × n, m, in the reference configuration). The boundary must have a triangle
+// (CHECK). A point at NaN stays at NaN.
 SurfaceTracks TrackOnSurface(const BoundarySurface& boundary, const Eigen::Matrix3Xd& points);
 
 // The positions of the points (3 × n, m) for the node positions `nodes` (3 × nodes, m). Offsets are

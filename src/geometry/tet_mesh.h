@@ -36,7 +36,8 @@ struct BoundarySurface {
 };
 BoundarySurface ExtractBoundary(const TetMesh& mesh);
 
-// The surface of `boundary` for the node positions `nodes` (3 × n, m) of the mesh.
+// The surface of `boundary` for the node positions `nodes` (3 × n, m) of the mesh; CHECKs that
+// there are enough nodes.
 TriMesh BoundaryAt(const BoundarySurface& boundary, const Eigen::Matrix3Xd& nodes);
 
 }  // namespace lacuna

@@ -27,7 +27,7 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
       tets(k, e) = soup.tets[e][k];
       for (int other = 0; other < k; ++other) {
         if (tets(k, e) == tets(other, e)) {
-          Fail(file, soup.lines[e], "a tetrahedron names one node twice");
+          Fail(file, soup.lines[e], "a tetrahedron refers to one node twice");
         }
       }
     }
@@ -141,7 +141,7 @@ TetMeshFile FinishTetMesh(const TetSoup& soup, const std::filesystem::path& file
 
   const Eigen::Index turned = TurnPositive(soup, file, mesh);
   if (turned > 0) {
-    result.notes.push_back(fmt::format("turned over {} of {} tetrahedra that had a negative volume",
+    result.notes.push_back(fmt::format("reoriented {} of {} tetrahedra that had a negative volume",
                                        turned, mesh.TetCount()));
   }
   RefuseOverlaps(soup, file, mesh);

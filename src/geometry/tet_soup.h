@@ -13,7 +13,7 @@
 namespace lacuna {
 
 struct TetSoup {
-  std::vector<Eigen::Vector3d> nodes;     // in the file's length unit
+  std::vector<Eigen::Vector3d> nodes;     // positions in the file's length unit
   std::vector<std::array<int, 10>> tets;  // node indices in VTK's order; the first sizes[e] count
   std::vector<int> sizes;                 // nodes per tetrahedron: 4 or 10
   std::vector<int> lines;                 // the line of each tetrahedron in the file

@@ -23,14 +23,14 @@ Eigen::VectorXd TriangleAreas(const TriMesh& mesh);
 Eigen::Matrix3Xd TriangleNormals(const TriMesh& mesh);
 Eigen::Matrix3Xd VertexNormals(const TriMesh& mesh);
 
-// For each vertex a third of the total area of its triangles, m².
+// A third of the total area of the triangles around each vertex, m².
 Eigen::VectorXd VertexAreas(const TriMesh& mesh);
 
 // The signed volume (m³) that a closed mesh encloses, by the divergence theorem; positive if the
 // mesh is oriented outward.
 double EnclosedVolume(const TriMesh& mesh);
 
-// The axis-aligned bounding box of `points` (3 × n).
+// The axis-aligned bounding box of `points` (3 × n), in their unit; empty for no points.
 Eigen::AlignedBox3d BoundingBox(const Eigen::Matrix3Xd& points);
 
 // The diagonal of the bounding box (m), the length that relative errors refer to; 0 for no points.
@@ -45,7 +45,8 @@ struct SurfaceSamples {
 // Draws `count` points with a density proportional to area, by stratified sampling. The same seed
 // gives the same points on every platform. CHECKs that the surface has an area.
 SurfaceSamples SampleSurface(const TriMesh& mesh, Eigen::Index count, uint64_t seed);
-// The samples as points with the normals of their triangles.
+// The samples as points (m) with the unit normals of their triangles. `mesh` may be a deformed
+// state of the mesh that was sampled.
 PointCloud EvaluateSamples(const TriMesh& mesh, const SurfaceSamples& samples);
 
 }  // namespace lacuna

@@ -26,13 +26,14 @@ struct TetQuality {
   Eigen::Index inverted = 0;      // tetrahedra of zero or negative volume
   Eigen::Index above_ratio = 0;   // tetrahedra above the requested radius-edge ratio
   Eigen::Index above_volume = 0;  // tetrahedra above the requested volume
-  // Values for each tetrahedron, for histograms.
+  // One value for each tetrahedron, for histograms.
   Eigen::VectorXd radius_edge_ratios;
   Eigen::VectorXd min_dihedral_angles;  // rad
 };
 
 // Measures all tetrahedra and counts those above the bounds: the radius-edge ratio and the volume
-// (m³). A bound of 0 means none.
+// (m³). A bound of 0 means none. All values are 0 for a mesh without tetrahedra. A flat tetrahedron
+// counts as inverted, and its ratios may be infinite.
 TetQuality MeasureTets(const TetMesh& mesh, double radius_edge_bound = 0, double volume_bound = 0);
 
 }  // namespace lacuna

@@ -119,7 +119,7 @@ void NoteUnmetBounds(const TetOptions& options, MeshResult& result) {
                                              : "the surface's edges meet at sharp angles";
   if (many(quality.above_volume)) {
     result.notes.push_back(fmt::format(
-        "{} of {} tetrahedra are larger than {:.4g} m^3, the largest by {:.3g} times: {}",
+        "{} of {} tetrahedra are larger than {:.4g} m^3, the largest by a factor of {:.3g}: {}",
         quality.above_volume, quality.tets, options.max_volume,
         quality.volume.max / options.max_volume, why));
   }
@@ -172,15 +172,16 @@ void FailByCode(int code, MeshResult& result) {
     case kTetGenOutOfMemory:
       return Fail(MeshStatus::kOutOfMemory, "TetGen ran out of memory", result);
     case kTetGenSelfIntersection:
-      return Fail(MeshStatus::kFaultySurface, "TetGen found that the surface cuts itself", result);
+      return Fail(MeshStatus::kFaultySurface, "TetGen found that the surface intersects itself",
+                  result);
     case kTetGenSmallFeature:
       return Fail(MeshStatus::kTooSmallFeature,
                   "TetGen found a feature too small against the size of the object", result);
     case kTetGenCloseFacets:
-      return Fail(MeshStatus::kTooSmallFeature, "TetGen found two facets that all but touch",
+      return Fail(MeshStatus::kTooSmallFeature, "TetGen found two facets that almost touch",
                   result);
     default:
-      return Fail(MeshStatus::kInternalError, fmt::format("TetGen gave up with its error {}", code),
+      return Fail(MeshStatus::kInternalError, fmt::format("TetGen failed with error {}", code),
                   result);
   }
 }

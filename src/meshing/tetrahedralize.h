@@ -44,7 +44,7 @@ enum class MeshStatus {
 struct MeshResult {
   TetMesh mesh;
   TetQuality quality;
-  SurfaceReport surface_report;  // of the input
+  SurfaceReport surface_report;  // report on the input
   MeshStatus status = MeshStatus::kNotRun;
   std::string message = "not run";
   std::vector<std::string> notes;  // which bounds are not met everywhere, and why
@@ -57,7 +57,8 @@ struct MeshResult {
 // volume; several separate bodies are allowed, cavities are refused. The same input gives the same
 // mesh, bit by bit. A coarse surface that must be preserved, or sharp angles between its edges, can
 // prevent a bound from being met everywhere; `quality` and `notes` then say so, but the mesh is
-// still usable. Failures are reported in `status` and `message`, never by an exception.
+// still usable. Failures are reported in `status` and `message`, never by an exception; only
+// options out of their ranges are programming errors (CHECK).
 MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options);
 
 }  // namespace lacuna

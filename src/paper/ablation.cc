@@ -143,7 +143,8 @@ std::vector<std::pair<const char*, const SeedRange*>> ColumnsOf(const AblationRo
 std::string QuotientText(const std::vector<MeshQuotient>& quotients) {
   if (quotients.empty()) return "";
   std::string text =
-      "\nWhat a gradient through a remesh is: central difference quotients of the value searched "
+      "\nHow a gradient behaves where the mesh is made anew: central difference quotients of the "
+      "value searched "
       "over\nq and v at the first row's start, mm per range, by their step in parts of the "
       "range\n";
   for (size_t i = 0; i < quotients.size();) {
@@ -246,7 +247,7 @@ std::string AblationText(const Table1Study& study, const Table1Result& result) {
             cell(row.optimum.poisson_ratio.median, 7, 3) + cell(row.evaluations.median, 7, 0) +
             cell(row.failures.median, 7, 0) + cell(row.seconds.median, 5, 0) + "\n";
   }
-  text += "\nWhat each row shows (in brackets: the row it is held against)\n";
+  text += "\nWhat each row shows (in brackets: the row that it is compared with)\n";
   for (const AblationRow& row : summary.rows) {
     text += Wrapped(row.question.empty() ? row.shows : row.question + " " + row.shows + ".",
                     PaddedRight(row.name, 20), std::string(20, ' '));

@@ -41,7 +41,7 @@ struct AblationRow {
 
 struct AblationSummary {
   std::vector<AblationRow> rows;
-  double mesh_noise = kNotMeasured;  // of the mean of D per point, as in Table1Summary
+  double mesh_noise = kNotMeasured;  // noise of the mean of D per point, see Table1Summary
 };
 
 // Rows in the order of the configurations. A row is compared with the one that it names, or the

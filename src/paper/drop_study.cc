@@ -18,10 +18,10 @@ bool IsAlongZ(const Eigen::Vector3d& vector) { return vector.x() == 0 && vector.
 // The measured quantities of one frame, SI.
 struct DropState {
   double time = 0;
-  double centre = 0, speed = 0;  // of the centre of mass, along z
+  double centre = 0, speed = 0;  // height and velocity of the centre of mass, along z
   double gap = 0;                // between the lowest node and the floor
-  double height = 0;             // of the body
-  double force = 0;              // of the floor on the body
+  double height = 0;             // height of the body
+  double force = 0;              // force of the floor on the body
   double kinetic = 0, energy = 0;
 };
 

@@ -55,7 +55,7 @@ struct DropRun {
   DropMesh mesh;
   SceneMotion motion;  // at the scene's steps
   DropNumbers numbers;
-  DropNumbers halved;  // with steps of half the length
+  DropNumbers halved;  // the same with steps of half the length
 };
 // The scene with the mesh of one run and its time steps divided by `step_divisor`.
 Scene SceneOf(const DropStudy& study, const DropMesh& mesh, int step_divisor);

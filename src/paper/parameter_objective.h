@@ -83,7 +83,7 @@ FollowedMotion FollowForObjective(const ParameterObjective& problem,
 ObjectiveEvaluation MeasureObjective(const ParameterObjective& problem,
                                      const FollowedMotion& motion);
 
-// All three steps. Throws Interrupted; every other failure is told by the evaluation.
+// All three steps. Throws Interrupted; the evaluation reports every other failure.
 ObjectiveEvaluation EvaluateObjective(const ParameterObjective& problem,
                                       const SearchedParameters& parameters);
 

@@ -72,7 +72,7 @@ double Chosen(const Residuals& residuals, ObjectiveMeasure measure) {
   return residuals.residual_per_point;
 }
 
-// By q, v, y and p; NaN where the evaluation does not tell.
+// The derivatives with respect to q, v, y and p; NaN where the evaluation has none.
 Eigen::VectorXd GradientOf(const ObjectiveEvaluation& evaluation, ObjectiveMeasure measure) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, kNotMeasured);
   for (size_t i = 0; i < evaluation.by_moduli.size(); ++i)

@@ -39,7 +39,7 @@ struct ParameterSearchSettings {
   int evaluations = 40;        // the maximum
   CobylaOptions cobyla;
   double difference = 0.1;  // step of finite differences, as a fraction of a range
-  uint64_t seed = 1;        // of the candidates of the Gaussian process
+  uint64_t seed = 1;        // seed of the candidates of the Gaussian process
 };
 
 // Reads the mapping `search` of an experiment; docs/search.md lists its keys. Throws InputError.
@@ -52,13 +52,13 @@ struct ParameterSearchResult {
   SearchStatus status = SearchStatus::kNotRun;
   std::string message;
   std::string trace_hash;                        // equal for equal searches
-  std::vector<SearchedParameters> parameters;    // of each evaluation, in order
+  std::vector<SearchedParameters> parameters;    // parameters of each evaluation, in order
   std::vector<ObjectiveEvaluation> evaluations;  // likewise
   int best = -1;                                 // index of the least value; -1: all failed
   int failures = 0;
 
   bool IsUsable() const { return best >= 0; }
-  double Seconds() const;  // of all evaluations, including those before an interruption
+  double Seconds() const;  // time of all evaluations, including those before an interruption
   // The evaluation of the largest value, which the reductions in the paper refer to.
   int Worst(ObjectiveMeasure measure) const;
 };

@@ -20,7 +20,7 @@ namespace lacuna {
 namespace {
 
 constexpr double kTurnStep = 1e-3;    // rad, between one seed's mesh and the next
-constexpr double kStartSpread = 0.1;  // of a variable's range, either way
+constexpr double kStartSpread = 0.1;  // share of a variable's range, either way
 constexpr int kObjectiveVersion = 1;  // raised when the code changes so that |D_anim| does
 constexpr double kFactors[] = {0.25, 0.5, 1, 2, 4};
 
@@ -87,7 +87,7 @@ std::string KeyOf(const ReconstructionStudy& study, const ParameterSearchSetting
 }
 
 // An evaluation beside a search, made once. `key` is that of the search's objective, of which the
-// file's name tells the change.
+// file's name says what was changed.
 ObjectiveEvaluation Kept(const ParameterObjective& problem, const SearchedParameters& parameters,
                          const std::filesystem::path& file, const std::string& key) {
   EvaluationRecord record(file, key + " " + file.filename().string());
@@ -148,7 +148,7 @@ std::vector<MeshQuotient> QuotientsOf(const ParameterObjective& problem,
   return quotients;
 }
 
-// What only the first seed is asked for.
+// Computed for the first seed only.
 void RunFirstSeedExtras(const Table1Study& study, const Table1Options& options,
                         const ParameterObjective& problem, const std::filesystem::path& folder,
                         const std::string& key, Table1Result* result, Progress* progress) {

@@ -73,7 +73,7 @@ struct Table1Seed {
 };
 
 struct ModulusPoint {
-  double factor = 1;                  // of the true modulus
+  double factor = 1;                  // multiple of the true modulus
   ObjectiveEvaluation fitted, known;  // forces fitted, as in the searches; forces as measured
 };
 

@@ -50,7 +50,7 @@ struct Optimum {
 std::vector<Optimum> ReadOptima(const Table1Study& table1, const std::filesystem::path& results) {
   const std::filesystem::path file = results / "table1.json";
   if (!std::filesystem::exists(file))
-    throw InputError(SourcePosition{file.string()}, "is not there; run `lacuna table1` first");
+    throw InputError(SourcePosition{file.string()}, "does not exist; run `lacuna table1` first");
   if (!IsKeptRecording(results / "seed_1" / "recording", RecordingKey(table1, 1)))
     throw InputError(
         SourcePosition{file.string()},
@@ -214,7 +214,7 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings) {
   constexpr Eigen::Index kArrows = 90;
-  constexpr double kArrowRadius = 0.007;  // of the body's size
+  constexpr double kArrowRadius = 0.007;  // share of the body's size
   FigureContent figure;
   figure.options = SideView(1800, 820);
   figure.picture.title =

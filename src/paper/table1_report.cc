@@ -82,8 +82,8 @@ void AppendSearches(const Table1Study& study, const Table1Result& result, std::s
 
 void AppendRows(const Table1Study& study, const Table1Summary& summary, std::string* text) {
   *text += fmt::format(
-      "\nDrops in %, median [least, largest] over the seeds. The paper's is from the largest value "
-      "met;\nits measure is the sum over the mesh's own points.\n"
+      "\nDrops in %, median [least, largest] over the seeds. The paper's drop is relative to the "
+      "largest value met;\nits measure is the sum over the mesh's own points.\n"
       "search       paper   searched: from max       from start               sum: from max        "
       "  "
       "  below the truth's\n");

@@ -4,18 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "analysis/residual_statistics.h"
-#include "experiment/scan_frames.h"
+#include "effects/gravity.h"
+#include "prediction/recording_noise.h"
 
 namespace lacuna {
 namespace {
-
-// Markers rest where their distances stay within this many times those caused by noise, for at
-// least kFewestAtRest frames.
-constexpr double kRestThreshold = 2.5;
-constexpr int kFewestAtRest = 8;
 
 // A coordinate moves where its scatter exceeds this many standard deviations of the white noise.
 // The largest scatter of a hundred coordinates at rest is below 1.5, and somewhat larger if the
@@ -96,6 +90,16 @@ std::string SlownessWarning(const PredictedRecording& item, const PredictionStud
       item.name, steps, 1e3 * study.time_step, item.frames.size());
 }
 
+// `gravity` in recording.yaml says how the object was recorded, and does not enter the model.
+std::string GravityWarning(const PredictedRecording& item, const PredictionStudy& study) {
+  if (!item.recording.object.gravity || GravityOf(study.effects) || GravityOf(item.effects))
+    return "";
+  return fmt::format(
+      "{}: was recorded under gravity, but the model has none; this is valid only if the reference "
+      "shape was measured under the same gravity",
+      item.name);
+}
+
 std::string UnseenWarning(const PredictedRecording& item) {
   if (item.scans != nullptr) return "";
   const auto is_unseen = [&](int frame) {
@@ -120,6 +124,7 @@ std::vector<std::string> StudyWarnings(const PredictionStudy& study) {
     for (const std::string& warning : item.recording.warnings) add(item.name + ": " + warning);
     add(UnseenWarning(item));
     add(SlownessWarning(item, study));
+    add(GravityWarning(item, study));
   }
   add(RestWarning(study));
   return warnings;
@@ -135,25 +140,6 @@ double RestDeformation(const PredictedRecording& item) {
     largest = std::max(largest, mean.norm());
   }
   return largest;
-}
-
-double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
-  if (item.scans != nullptr) return EstimateScanNoise(*item.scans, frames);
-  Eigen::MatrixXd rows(item.recording.markers.places.size(),
-                       static_cast<Eigen::Index>(frames.size()));
-  for (size_t k = 0; k < frames.size(); ++k)
-    rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
-  const double white = WhiteNoise(rows);
-  if (!(white > 0)) return 0;
-  Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));
-  for (size_t k = 0; k < frames.size(); ++k)
-    times[static_cast<Eigen::Index>(k)] = item.recording.times[frames[k]];
-  // The smallest deviation is used, because a body that is not quite at rest makes it larger.
-  double least = std::numeric_limits<double>::infinity();
-  for (const StaticSpan& rest :
-       StaticSpans(times, rows, kRestThreshold * std::sqrt(6.0) * white, kFewestAtRest))
-    if (!std::isnan(rest.deviation)) least = std::min(least, rest.deviation);
-  return std::isfinite(least) ? least : white;
 }
 
 }  // namespace lacuna

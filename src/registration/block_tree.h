@@ -30,7 +30,7 @@ class BlockTree {
  public:
   explicit BlockTree(const Eigen::Matrix3Xf& points);
 
-  // Sets new positions (3 × n) of the same number of points. Keeps the weights.
+  // Sets new positions (3 × n) of the same number of points (CHECK). Keeps the weights.
   void Move(const Eigen::Matrix3Xf& points);
   void SetWeight(int point, float weight) { candidates_[point].weight = weight; }
 

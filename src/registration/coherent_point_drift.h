@@ -10,8 +10,7 @@
 //  - Residuals count along the normals of the source and hardly within its surface, because two
 //    scans of one surface have no points in common; plain CPD would match the sampling densities.
 //  - A strain energy (rigidity.h), in addition to motion coherence, determines the motion within
-//  the
-//    surface. Both priors scale with the number of target points and the estimated noise.
+//    the surface. Both priors scale with the number of target points and the estimated noise.
 //  - σ² is estimated from the distances along the normals, which converges in a few steps, and has
 //    a lower bound at the point spacing. The fraction of outliers is estimated, too.
 //  - The levels of a coarse-to-fine hierarchy of both clouds share one set of coefficients.
@@ -37,7 +36,7 @@ enum class CpdStatus {
   kNoOverlap,      // almost no target point belongs to the source
 };
 
-// With M source points and N target points, in the order of the caller's clouds.
+// The result for M source points and N target points, in the order of the caller's clouds.
 struct CpdResult {
   static constexpr int kFewestPoints = 8;
 
@@ -49,17 +48,18 @@ struct CpdResult {
   Eigen::Matrix3Xd displaced;  // 3 × M, m: the source points, displaced by the field
   Eigen::VectorXd weight;  // M: number of target points assigned to each source point, Σ_n p_mn
   Eigen::VectorXd inlier;  // N: probability that each target point belongs to the source
-  double sigma = 0.0;      // m
+  double sigma = 0.0;      // m: final standard deviation σ of the Gaussians
   double noise = 0.0;      // m: rms distance of the target points along the normals
   double outlier_weight = 0.0;  // fraction of target points that belong to no source point
-  int iterations = 0;           // over all levels
+  int iterations = 0;           // total over all levels
   int rank = 0;                 // number of basis functions
 };
 
 // Registers `source` onto `target`. Normals of the source are used if given and estimated from its
 // points otherwise; normals of the target are ignored. `warm_start` may be a field on about the
-// same object, such as that of the previous frame. Bad input and failures give a status, never an
-// exception. The result does not depend on the number of threads.
+// same object, such as that of the previous frame. Bad clouds and failures give a status, never an
+// exception; options out of their ranges are programming errors (CHECK). The result does not depend
+// on the number of threads.
 CpdResult RegisterNonrigid(const PointCloud& source, const PointCloud& target,
                            const CpdOptions& options = {},
                            const DisplacementField* warm_start = nullptr);

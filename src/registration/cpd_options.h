@@ -10,10 +10,10 @@ namespace lacuna {
 
 // The state after an iteration, for display while the registration runs.
 struct CpdProgress {
-  int iteration = 0;    // from 1, over all levels
+  int iteration = 0;    // number of the iteration, from 1, over all levels
   int points = 0;       // source points on the current level
   int all_points = 0;   // source points on the last level
-  double sigma = 0.0;   // m
+  double sigma = 0.0;   // m: standard deviation σ of the Gaussians
   double change = 0.0;  // rms displacement of this iteration, m
 };
 
@@ -31,7 +31,7 @@ struct CpdOptions {
   // smoother.
   double lambda = 0.01;
   // Weight of the strain energy per target point. Raising it reduces stretch and shear of the
-  // surface; 0 as in plain CPD.
+  // surface; 0 is plain CPD.
   double rigidity = 5.0;
   // Weight of distances within the surface relative to those along its normal, 0 … 1. Raise it if
   // source and target contain the same points (tracked markers); 1 is plain CPD.
@@ -62,7 +62,7 @@ struct CpdOptions {
   // Converged if an iteration moves the points by less than this (rms), in units of sigma_floor
   // times the spacing of the source. Raising it saves iterations.
   double tolerance = 0.0057;
-  int max_iterations = 60;  // per level
+  int max_iterations = 60;  // upper limit for each level
   // Called after each iteration if set.
   std::function<void(const CpdProgress&)> progress;
   // The implementation of the inner loops; by default the fastest that this processor supports.

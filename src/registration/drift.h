@@ -17,8 +17,8 @@ struct Drift {
   double sigma = 0.0;
   double outlier_weight = 0.0;
   double noise = 0.0;       // rms distance of the target points along the normals
-  int iterations = 0;       // over all levels so far
-  bool converged = false;   // on the latest level
+  int iterations = 0;       // total over all levels so far
+  bool converged = false;   // whether the latest level converged
   bool has_overlap = true;  // false if almost no target point belongs to the source
 
   // Results of the last level.

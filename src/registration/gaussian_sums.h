@@ -109,7 +109,7 @@ struct GaussianKernels {
 
 // Whether this processor supports the instruction set.
 bool IsSupported(InstructionSet set);
-// The kernels for an instruction set that this processor supports.
+// The kernels for an instruction set, which this processor must support (CHECK).
 const GaussianKernels& KernelsFor(InstructionSet set);
 
 // The kernels for the best instruction set that this processor supports.

@@ -31,7 +31,7 @@ struct MotionObjective {
 
 // The source of one level, in spatial order.
 struct SourceSurface {
-  Eigen::Matrix3Xd normals;        // at rest: 3 × M
+  Eigen::Matrix3Xd normals;        // 3 × M, unit length or 0, at rest
   Eigen::VectorXd curvature_bias;  // M: b / σ²
   Patches patches;
 };

@@ -31,7 +31,7 @@ struct Posterior {
   double total_spread = 0.0;  // Σ_mn p_mn |x_n − t_m|²
 };
 
-// Computes the sums in two passes: the first stores the weights 1 / Σ_m … of the target points in
+// Computes the sums in two passes: the first stores the weight 1 / Σ_m … of each target point in
 // `target`, the second uses them. Both truncate the same pairs, so that Σ_m p_mn ≤ 1 holds for the
 // truncated sums, too.
 Posterior ComputePosterior(const BlockTree& source, const Mixture& mixture,

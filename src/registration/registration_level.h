@@ -13,7 +13,7 @@ namespace lacuna {
 
 // Source and target in spatial order and in one common frame, (x − centre) / scale with the mean
 // and the size of the source. A separate centre for a target that lacks a part would amount to a
-// motion that no point has made.
+// motion that did not take place.
 struct NormalisedClouds {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
   double scale = 1.0;                                // m
@@ -38,7 +38,7 @@ std::vector<int> LevelStrides(Eigen::Index larger_count);
 // largest power of two up to `stride` that gives about as many points.
 int StrideFor(Eigen::Index count, Eigen::Index larger_count, int stride);
 
-// One point from each run of `stride` consecutive points.
+// One point from each run of `stride` ≥ 1 consecutive points: 3 × ⌈n/stride⌉ for 3 × n points.
 Eigen::Matrix3Xd EveryNth(const Eigen::Matrix3Xd& points, int stride);
 
 }  // namespace lacuna

@@ -168,7 +168,7 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
   }
   if (format.marker_count == 0) bytes.Fail("holds no 3-D points");
   if (format.frame_count < 1) bytes.Fail("holds no frame");
-  if (format.data < 2) bytes.Fail("does not say where its data begin");
+  if (format.data < 2) bytes.Fail("does not state where its data begin");
   if (!std::isfinite(format.scale) || format.scale == 0) bytes.Fail("has no point scale factor");
   if (!(format.rate > 0 && std::isfinite(format.rate))) bytes.Fail("has no frame rate");
   format.data = (format.data - 1) * kBlock;

@@ -208,9 +208,9 @@ Fit FitByIcp(const Cloud::Ptr& source, const Cloud::Ptr& target, double max_dist
 // The views of all cameras while they are registered to one another.
 struct Views {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  Eigen::Matrix3Xd centroids;              // of each view, relative to the centre
+  Eigen::Matrix3Xd centroids;              // centroid of each view, relative to the centre
   std::vector<Cloud::Ptr> clouds;          // relative to the centre, by the given poses
-  std::vector<Eigen::Isometry3d> motions;  // of each cloud so far
+  std::vector<Eigen::Isometry3d> motions;  // motion of each cloud so far
 };
 
 Views MakeViews(const std::vector<Eigen::Matrix3Xd>& clouds, const Eigen::Matrix3Xd& positions,

@@ -1,5 +1,5 @@
-// Refines the poses of synchronised cameras relative to one another, using the surface that they
-// see in common.
+// Refines the poses of synchronised cameras relative to one another by the surface that they
+// observe together.
 //
 // The cloud of each camera is registered to the clouds of all others by ICP (PCL), which minimises
 // the distance of mutually nearest points p, q along the sum of their normals,
@@ -22,15 +22,15 @@ struct AlignmentOptions {
   double max_distance = 0.01;
   double max_angle = 0.8;  // rad; pairs whose normals differ more are ignored, which keeps the two
                            // sides of thin parts apart
-  int neighbours = 16;     // for the normals; larger: less noise, but edges are more rounded
+  int neighbours = 16;     // neighbours of a normal; larger: less noise, but rounder edges
   int sweeps = 4;          // how often each camera but the first is registered to all others
-  int iterations = 40;     // of ICP in each registration
+  int iterations = 40;     // ICP iterations in each registration
   // A direction of motion (of six; rotations are multiplied by the size of the overlap) is left
   // unchanged when the mean squared distance of the pairs grows by less than this factor times the
   // square of the motion. Larger: corrects sliding motions less, and drifts less along directions
   // that the surface does not determine.
   double min_stiffness = 0.003;
-  int min_pairs = 100;  // with fewer pairs the overlap is too small to be trusted
+  int min_pairs = 100;  // with fewer pairs the overlap is too small to be reliable
 };
 
 // What the refinement did to the pose of one camera.
@@ -39,9 +39,9 @@ struct CameraCorrection {
   std::string message = "not run";
   // The new world_from_camera is correction · (the old one).
   Eigen::Isometry3d correction = Eigen::Isometry3d::Identity();
-  double angle = 0;         // rad, of the correction
+  double angle = 0;         // rad, angle of the correction
   double translation = 0;   // m, how far the centroid of the camera's cloud moves
-  int free_directions = 0;  // of six, left unchanged because the overlap does not determine them
+  int free_directions = 0;  // number of the six directions that are left unchanged
   double rms_before = -1;   // m, root mean square distance of the pairs along their normals; −1:
   double rms_after = -1;    // there are no pairs
 };

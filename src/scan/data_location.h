@@ -1,7 +1,7 @@
 // Where the data files of a recording lie and in which unit of length their numbers are.
 //
 // This is the part of a recording that the readers of its frames, grips and forces need. They get
-// it in place of the whole Recording, which is made of what they return.
+// it in place of the whole Recording, which is assembled from their results.
 #ifndef LACUNA_SCAN_DATA_LOCATION_H_
 #define LACUNA_SCAN_DATA_LOCATION_H_
 
@@ -12,7 +12,7 @@ namespace lacuna {
 
 struct DataLocation {
   std::filesystem::path folder;  // file names in recording.yaml are relative to it
-  std::string length_unit;       // of the numbers in the files, e.g. "mm"; see LengthOf()
+  std::string length_unit;       // unit of the lengths in the files, e.g. "mm"; see LengthOf()
 };
 
 }  // namespace lacuna

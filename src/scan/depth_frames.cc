@@ -15,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-constexpr double kMaxCount = 65535;  // of 16 bits
+constexpr double kMaxCount = 65535;  // the largest 16-bit number
 
 std::optional<AlignmentOptions> ReadAlignment(const Config& frames) {
   const auto config = frames.OptionalChild("refine_alignment");

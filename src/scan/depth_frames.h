@@ -27,9 +27,9 @@ struct DepthFrames : FileFrames {
   double depth_unit = 0;                                       // m per count of the images
   double min_depth = 0;                                        // m; smaller depths are dropped
   double max_depth = std::numeric_limits<double>::infinity();  // m; larger depths are dropped
-  std::vector<Camera> cameras;                // with the refined poses once they are refined
-  std::optional<AlignmentOptions> alignment;  // of the refinement; without it poses stay as given
-  std::vector<CameraCorrection> corrections;  // what it did to each camera; empty before
+  std::vector<Camera> cameras;                // poses are replaced by refined ones, if any
+  std::optional<AlignmentOptions> alignment;  // options of the refinement; none: poses are kept
+  std::vector<CameraCorrection> corrections;  // change of each pose; empty before refinement
 };
 
 void ReadSource(const Config& frames, const DataLocation& data, DepthFrames* source,
@@ -37,17 +37,17 @@ void ReadSource(const Config& frames, const DataLocation& data, DepthFrames* sou
 // The points of all cameras, one camera after the other; `sensors.seen_by` says which camera saw
 // each point.
 void LoadPoints(const DepthFrames& source, Frame* frame);
-// Aligns the cameras to one another by the first frame (camera_alignment.h) where `alignment` asks
-// for it. Warns of each camera whose pose could not be refined.
+// Aligns the cameras to one another by the first frame (camera_alignment.h) where `alignment` is
+// set. Warns of each camera whose pose could not be refined.
 bool RefineByFirstFrame(const Frame& first, DepthFrames* source,
                         std::vector<std::string>* warnings);
 std::string ExplainSize(const DepthFrames& source, double size, const std::string& length_unit);
 // One line per camera: where it stands and what the refinement did to its pose.
 std::vector<InfoLine> DescribeSource(const DepthFrames& source);
 
-// What the cameras measure of each surface: writes frames/cameraC_NNN.png in `folder`, in counts of
-// `scan.options.quantum`. Returns the entries of `frames:` in recording.yaml. Throws InputError
-// when the quantum is 0 or too small for the depths to fit in 16 bits.
+// Writes the depths that the cameras measure on each surface as frames/cameraC_NNN.png in `folder`,
+// in counts of `scan.options.quantum`. Returns the entries of `frames:` in recording.yaml. Throws
+// InputError when the quantum is 0 or too small for the depths to fit in 16 bits.
 std::string WriteDepthFrames(const std::filesystem::path& folder, const VirtualScan& scan);
 
 }  // namespace lacuna

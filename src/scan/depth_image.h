@@ -23,7 +23,7 @@ struct Intrinsics {
 };
 
 struct Camera {
-  std::string name;  // for messages
+  std::string name;  // name in messages
   Intrinsics intrinsics;
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
 };
@@ -31,7 +31,7 @@ struct Camera {
 // Depths in m; the row is v, the column u.
 using DepthImage = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Reads a 16-bit grey PNG; each count stands for `count_length` metres. Throws InputError naming
+// Reads a 16-bit grey PNG; each count means `count_length` metres. Throws InputError naming
 // the file when it is absent, truncated or another kind of image.
 DepthImage ReadDepthPng(const std::filesystem::path& file, double count_length);
 

@@ -50,14 +50,14 @@ inline bool ShowsSurface(const FileFrames&) { return true; }
 // The named points of the frames; empty for frames without such points.
 inline Markers NamedMarkers(const FileFrames&) { return {}; }
 
-// Gives the source the chance to improve itself by its first frame, once everything else has been
-// read. Returns true when frames look different from then on. Appends to `warnings`.
+// Lets the source refine itself by its first frame, once everything else has been read. Returns
+// true if this changes the frames. Appends to `warnings`.
 inline bool RefineByFirstFrame(const Frame&, FileFrames*, std::vector<std::string>*) {
   return false;
 }
 
-// Why frame 0 may have an implausible size (m, the diagonal of its bounding box) and what to check:
-// the end of a warning that begins "frame 0 is 114 m across".
+// Why frame 0 may have an implausible size (m, the diagonal of its bounding box) and what to check,
+// as the end of a warning that begins "frame 0 is 114 m across".
 std::string ExplainSize(const FileFrames& source, double size, const std::string& length_unit);
 
 // Lines of `lacuna info` beside those that all recordings have.

@@ -24,8 +24,8 @@ struct FilterOptions {
 };
 
 struct FilterResult {
-  PointCloud cloud;  // with unit normals
-  Sensors sensors;   // of the remaining points
+  PointCloud cloud;  // remaining points with unit normals
+  Sensors sensors;   // sensors of the remaining points
   Eigen::Index input_count = 0;
   Eigen::Index outlier_count = 0;     // removed as outliers
   Eigen::Index merged_count = 0;      // points fewer after each cube was replaced by its mean

@@ -10,16 +10,16 @@
 
 namespace lacuna {
 
-// From where the points were seen, which decides on which side of a surface is outside.
+// The positions from which the points were observed, which determine the outer side of a surface.
 struct Sensors {
   Eigen::Matrix3Xd positions;  // 3 × c, m; 3 × 0 if unknown
   Eigen::VectorXi seen_by;     // n, the sensor that saw each point, from 0; empty if unknown
 };
 
 struct Frame {
-  int index = 0;                   // in the recording, from 0
+  int index = 0;                   // number in the recording, from 0
   double time = 0;                 // s
-  std::vector<std::string> files;  // it was read from
+  std::vector<std::string> files;  // files from which it was read
 
   PointCloud cloud;            // n usable points
   Eigen::VectorXi source_row;  // n, the row (vertex, marker) of each point in its file, from 0;
@@ -27,7 +27,7 @@ struct Frame {
   Eigen::Matrix3Xi triangles;  // 3 × m, points of `cloud`; 3 × 0 without connectivity
   Sensors sensors;
   Eigen::Index row_count = 0;      // points in the files
-  Eigen::Index dropped_count = 0;  // of these, not finite (NaN), absurdly large or, in depth
+  Eigen::Index dropped_count = 0;  // points not used: not finite, above 1e9 m or, in depth
                                    // images, outside the depth range
 };
 

@@ -1,8 +1,8 @@
 // The kinds of frames that a recording may have.
 //
-// A kind is a struct (a "source") with a header of its own, in which stands everything that depends
+// A kind is a struct (a "source") with a header of its own, which contains everything that depends
 // on the kind. To add one, write that header, its test and its entry in docs/recording.md, and add
-// the struct to FrameSource below; nothing else in Lacuna asks which kind a recording has. The
+// the struct to FrameSource below; nothing else in Lacuna depends on the kind of a recording. The
 // struct has the constants
 //
 //   kKind    its name in recording.yaml ("points")
@@ -41,7 +41,7 @@ namespace lacuna {
 using FrameSource = std::variant<PointFrames, MeshFrames, DepthFrames, MarkerFrames>;
 
 // Reads `kind` from the mapping `frames` and then all that the kind has, its times excepted. Throws
-// InputError (file, line, column and field); an unknown kind is answered with the list of kinds.
+// InputError (file, line, column and field); the message for an unknown kind lists the kinds.
 FrameSource ReadFrameSource(const Config& frames, const DataLocation& data,
                             std::vector<std::string>* warnings);
 

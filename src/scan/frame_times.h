@@ -13,7 +13,7 @@ namespace lacuna {
 struct FrameTimes {
   std::vector<double> in_files;          // s, ascending, one for each frame of the files
   std::vector<int> chosen;               // the frames that are used, numbered from 0, ascending
-  std::filesystem::path file;            // of the times; empty when they came from elsewhere
+  std::filesystem::path file;            // file of the times; empty if there is none
   std::vector<double> OfChosen() const;  // s, ascending
 };
 

@@ -15,24 +15,24 @@ struct MarkerTracks {
   Eigen::VectorXd times;                    // f, s; empty when the file has none
   std::vector<Eigen::Matrix3Xd> positions;  // f matrices 3 × m, in the file's length unit;
                                             // NaN where a marker was not seen
-  std::string length_unit;                  // as the file says ("mm"); empty when it does not
+  std::string length_unit;                  // unit stated in the file ("mm"); empty if none
 };
 
-// Points of a recording that are told apart by name, in its frames and in SI units.
+// Points of a recording that are identified by name, in its frames and in SI units.
 struct Markers {
   std::vector<std::string> names;           // m
   Eigen::Matrix3Xd places;                  // 3 × m, m, on the undeformed object; NaN if unknown
-  std::vector<Eigen::Matrix3Xd> positions;  // per frame 3 × m, m, world frame; NaN if not seen
+  std::vector<Eigen::Matrix3Xd> positions;  // one 3 × m per frame, m, world frame; NaN: not seen
 };
 
-// How a CSV names its columns. A star stands for the marker's name: "*_x" finds tip1_x, base1_x.
+// How a CSV names its columns. A star represents the marker's name: "*_x" finds tip1_x, base1_x.
 struct MarkerColumns {
   std::string time;  // column with the time in seconds; empty: the file has none
   std::string x = "*_x", y = "*_y", z = "*_z";
 };
 
-// Reads a file whose extension says what it is: .trc, .c3d, or else a CSV with a header. `columns`
-// matters for the CSV only. Throws InputError naming the file (and line) when it is absent,
+// Reads a file in the format of its extension: .trc, .c3d, or else a CSV with a header. `columns`
+// applies to the CSV only. Throws InputError naming the file (and line) when it is absent,
 // truncated or malformed, when its counts contradict one another, or when its times do not ascend.
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns);
 MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns);

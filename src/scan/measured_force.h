@@ -19,7 +19,7 @@ struct MeasuredForce {
   std::optional<Region> region;  // where it acts, if that is known
   Eigen::VectorXd times;         // k, s, ascending
   Eigen::Matrix3Xd forces;       // 3 × k, N, resultant, world frame
-  std::filesystem::path file;    // with the values; empty for a constant
+  std::filesystem::path file;    // file of the values; empty for a constant
 };
 
 // The force at a time, N: linear between the measured times, constant before the first and after

@@ -21,7 +21,7 @@ struct Orientation {
   int component_count = 0;           // connected parts of the neighbour graph
   int doubtful_component_count = 0;  // parts of which either side may be outside, such as flat
                                      // sheets without a sensor
-  double disagreement = -1;  // in [0, 1], 0 is best: the fraction of neighbours side by side on the
+  double disagreement = -1;  // 0 (best) to 1: the fraction of neighbours side by side on the
                              // surface and nearly parallel (lines within 45°) whose normals point
                              // in opposite directions; −1: not run
 };

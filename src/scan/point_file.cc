@@ -160,7 +160,7 @@ Eigen::Matrix3Xd Columns(const DelimitedTable& table, const std::array<std::stri
 }
 
 bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
-  constexpr double kRounding = 1e-2;  // of normals written with two or three digits
+  constexpr double kRounding = 1e-2;  // rounding of normals with two or three digits
   return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
 }
 

@@ -24,7 +24,7 @@ struct PointFrames : FileFrames {
   static constexpr const char* kTitle = "point clouds";
 
   Similarity world_from_file;               // its length unit included
-  PointColumns columns;                     // of text tables
+  PointColumns columns;                     // columns of text tables
   bool tracked = false;                     // row i is the same material point in every frame
   Eigen::Matrix3Xi connectivity;            // 3 × m, rows of each frame, from 0; 3 × 0 without
   std::filesystem::path connectivity_file;  // empty without
@@ -37,8 +37,8 @@ void LoadPoints(const PointFrames& source, Frame* frame);
 std::vector<std::filesystem::path> AllFiles(const PointFrames& source);
 inline bool IsTracked(const PointFrames& source) { return source.tracked; }
 
-// What the cameras see of each surface, as unordered points: writes frames/points_NNN.ply in
-// `folder`. Returns the entries of `frames:` in recording.yaml. Throws InputError when no camera
+// Writes the points that the cameras measure on each surface, unordered, as frames/points_NNN.ply
+// in `folder`. Returns the entries of `frames:` in recording.yaml. Throws InputError when no camera
 // sees the object.
 std::string WritePointFrames(const std::filesystem::path& folder, const VirtualScan& scan);
 

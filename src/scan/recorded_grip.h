@@ -15,9 +15,9 @@
 namespace lacuna {
 
 enum class GripMotion {
-  kFollowsScan,     // as the scanned surface moves in its region
-  kFollowsMarkers,  // with the named markers
-  kGiven            // along a given path
+  kFollowsScan,     // the motion of the scanned surface in its region
+  kFollowsMarkers,  // the motion of the named markers
+  kGiven            // a given path
 };
 
 struct RecordedGrip {
@@ -32,7 +32,7 @@ struct RecordedGrip {
   Eigen::Matrix3Xd displacements;  // 3 × k, m
   Eigen::Matrix3Xd rotations;      // 3 × k, rad, rotation vectors; 3 × 0: it does not rotate
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  // m
-  std::filesystem::path file;                       // with the path
+  std::filesystem::path file;                       // file of the path
 };
 
 // The rigid motion of a grip of motion kGiven from its undeformed place. Between the given times it

@@ -26,8 +26,8 @@ struct Recording {
   FrameSource frames;
   std::vector<double> times;         // s, ascending, one per frame
   std::filesystem::path times_file;  // empty when the times do not have a file of their own
-  Eigen::Index row_count = 0;        // of the first frame; of every frame when they are tracked
-  // The points that are told apart by name: those of a marker file, or a selection of tracked
+  Eigen::Index row_count = 0;        // rows of the first frame; if tracked, of every frame
+  // The points that are identified by name: those of a marker file, or a selection of tracked
   // points that a prediction is compared with. Empty for scans.
   Markers markers;
 

@@ -26,9 +26,9 @@ struct ReferenceShape {
 };
 
 // Reads `reference` from recording.yaml. Its file is looked for in data.folder and then in
-// `own_folder`, the folder of recording.yaml, which may describe a shape beside somebody else's
-// data. Frames that do not show the object's surface (`frames_show_surface` is false) need a mesh.
-// Throws InputError (file, line, column and field).
+// `own_folder`, the folder of recording.yaml, which may accompany data from another
+// source. Frames that do not show the object's surface (`frames_show_surface` is false) need a
+// mesh. Throws InputError (file, line, column and field).
 ReferenceShape ReadReference(const Config& config, const DataLocation& data,
                              const std::filesystem::path& own_folder, bool frames_show_surface);
 

@@ -29,8 +29,8 @@ struct HalfSpaceRegion {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // unit length
 };
 struct NodeRegion {
-  std::vector<int> nodes;      // of the reference mesh, from 0, ascending, without duplicates
-  std::filesystem::path file;  // that lists them; empty when recording.yaml does
+  std::vector<int> nodes;      // nodes of the reference mesh, from 0, ascending, no duplicates
+  std::filesystem::path file;  // file that lists them; empty if recording.yaml does
 };
 
 struct Region {

@@ -1,4 +1,4 @@
-// Writes what virtual cameras see of a moving surface as an ordinary recording folder.
+// Writes the measurements of virtual cameras that observe a moving surface as a recording folder.
 #ifndef LACUNA_SCAN_SCAN_WRITER_H_
 #define LACUNA_SCAN_SCAN_WRITER_H_
 

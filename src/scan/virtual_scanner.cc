@@ -70,7 +70,7 @@ void DrawTriangle(const std::array<Eigen::Vector3d, 3>& corners, const VirtualCa
 }
 
 // The far depth at an edge, up to which a flying pixel may lie: the largest of the four neighbours,
-// infinite if one of them sees nothing. Negative away from edges.
+// infinite if one of them measures nothing. Negative away from edges.
 double FarDepth(const DepthImage& depth, Eigen::Index v, Eigen::Index u, double edge_jump) {
   constexpr double kNothing = std::numeric_limits<double>::infinity();
   double far = -1;

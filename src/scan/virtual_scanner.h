@@ -1,10 +1,11 @@
-// Virtual depth cameras, which see a triangle mesh with the imperfections of real ones.
+// Virtual depth cameras, which measure a triangle mesh with the imperfections of real cameras.
 //
-// The ray through the centre of each pixel meets the nearest triangle at an exact depth. Of it the
-// scanner makes a measurement: it adds range noise and flying pixels where the depth jumps, rounds
-// to a quantum, and measures nothing at grazing incidence or, at random, elsewhere. All random
-// numbers are functions of the seed, the frame, the camera and the pixel, so that results depend
-// neither on the number of threads nor on the order of the calls. All functions are re-entrant.
+// The ray through the centre of each pixel meets the nearest triangle at an exact depth. The
+// scanner turns this depth into a measurement: it adds range noise and flying pixels where the
+// depth jumps, rounds to a quantum, and measures nothing at grazing incidence or, at random,
+// elsewhere. All random numbers are functions of the seed, the frame, the camera and the pixel, so
+// that results depend neither on the number of threads nor on the order of the calls. All functions
+// are re-entrant.
 #ifndef LACUNA_SCAN_VIRTUAL_SCANNER_H_
 #define LACUNA_SCAN_VIRTUAL_SCANNER_H_
 
@@ -31,7 +32,7 @@ struct CameraRing {
   double radius = 0.5;                               // m
   double elevation = 0.4;                            // rad; every other camera is below the plane
   int width = 320, height = 240;                     // larger: more points
-  double field_of_view = 0.7;                        // horizontal, rad
+  double field_of_view = 0.7;                        // rad, horizontal angle
 };
 
 // Places the cameras alternately above and below the plane of the ring, so that the ends of an
@@ -40,11 +41,11 @@ std::vector<VirtualCamera> PlaceCameras(const CameraRing& ring);
 
 // The standard deviation of a measured range r is noise · (r / reference_range)^noise_growth.
 struct ScannerOptions {
-  double noise = 2e-4;           // m, at reference_range
+  double noise = 2e-4;           // m, standard deviation at reference_range
   double noise_growth = 0;       // about 2 for stereo cameras
   double reference_range = 0.5;  // m
   double quantum = 1e-4;         // m; depths are rounded to its multiples; 0: they are not rounded
-  double flying_fraction = 0.3;  // of the pixels at depth edges: they measure a depth in between
+  double flying_fraction = 0.3;  // fraction of pixels at depth edges with a depth in between
   double flying_reach = 0.01;    // m; how far flying pixels lie behind the near surface at most
   double edge_jump = 0.005;      // m; a larger step of depth between neighbours is an edge
   double max_incidence = 1.4;    // rad between ray and normal; beyond it nothing is measured
@@ -52,7 +53,7 @@ struct ScannerOptions {
   uint64_t seed = 1;
 };
 
-// What an ideal camera sees; 0 where a ray meets no triangle.
+// The image of an ideal camera; 0 where a ray meets no triangle.
 struct RenderedView {
   DepthImage depth;      // m, see depth_image.h
   DepthImage incidence;  // |cos| of the angle between ray and triangle normal
@@ -69,8 +70,8 @@ DepthImage Measure(const RenderedView& view, const VirtualCamera& camera,
 
 // The measurements of all cameras as points of the world frame, in random order.
 struct ScanResult {
-  PointCloud cloud;  // without normals
-  Sensors sensors;   // with the camera of each point
+  PointCloud cloud;  // points without normals
+  Sensors sensors;   // the cameras, and the camera of each point
 };
 ScanResult Scan(const TriMesh& mesh, const std::vector<VirtualCamera>& cameras,
                 const ScannerOptions& options, int frame_index);

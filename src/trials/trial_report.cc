@@ -47,6 +47,7 @@ void Count(const TrialCase& trial, const TrialOutcome& outcome, TrialTally* tall
   tally->top1 += right;
   tally->wrong += named && !right;
   if (trial.hidden.empty() || trial.group == "removed") return;
+  ++tally->nameable;
   const std::string& truth = trial.hidden[0].type;
   const bool second = outcome.ranked.size() > 1 &&
                       (named || outcome.verdict == Verdict::kAmbiguous) &&
@@ -112,11 +113,11 @@ std::string ReportInWords(const TrialReport& report) {
       verdicts.push_back(fmt::format("{} {}", count, name));
     text += fmt::format(
         "{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7.2f}  {}\n",
-        tally.group, tally.cases, Share(tally.top1, tally.cases), Share(tally.top2, tally.cases),
-        Share(tally.wrong, tally.cases), Share(tally.ranked_first, tally.cases),
-        Share(tally.at_noise, tally.fitted), Share(tally.within_15, tally.fitted),
-        Share(tally.covered, tally.intervals), tally.median_before, tally.median_after,
-        fmt::join(verdicts, ", "));
+        tally.group, tally.cases, Share(tally.top1, tally.nameable),
+        Share(tally.top2, tally.nameable), Share(tally.wrong, tally.cases),
+        Share(tally.ranked_first, tally.nameable), Share(tally.at_noise, tally.fitted),
+        Share(tally.within_15, tally.fitted), Share(tally.covered, tally.intervals),
+        tally.median_before, tally.median_after, fmt::join(verdicts, ", "));
   }
   text += "\nhidden effect: verdicts, or the effects named as missing\n";
   for (const auto& [truth, said] : report.confusion) {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "calibration/stepped_fit.h"
+#include "calibration/adaptive_time_step.h"
 #include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"

@@ -11,10 +11,11 @@
 #include <random>
 
 #include "calibration/calibration_fits.h"
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
+#include "calibration/linear_misfit.h"
 #include "core/parallel.h"
 #include "effects/catalogue.h"
-#include "prediction/recorded_motion.h"
+#include "prediction/recording_noise.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
 

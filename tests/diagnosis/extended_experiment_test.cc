@@ -110,7 +110,7 @@ TEST(ExtendedExperiment, ALawOfTheUsersOwnIsRankedAndAddedLikeTheCatalogues) {
   const std::filesystem::path file = WriteExtendedExperiment(fitted, run, own);
   EXPECT_EQ(file.filename(), "bar+my_damping.yaml");
   const PredictionStudy extended = ReadPredictionStudy(Config::Load(file));
-  EXPECT_EQ(extended.effects.back()->Card().title, "my_damping, a force law of the user's own");
+  EXPECT_EQ(extended.effects.back()->Card().title, "my_damping, a user-defined force law");
   EXPECT_EQ(extended.effects.back()->Parameters()[0], own.score.size[0]);
   EXPECT_EQ(extended.fitted.back().prior.name, "expression.k");
   ASSERT_EQ(extended.candidates.size(), 1u);

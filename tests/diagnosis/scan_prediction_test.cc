@@ -6,7 +6,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "calibration/calibration_run.h"
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 #include "comparison/run_comparison.h"
 #include "core/parallel.h"
 #include "diagnosis/effect_refit.h"

@@ -316,14 +316,14 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
       {"z0: {value: 20 mm", "z0: {value: 20 mmm",
        "parameters.z0.value: got \"20 mmm\" (unknown unit \"mmm\")"},
       {", setting: true", "",
-       "parameters.z0.plausible: expected the least and the largest value that make sense, e.g. "
+       "parameters.z0.plausible: expected the smallest and the largest plausible value, e.g. "
        "[-10 m, 10 m]"},
       {"setting:", "settng:", "parameters.z0.plausible"},
       {"meaning:", "maening:",
        "a.yaml:7:54: parameters.k.maening: unknown key; did you mean \"meaning\"?"},
       {"[-10 N/kg, 10 N/kg]", "[10 N/kg, -10 N/kg]",
-       "a.yaml:7:33: parameters.k.plausible: expected the least"},
-      {"[-10 N/kg, 10 N/kg]", "[-10 N/kg]", "parameters.k.plausible: expected the least"},
+       "a.yaml:7:33: parameters.k.plausible: expected the smallest"},
+      {"[-10 N/kg, 10 N/kg]", "[-10 N/kg]", "parameters.k.plausible: expected the smallest"},
       {"[-10 N/kg, 10 N/kg]", "[-10 N, 10 N]",
        "parameters.k.plausible[0]: got \"-10 N\" (its unit has another dimension); expected an "
        "acceleration"},
@@ -337,15 +337,15 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
       {"[1 mm, 20 cm], min: 0.1 mm, log_scale: true", "[0, 20 cm], min: 0.1 mm",
        "parameters.d.plausible: reaches beyond the bounds min and max"},
       {"[1 mm, 20 cm], min: 0.1 mm", "[0, 20 cm]",
-       "parameters.d.plausible: a logarithmic scale has only values > 0"},
+       "parameters.d.plausible: expected values > 0, because the scale is logarithmic"},
       {"50 mm, plausible: [1 mm, 20 cm], min: 0.1 mm", "0 mm, plausible: [1 mm, 20 cm]",
        "parameters.d.value: got \"0 mm\"; expected a length > 0"},
-      {"min: 0.1 mm", "min: 0.1 mm, max: 0.1 mm", "parameters.d.max: expected more than min"},
+      {"min: 0.1 mm", "min: 0.1 mm, max: 0.1 mm", "parameters.d.max: expected a value above min"},
       {"50 mm", "0.05 mm", "parameters.d.value: got \"0.05 mm\"; expected a length ≥ 0.0001 m"},
       {"  k:", "  z-0:", "parameters.z-0: expected a name of letters, digits and underscores"},
-      {"  d:", "  ux:", "parameters.ux: this name means something else in an expression"},
-      {"  d:", "  exp:", "parameters.exp: this name means something else in an expression"},
-      {"/d", "", "a.yaml:8:6: parameters.d: stands in none of the three expressions"},
+      {"  d:", "  ux:", "parameters.ux: this name has another meaning in an expression"},
+      {"  d:", "  exp:", "parameters.exp: this name has another meaning in an expression"},
+      {"/d", "", "a.yaml:8:6: parameters.d: does not occur in any of the three expressions"},
       {"k * exp", "k^2 * exp",
        "force: must grow in proportion to k, the amplitude, where that is 0"},
       {"\"0\", \"0\"", "\"0\", \"3 + k\"",
@@ -360,7 +360,7 @@ TEST(ExpressionForce, RefusesWhatItCannotUse) {
               HasSubstr("parameters: is missing"));
   EXPECT_THAT(ErrorOf("type: expression\nname: a\nper: mass\nforce: [q, 0, 0]\n"
                       "parameters: {q: {value: 1, setting: true}}\n"),
-              HasSubstr("parameters: expected one that is not a setting: the size of the force"));
+              HasSubstr("parameters: expected at least one that is not a setting: the amplitude"));
   std::string many = "type: expression\nname: a\nper: mass\nforce: [0, 0, 0]\nparameters:\n";
   for (int k = 0; k < 17; ++k) many += "  k" + std::to_string(k) + ": {value: 1}\n";
   EXPECT_THAT(ErrorOf(many), HasSubstr("parameters: expected at most 16"));

@@ -169,7 +169,7 @@ TEST(Body, RejectsInvalidMeshes) {
   EXPECT_THAT(ErrorOf([&] { MakeBody(flat, 1); }), HasSubstr("volume"));
   TetMesh stray = good;
   stray.tets(2, 1) = 8;
-  EXPECT_THAT(ErrorOf([&] { MakeBody(stray, 1); }), HasSubstr("names node 8"));
+  EXPECT_THAT(ErrorOf([&] { MakeBody(stray, 1); }), HasSubstr("refers to node 8"));
   TetMesh lonely = good;
   lonely.nodes.conservativeResize(3, 9);
   lonely.nodes.col(8) << 2, 2, 2;

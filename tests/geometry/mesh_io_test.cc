@@ -256,7 +256,7 @@ TEST(ReadTetMesh, ReordersNegativeTetrahedraWithANote) {
     mirrored.nodes.row(0) *= -1;
     WriteTetMesh(folder / "a.msh", mirrored);
     const TetMeshFile read = ReadTetMesh(folder / "a.msh");
-    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("turned over 48 of 48")));
+    EXPECT_THAT(read.notes, ElementsAre(HasSubstr("reoriented 48 of 48")));
     EXPECT_GT(TetVolumes(read.mesh).minCoeff(), 0);
     // Edge nodes are still the midpoints of their edges: the boundary stays closed and flat.
     const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
@@ -282,7 +282,7 @@ TEST(ReadTetMesh, RefusesTetrahedraThatFormNoMesh) {
     return TetFailure(Write(folder / "a.tet", nodes + tets));
   };
   EXPECT_THAT(failure(""), HasSubstr("has no tetrahedra"));
-  EXPECT_THAT(failure("t 0 1 2 2\n"), HasSubstr("a.tet:8: a tetrahedron names one node twice"));
+  EXPECT_THAT(failure("t 0 1 2 2\n"), HasSubstr("a.tet:8: a tetrahedron refers to one node twice"));
   EXPECT_THAT(failure("t 0 1 2 5\n"), HasSubstr("a.tet:8: tetrahedron 1 has no volume"));
   EXPECT_THAT(failure("t 0 1 2 3\nt 0 1 2 4\n"), HasSubstr("tetrahedra 1 and 2 overlap"));
   EXPECT_THAT(failure("t 0 1 2 3\nt 0 1 2 6\nt 0 1 2 4\n"), HasSubstr("share a face with a third"));

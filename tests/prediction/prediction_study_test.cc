@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "effects/gravity.h"
 #include "prediction/prediction_study_reader.h"
 #include "prediction/recorded_motion.h"
 #include "support/held_bar.h"
@@ -286,6 +287,17 @@ TEST_F(ReadingAPredictionStudy, TellsOfASlowRecording) {
               ElementsAre(HasSubstr("50000 steps of 5 ms for 26 frames: if the object is in "
                                     "equilibrium")));
   study.scheme = TimeScheme::kQuasiStatic;
+  EXPECT_THAT(StudyWarnings(study), ElementsAre());
+}
+
+TEST_F(ReadingAPredictionStudy, TellsOfGravityThatTheModelLacks) {
+  PredictionStudy study = ReadBarStudy(folder_.Path());
+  ASSERT_THAT(StudyWarnings(study), ElementsAre());
+  study.recordings[0].recording.object.gravity = Eigen::Vector3d(0, 0, -9.81);
+  EXPECT_THAT(StudyWarnings(study),
+              ElementsAre(HasSubstr("was recorded under gravity, but the model "
+                                    "has none")));
+  study.effects.push_back(MakeGravity(Eigen::Vector3d(0, 0, -9.81)));
   EXPECT_THAT(StudyWarnings(study), ElementsAre());
 }
 

@@ -14,7 +14,7 @@ namespace lacuna {
 namespace {
 
 LedgerPicture Example() {
-  return {"held-out error", {{"initial model", 8e-4}, {"with damping", 2e-4}}, 1e-4, "noise"};
+  return {"held-out error", {{"model as given", 8e-4}, {"with damping", 2e-4}}, 1e-4, "noise"};
 }
 
 bool IsNear(const unsigned char* pixel, int red, int green, int blue) {

@@ -1,4 +1,4 @@
-#include "calibration/stepped_fit.h"
+#include "calibration/adaptive_time_step.h"
 
 #include <fmt/format.h>
 
@@ -57,9 +57,9 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
 
 }  // namespace
 
-SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
-                                   Progress* progress) {
-  SteppedFit fit;
+FitWithTimeStep FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
+                                        Progress* progress) {
+  FitWithTimeStep fit;
   Calibration beginning;
   if (study->chooses_time_step) {
     // A first estimate of the step, from the short horizon.

@@ -1,5 +1,5 @@
 // A fit that finds out how short its steps must be.
-#include "calibration/stepped_fit.h"
+#include "calibration/adaptive_time_step.h"
 
 #include <gtest/gtest.h>
 
@@ -11,11 +11,11 @@ namespace {
 
 const std::map<std::string, std::string> kWithoutStep{{"motion: {time_step: 1.5 ms}\n", ""}};
 
-class SteppedFitOfABar : public testing::Test {
+class AdaptiveTimeStepOfABar : public testing::Test {
  protected:
-  SteppedFitOfABar() { WriteBarRecording(folder_.Path(), FilmHeldBar(truth_)); }
+  AdaptiveTimeStepOfABar() { WriteBarRecording(folder_.Path(), FilmHeldBar(truth_)); }
 
-  SteppedFit Fit(PredictionStudy* study) const {
+  FitWithTimeStep Fit(PredictionStudy* study) const {
     ProgressOptions silent;
     silent.style = ProgressStyle::kSilent;
     Progress progress(silent);
@@ -26,11 +26,11 @@ class SteppedFitOfABar : public testing::Test {
   const HeldBarTruth truth_;
 };
 
-TEST_F(SteppedFitOfABar, ShortensTheStepUntilItHardlyMatters) {
+TEST_F(AdaptiveTimeStepOfABar, ShortensTheStepUntilItHardlyMatters) {
   PredictionStudy study = ReadBarStudy(folder_.Path(), kWithoutStep);
   EXPECT_TRUE(study.chooses_time_step);
   EXPECT_EQ(study.time_step, 0.005);  // half the distance of the frames
-  const SteppedFit fit = Fit(&study);
+  const FitWithTimeStep fit = Fit(&study);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_LT(study.time_step, 0.004);
   EXPECT_GT(study.time_step, 0.0005);
@@ -39,7 +39,7 @@ TEST_F(SteppedFitOfABar, ShortensTheStepUntilItHardlyMatters) {
 
   PredictionStudy coarse =
       ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
-  const SteppedFit with_coarse = Fit(&coarse);
+  const FitWithTimeStep with_coarse = Fit(&coarse);
   EXPECT_EQ(coarse.time_step, 0.005);  // as it was told
   EXPECT_EQ(with_coarse.step_error, 0);
   EXPECT_LT(fit.calibration.rms, with_coarse.calibration.rms);
@@ -47,7 +47,7 @@ TEST_F(SteppedFitOfABar, ShortensTheStepUntilItHardlyMatters) {
             std::abs(with_coarse.calibration.parameters[0] / truth_.young_modulus - 1));
 }
 
-TEST_F(SteppedFitOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
+TEST_F(AdaptiveTimeStepOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
   PredictionStudy study = ReadBarStudy(
       folder_.Path(),
       {{"motion: {time_step: 1.5 ms}\n", ""},
@@ -55,7 +55,7 @@ TEST_F(SteppedFitOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
         "fit: {parameters: []}"},
        {"noise: 0.05 mm", "noise: 0.0005 mm"},
        {"young_modulus: 0.15 MPa", "young_modulus: 0.05 MPa"}});  // half of the truth's
-  const SteppedFit fit = Fit(&study);
+  const FitWithTimeStep fit = Fit(&study);
   EXPECT_GT(fit.calibration.rms, 100);
   EXPECT_GT(fit.step_error, 1);
   EXPECT_LT(fit.step_error, 0.05 * fit.calibration.rms);

@@ -1,4 +1,4 @@
-#include "calibration/recording_misfit.h"
+#include "calibration/held_out_misfit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,9 +103,9 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
     ParallelFor(static_cast<int64_t>(some.size()), 1, [&](int64_t k) {
       const size_t r = some[static_cast<size_t>(k)];
       std::optional<Eigen::MatrixXd> places;
-      if (const std::optional<size_t> teller = problem.RecordingWithSamePlaces(r);
-          teller && all[*teller].misfit.summary.IsUsable())
-        places = all[*teller].place_offset;
+      if (const std::optional<size_t> source = problem.RecordingWithSamePlaces(r);
+          source && all[*source].misfit.summary.IsUsable())
+        places = all[*source].place_offset;
       all[r] = MisfitOf(problem, values, r, places, known);
     });
   }

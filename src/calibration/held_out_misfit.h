@@ -1,7 +1,7 @@
 // The distance of a fitted model from each of its recordings, whether the recording was fitted or
 // not.
-#ifndef LACUNA_CALIBRATION_RECORDING_MISFIT_H_
-#define LACUNA_CALIBRATION_RECORDING_MISFIT_H_
+#ifndef LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_
+#define LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_
 
 #include <Eigen/Core>
 #include <string>
@@ -34,4 +34,4 @@ std::vector<RecordingMisfit> MisfitsOf(const CalibrationProblem& problem,
 
 }  // namespace lacuna
 
-#endif  // LACUNA_CALIBRATION_RECORDING_MISFIT_H_
+#endif  // LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_

@@ -1,6 +1,6 @@
 // The fit of a study whose time step is adapted to its recordings.
-#ifndef LACUNA_CALIBRATION_STEPPED_FIT_H_
-#define LACUNA_CALIBRATION_STEPPED_FIT_H_
+#ifndef LACUNA_CALIBRATION_ADAPTIVE_TIME_STEP_H_
+#define LACUNA_CALIBRATION_ADAPTIVE_TIME_STEP_H_
 
 #include <Eigen/Core>
 
@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-struct SteppedFit {
+struct FitWithTimeStep {
   Calibration calibration;
   // The rms change of the fitted frames, σ, when the step is halved. It is three quarters of the
   // step's error for a second-order scheme and half of it for a first-order scheme.
@@ -19,8 +19,9 @@ struct SteppedFit {
 // FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
 // step_error is small against the noise or the model's residual, and the fit is continued
 // each time. `study` receives the step that was chosen. Throws Interrupted.
-SteppedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
+FitWithTimeStep FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
+                                        Progress* progress);
 
 }  // namespace lacuna
 
-#endif  // LACUNA_CALIBRATION_STEPPED_FIT_H_
+#endif  // LACUNA_CALIBRATION_ADAPTIVE_TIME_STEP_H_

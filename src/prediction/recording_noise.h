@@ -1,0 +1,19 @@
+// The estimate of a recording's noise, σ.
+#ifndef LACUNA_PREDICTION_RECORDING_NOISE_H_
+#define LACUNA_PREDICTION_RECORDING_NOISE_H_
+
+#include <vector>
+
+#include "prediction/prediction_study.h"
+
+namespace lacuna {
+
+// The standard deviation of a recording's noise, m, estimated from `frames` (ascending). For
+// markers it is that of a coordinate: the scatter while the markers rest or, where they never rest,
+// the white part of their motion (WhiteNoise); 0 for fewer than three frames. For a scan it is that
+// of a point along the surface normal (EstimateScanNoise).
+double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_PREDICTION_RECORDING_NOISE_H_
