@@ -76,6 +76,7 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
   for (HypothesisProbability& one : hypotheses) {
     if (one.kind == Kind::kEffect) {
       const WeighedRefit* refit = FindRefit(input, one.names.front());
+      one.is_refuted = refit != nullptr && !refit->predicts;
       if (refit != nullptr)
         one.evidence = refit->evidence - effects - input.baseline.discretisation;
       else if (one.evidence > 0)
@@ -101,8 +102,7 @@ struct TestedSpace {
 
 TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
                     const HypothesisProbability& hypothesis) {
-  if (hypothesis.kind == Kind::kNothing || hypothesis.names == input.adopted)
-    return {&input.baseline, {}};
+  if (hypothesis.names.empty() || hypothesis.names == input.adopted) return {&input.baseline, {}};
   const std::string& name = hypothesis.names.front();
   if (hypothesis.kind == Kind::kEffect)
     if (const WeighedRefit* refit = FindRefit(input, name)) return {&refit->space, {}};
@@ -129,33 +129,47 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   return adequacy;
 }
 
-// The most probable effect with a second one beside it, as one hypothesis; nothing where the second
-// one has too little evidence, or where the two leave more than noise.
-bool TryPair(const DecisionInput& input, const TestedSpace& tested, const AdequacyTest& test,
-             Decision* decision) {
-  const HypothesisProbability best = decision->record.probabilities.front();
-  const NamedEvidence& second = test.found.best_further;
-  if (best.kind != Kind::kEffect || second.kind != HypothesisKind::kEffect ||
-      second.name == best.names.front() || second.name.empty())
-    return false;
-  HypothesisProbability pair;
-  pair.kind = Kind::kPair;
-  pair.names = {best.names.front(), second.name};
-  pair.evidence = best.evidence + second.evidence + std::log(2.0);  // either order
-  std::vector<HypothesisProbability> posterior = decision->record.probabilities;
-  posterior.push_back(pair);
-  SetPosterior(&posterior);
-  if (posterior.front().kind != Kind::kPair || posterior.front().probability < kNamingProbability)
-    return false;
-  std::vector<int> columns = tested.columns;
-  const std::vector<int>& own = tested.space->hypotheses[second.best].columns;
-  columns.insert(columns.end(), own.begin(), own.end());
-  const AdequacyTest both =
-      TestAdequacy(*tested.space, columns, input.noise_is_known, input.seed + 1);
-  if (both.p < kAdequacyLevel) return false;
-  decision->record.probabilities = std::move(posterior);
-  decision->record.adequacy = RecordOf(both, 2 * pair.evidence, pair.names);
-  return true;
+// Two effects that may be missing together, with the space in which both are tested.
+struct Pair {
+  HypothesisProbability hypothesis;
+  TestedSpace tested;
+};
+
+// Each effect that was refitted, together with the best further effect beside it.
+std::vector<Pair> PairsOf(const DecisionInput& input,
+                          const std::vector<HypothesisProbability>& posterior) {
+  std::vector<Pair> pairs;
+  for (const HypothesisProbability& first : posterior) {
+    const WeighedRefit* refit =
+        first.kind == Kind::kEffect ? FindRefit(input, first.names.front()) : nullptr;
+    if (refit == nullptr || !refit->predicts) continue;
+    const HypothesisSpace& space = refit->space;
+    const ProjectedHypotheses beside(space);
+    const NamedEvidence* second = nullptr;
+    const std::vector<NamedEvidence> further =
+        SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward())));
+    for (const NamedEvidence& named : further)
+      if (named.kind == HypothesisKind::kEffect && named.name != refit->effect &&
+          (second == nullptr || named.evidence > second->evidence))
+        second = &named;
+    if (second == nullptr) continue;
+    Pair pair;
+    pair.hypothesis.kind = Kind::kPair;
+    pair.hypothesis.names = {refit->effect, second->name};
+    // Either of the two may be found first.
+    pair.hypothesis.evidence =
+        first.evidence + second->evidence - space.discretisation + std::log(2.0);
+    pair.tested = {&space, space.hypotheses[second->best].columns};
+    const auto same = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& other) {
+      return other.hypothesis.names.front() == second->name &&
+             other.hypothesis.names.back() == refit->effect;
+    });
+    if (same == pairs.end())
+      pairs.push_back(pair);
+    else if (pair.hypothesis.evidence > same->hypothesis.evidence)
+      *same = pair;
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -185,43 +199,30 @@ Decision Decide(const DecisionInput& input) {
   Decision decision;
   DecisionRecord& record = decision.record;
   record.probabilities = PosteriorOf(input, first_order);
-  const HypothesisProbability best = record.probabilities.front();
-  const TestedSpace tested = SpaceOf(input, first_order, best);
+  const std::vector<Pair> pairs = PairsOf(input, record.probabilities);
+  for (const Pair& pair : pairs) record.probabilities.push_back(pair.hypothesis);
+  SetPosterior(&record.probabilities);
+  const HypothesisProbability& best = record.probabilities.front();
+  TestedSpace tested = SpaceOf(input, first_order, best);
+  for (const Pair& pair : pairs)
+    if (pair.hypothesis.names == best.names) tested = pair.tested;
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
   record.adequacy = RecordOf(test, 2 * best.evidence, best.names);
   record.chance = test.chance;
 
   const Naming naming = NameFrom(record.probabilities);
-  const bool explains = record.adequacy.is_adequate ||
-                        record.adequacy.left_share < kToleratedModelError ||
-                        TryPair(input, tested, test, &decision);
-  if (!explains) {
+  decision.names = naming.names;
+  if (!record.adequacy.is_adequate && record.adequacy.left_share >= kToleratedModelError)
     decision.verdict = Verdict::kNotInLibrary;
-    if (naming.level != Naming::Level::kNothing)
-      for (const size_t k : naming.kept)
-        for (const std::string& name : record.probabilities[k].names)
-          decision.names.push_back(name);
-    return decision;
-  }
-  const HypothesisProbability& first = record.probabilities.front();
-  if (first.kind == Kind::kPair) {
-    decision.verdict = Verdict::kMissing;
-    decision.names = first.names;
-  } else if (naming.level == Naming::Level::kNothing) {
+  else if (naming.level == Naming::Level::kNothing)
     decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;
-  } else {
-    const auto is_nuisance = [&](size_t k) {
-      return record.probabilities[k].kind == Kind::kNuisance;
-    };
-    for (const size_t k : naming.kept)
-      for (const std::string& name : record.probabilities[k].names) decision.names.push_back(name);
-    if (std::all_of(naming.kept.begin(), naming.kept.end(), is_nuisance))
-      decision.verdict = Verdict::kNuisance;
-    else
-      decision.verdict =
-          naming.level == Naming::Level::kMember ? Verdict::kMissing : Verdict::kAmbiguous;
-  }
+  else if (std::all_of(naming.kept.begin(), naming.kept.end(),
+                       [&](size_t k) { return record.probabilities[k].kind == Kind::kNuisance; }))
+    decision.verdict = Verdict::kNuisance;
+  else
+    decision.verdict =
+        naming.level == Naming::Level::kCommon ? Verdict::kMissing : Verdict::kAmbiguous;
   return decision;
 }
 

@@ -41,6 +41,11 @@ double EvidenceOfNaturalValue(const RankedEffect& effect) {
   return NaturalValueEvidence(mean, deviation, prior, card.natural_magnitude);
 }
 
+// Whether an effect lowers the error of the held-out frames; true where none are held out.
+bool Predicts(const ModelErrors& with, const ModelErrors& without) {
+  return !without.has_held_out || with.held_out_rms < without.held_out_rms;
+}
+
 }  // namespace
 
 double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& deviation,
@@ -74,7 +79,8 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     if (!ranked.IsUsable(k)) continue;
     input.refits.push_back(
         {candidate.type, effect.evidence + penalty,
-         SpaceOf(ranked.refits[k].hypothesis, ranking, candidate.type, noise.level)});
+         SpaceOf(ranked.refits[k].hypothesis, ranking, candidate.type, noise.level),
+         Predicts(effect.errors, diagnosis.errors)});
     if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
@@ -102,7 +108,7 @@ void AddAlternatives(const NuisanceAlternatives& alternatives, DecisionInput* in
   input->adopted_evidence = alternatives.nuisances_evidence;
   const double penalty = SelectionPenalty(input->families.size());
   for (const RankedEffect& effect : alternatives.effects)
-    if (effect.HasUsableRefit())
+    if (effect.HasUsableRefit() && Predicts(effect.errors, alternatives.bare))
       input->in_place_of_adopted.push_back(
           {effect.scored.candidate.type, effect.evidence + penalty, {}});
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lacuna {
 namespace {
@@ -25,10 +26,11 @@ double LogPrior(Kind kind) {
 }  // namespace
 
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto weight = [](const HypothesisProbability& one) {
-    return one.evidence + LogPrior(one.kind);
+    return one.is_refuted ? -kInfinity : one.evidence + LogPrior(one.kind);
   };
-  double largest = -std::numeric_limits<double>::infinity(), sum = 0;
+  double largest = -kInfinity, sum = 0;
   for (const HypothesisProbability& one : *hypotheses) largest = std::max(largest, weight(one));
   for (HypothesisProbability& one : *hypotheses) {
     one.probability = std::exp(weight(one) - largest);
@@ -46,21 +48,29 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
     naming.kept.push_back(k);
     sum += posterior[k].probability;
   }
-  const HypothesisProbability& best = posterior.front();
   const auto holds = [&](const auto& condition) {
     return std::all_of(naming.kept.begin(), naming.kept.end(),
                        [&](size_t k) { return condition(posterior[k]); });
   };
-  if (!holds([](const auto& one) { return one.kind != Kind::kNothing; }))
-    naming.level = Naming::Level::kNothing;
-  else if (naming.kept.size() == 1)
-    naming.level = Naming::Level::kMember;
-  else if (best.kind == Kind::kEffect && holds([&](const auto& one) {
-             return one.kind == Kind::kEffect && one.family == best.family;
-           }))
-    naming.level = Naming::Level::kFamily;
-  else
-    naming.level = Naming::Level::kSet;
+  const auto contains = [](const HypothesisProbability& one, const std::string& name) {
+    return std::count(one.names.begin(), one.names.end(), name) > 0;
+  };
+  if (!holds([](const auto& one) { return one.kind != Kind::kNothing; })) return naming;
+  const HypothesisProbability& best = posterior.front();
+  for (const std::string& name : best.names)
+    if (holds([&](const auto& one) { return contains(one, name); })) naming.names.push_back(name);
+  if (!naming.names.empty()) {
+    naming.level = Naming::Level::kCommon;
+    return naming;
+  }
+  for (const size_t k : naming.kept)
+    for (const std::string& name : posterior[k].names)
+      if (std::count(naming.names.begin(), naming.names.end(), name) == 0)
+        naming.names.push_back(name);
+  const bool is_family = best.kind == Kind::kEffect && holds([&](const auto& one) {
+                           return one.kind == Kind::kEffect && one.family == best.family;
+                         });
+  naming.level = is_family ? Naming::Level::kFamily : Naming::Level::kSet;
   return naming;
 }
 

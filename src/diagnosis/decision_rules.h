@@ -2,8 +2,9 @@
 // stated. The same rules serve recorded and simulated residuals.
 //
 // The posterior probability of a hypothesis is its prior probability times its Bayes factor
-// against the model as it is, normalised. A name is stated when its probability is at least
-// kNamingProbability; otherwise the smallest set of hypotheses that reaches this probability.
+// against the model as it is, normalised. The smallest set of hypotheses that reaches
+// kNamingProbability is kept. What all of them contain is stated as missing; where they have
+// nothing in common, the set itself is stated.
 #ifndef LACUNA_DIAGNOSIS_DECISION_RULES_H_
 #define LACUNA_DIAGNOSIS_DECISION_RULES_H_
 
@@ -24,7 +25,7 @@ inline constexpr double kPriorNothing = 0.5, kPriorEffects = 0.3, kPriorNuisance
 inline constexpr double kNamingProbability = 0.95;
 // The level of the test of adequacy: so often a complete model is said to leave something unknown.
 // Lower: something unknown that is small passes for noise more often.
-inline constexpr double kAdequacyLevel = 0.02;
+inline constexpr double kAdequacyLevel = 0.05;
 // No model is exact. What an effect leaves is no reason to withhold its name if it is less than
 // this share of the misfit that the effect removes: a model error of a tenth of the amplitude.
 // Higher: effects that compensate for one outside the catalogue are named more often.
@@ -34,21 +35,23 @@ inline constexpr double kToleratedModelError = 0.01;
 inline constexpr double kSeparableLambda = 12;
 
 // Sets the probabilities from the evidence and the kind of each hypothesis, and sorts by them.
-// Evidence of an effect or nuisance contains its share of the prior among its rivals already
-// (NamedEvidence); that of a pair likewise.
+// Refuted hypotheses get the probability 0. Evidence of an effect or nuisance contains its share of
+// the prior among its rivals already (NamedEvidence); that of a pair likewise.
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
 
 // What a posterior allows to be said.
 struct Naming {
   enum class Level {
     kNothing,  // "nothing is missing" is among the hypotheses that must be kept
-    kMember,   // one hypothesis: an effect, a nuisance or a pair
-    kFamily,   // several effects of one family
+    kCommon,   // all hypotheses that are kept contain these effects or nuisances
+    kFamily,   // several effects of one family, of which one is missing
     kSet,      // several hypotheses of different families
   };
   Level level = Level::kNothing;
   // The smallest set that reaches kNamingProbability: indices of the posterior, in its order.
   std::vector<size_t> kept;
+  // At the level kCommon what the kept hypotheses have in common, otherwise all that they contain.
+  std::vector<std::string> names;
 };
 Naming NameFrom(const std::vector<HypothesisProbability>& posterior);
 

@@ -88,6 +88,7 @@ json RefitsToJson(const std::vector<WeighedRefit>& refits) {
   for (const WeighedRefit& refit : refits)
     all.push_back({{"effect", refit.effect},
                    {"evidence", refit.evidence},
+                   {"predicts", refit.predicts},
                    {"space", SpaceToJson(refit.space)}});
   return all;
 }
@@ -133,7 +134,8 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     for (const json& one : value.at("refits"))
       input.refits.push_back(
           {one.at("effect"), one.at("evidence"),
-           SpaceFromJson(one.at("space"), ProductsFile(folder, input.refits.size() + 1))});
+           SpaceFromJson(one.at("space"), ProductsFile(folder, input.refits.size() + 1)),
+           one.at("predicts")});
     for (const json& one : value.at("nuisances"))
       input.nuisances.push_back({one.at("name"), one.at("evidence")});
     input.adopted = value.at("adopted").get<std::vector<std::string>>();

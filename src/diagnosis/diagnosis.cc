@@ -81,17 +81,17 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
 }
 
 // Decides, and looks closer where that may change the decision: where the best effect leaves more
-// than noise, at what it leaves along its own motion; where nuisances explain the residual, at
-// effects in their place.
+// than noise, or room for a second one, at what it leaves along its own motion; where nuisances
+// explain the residual, at effects in their place.
 void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, const RefitNoise& noise,
                 const DiagnosisOptions& options, Diagnosis* diagnosis) {
   DecisionInput& input = diagnosis->decision_input;
   input = MakeDecisionInput(context, ranked, noise, *diagnosis);
   Decision decision = Decide(input);
-  if (decision.verdict == Verdict::kNotInLibrary) {
-    const std::string best = decision.record.probabilities.front().names.empty()
-                                 ? ""
-                                 : decision.record.probabilities.front().names.front();
+  const HypothesisProbability first = decision.record.probabilities.front();
+  if (decision.verdict == Verdict::kNotInLibrary ||
+      first.kind == HypothesisProbability::Kind::kPair) {
+    const std::string best = first.names.empty() ? "" : first.names.front();
     for (size_t k = 0; k < ranked.effects.size(); ++k) {
       const RankedEffect& effect = ranked.effects[k];
       if (effect.scored.candidate.type != best || !ranked.IsUsable(k)) continue;
@@ -124,7 +124,8 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.scored = ranking.variants;
   diagnosis.untried = std::move(ranking.untried);
 
-  const BaselineModel model{problem, fitted, ranking.misfit, setting.progress, setting.kept};
+  const BaselineModel model{problem,          fitted,       ranking.misfit,
+                            setting.progress, setting.kept, ranking.noise};
   const RefitContext context{model, ranking};
   RefittedRanking ranked = StartRefits(context, ranking.effects, options.refits);
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include "calibration/held_out_misfit.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/thresholds.h"
+#include "fit/active_bounds.h"
 
 namespace lacuna {
 namespace {
@@ -160,6 +161,9 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                            const EffectRefit& refit, const std::vector<std::string>& without,
                            SceneColumns scene) {
+  // What an effect leaves may be a hundredth of what it explains, so that the columns of the mesh
+  // and the time step must be those of its own motion.
+  scene.nuisances.clear();
   if (effect.candidate.replaces_material) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
@@ -168,29 +172,67 @@ HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& e
 
 namespace {
 
-// The best parameters for all frames, to first order.
-LinearFit BestNear(const FittedHypothesis& hypothesis) {
+// A change of the parameters in the units of MovedBy, and the log evidence that it would gain.
+struct BestStep {
+  Eigen::VectorXd change;
+  double gain = 0;
+};
+
+// The best change within the bounds of the parameters for all frames, to first order.
+BestStep BestNear(const FittedHypothesis& hypothesis,
+                  const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
+                  const NoiseLevel& noise) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
-  return LinearGaussianModel(WhitenedRows(misfit.residual, misfit, 0, false),
-                             WhitenedRows(misfit.jacobian, misfit, 0, false), hypothesis.priors)
-      .FitAll(1);
+  const Eigen::MatrixXd columns =
+      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, false);
+  const Eigen::VectorXd residual =
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
+  QuadraticCost model{0.5 * residual.squaredNorm() / noise.variance,
+                      columns.transpose() * residual / noise.variance,
+                      columns.transpose() * columns / noise.variance};
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd low = Eigen::VectorXd::Constant(columns.cols(), -kUnbounded), high = -low;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
+    if (std::isfinite(prior.deviation)) {
+      const double precision = std::pow(prior.deviation, -2);
+      model.cost += 0.5 * precision * prior.mean * prior.mean;
+      model.gradient[k] -= precision * prior.mean;
+      model.information(k, k) += precision;
+    }
+    if (k >= hypothesis.parameters) continue;
+    const CalibratedParameter& parameter = parameters[static_cast<size_t>(k)];
+    const auto by = [&](double bound) {
+      return parameter.log_scale ? values[k] * std::log(bound / values[k]) : bound - values[k];
+    };
+    if (!parameter.log_scale || parameter.min > 0) low[k] = std::min(0.0, by(parameter.min));
+    high[k] = std::max(0.0, by(parameter.max));
+  }
+  // In units in which the information has a unit diagonal.
+  const Eigen::VectorXd unit = model.information.diagonal()
+                                   .cwiseMax(std::numeric_limits<double>::min())
+                                   .cwiseSqrt()
+                                   .cwiseInverse();
+  model.gradient = unit.cwiseProduct(model.gradient);
+  model.information = unit.asDiagonal() * model.information * unit.asDiagonal();
+  const Eigen::VectorXd step = StepWithin(model, low.cwiseQuotient(unit), high.cwiseQuotient(unit));
+  return {unit.cwiseProduct(step), model.cost * model.GainOf(step)};
 }
 
 // The hypothesis at the best parameters for all frames, by Gauss–Newton steps from `values`, where
 // it is `hypothesis`. The held-out frames move the parameters little, so the Jacobian is kept.
 FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
                                    const AdoptedNuisances& adopted,
-                                   const LinearisedMisfit& correspondences,
+                                   const LinearisedMisfit& correspondences, const NoiseLevel& noise,
                                    FittedHypothesis hypothesis) {
-  const NoiseLevel white;
-  double evidence = EvidenceOf(hypothesis, white).log_evidence;
+  double evidence = EvidenceOf(hypothesis, noise).log_evidence;
   double share = 1;  // of the step
   for (int step = 0; step < kSettlingSteps; ++step) {
-    const LinearFit best = BestNear(hypothesis);
-    if (best.log_evidence - evidence < kSettledGain) break;
+    const BestStep best = BestNear(hypothesis, problem.parameters(), values, noise);
+    if (best.gain < kSettledGain) break;
     const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, share * best.change);
     FittedHypothesis next = HypothesisAt(problem, moved, adopted, correspondences, &hypothesis);
-    const double gain = next.misfit.usable ? EvidenceOf(next, white).log_evidence - evidence : -1.0;
+    const double gain = next.misfit.usable ? EvidenceOf(next, noise).log_evidence - evidence : -1.0;
     if (!(gain > 0)) {
       share *= kStepReduction;
       continue;
@@ -277,7 +319,7 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
           HeldOutInNoise(WhitenedRows(residual, misfit, 0, false), misfit);
       refit.at_fit = refit.hypothesis;
       refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
-                                           std::move(refit.hypothesis));
+                                           baseline.noise, std::move(refit.hypothesis));
     }
   }
   return refit;

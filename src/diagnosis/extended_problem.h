@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "calibration/linear_misfit.h"
 #include "core/progress.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/refit_store.h"
@@ -22,6 +23,7 @@ struct BaselineModel {
   const LinearisedMisfit& misfit;  // at `values`
   Progress* progress;
   RefitStore* kept = nullptr;  // finished fits are read from here and added to it; null: not kept
+  NoiseLevel noise = {};       // with which refits are compared
 };
 
 struct NamedEstimate {

@@ -60,9 +60,7 @@ class SimulatedDecisions {
         left.unknown_force > null.unknown_force || left.further > null.further ||
         (input_.noise_is_known && left.variance / space_.variance > null.variance);
     const Naming naming = NameFrom(posterior);
-    if (naming.level == Naming::Level::kNothing) return outcome;
-    for (const size_t k : naming.kept)
-      for (const std::string& name : posterior[k].names) outcome.names.push_back(name);
+    outcome.names = naming.names;
     return outcome;
   }
 

@@ -12,11 +12,10 @@ namespace lacuna {
 namespace {
 
 // Of two refits of one effect that started from different variants.
-bool IsBetter(const EffectRefit& a, const EffectRefit& b) {
+bool IsBetter(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& noise) {
   if (!a.message.empty() || !b.message.empty()) return a.message.empty();
-  const NoiseLevel white;
-  return EvidenceOf(a.hypothesis, white).log_evidence >
-         EvidenceOf(b.hypothesis, white).log_evidence;
+  return EvidenceOf(a.hypothesis, noise).log_evidence >
+         EvidenceOf(b.hypothesis, noise).log_evidence;
 }
 
 // Whether a refit has probably ended in a local minimum.
@@ -42,14 +41,14 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
     if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
       break;
     EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
-    if (!IsBetter(other, refit)) continue;
+    if (!IsBetter(other, refit, context.ranking.noise)) continue;
     refit = std::move(other);
     best = elsewhere;
   }
   if (!effect->scored.candidate.IsPilot() &&
       IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
     EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
-    if (IsBetter(other, refit)) {
+    if (IsBetter(other, refit, context.ranking.noise)) {
       refit = std::move(other);
       best = effect->scored;
     }
@@ -70,7 +69,17 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   RankedEffect& own = ranked->effects[effect];
   if (own.refitted || ranked->count == ranked->limit) return;
   ++ranked->count;
-  ranked->refits[effect] = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
+  EffectRefit& refit = ranked->refits[effect];
+  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
+  if (!refit.message.empty()) return;
+  const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
+  if (evidence > ranked->best_evidence) ranked->best_evidence = evidence;
+}
+
+bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
+  const RefitThresholds& thresholds = kThresholds.refit;
+  const double lead = ranked.best_evidence - ranked.effects[effect].scored.score.evidence;
+  return lead > std::max(thresholds.beaten_by, thresholds.beaten_share * ranked.best_evidence);
 }
 
 // `rivals`: number of effects from which this one was selected.
@@ -123,6 +132,7 @@ RefittedRanking StartRefits(const RefitContext& context, const std::vector<Score
   RefittedRanking ranked;
   ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
+  ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;
   ranked.effects.resize(effects.size());
   for (size_t k = 0; k < effects.size(); ++k) ranked.effects[k].scored = effects[k];
   ranked.refits.resize(effects.size());
@@ -156,7 +166,8 @@ std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects) {
 
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked) {
-  for (const size_t effect : effects) RefitOne(context, effect, ranked);
+  for (const size_t effect : effects)
+    if (!IsBeaten(*ranked, effect)) RefitOne(context, effect, ranked);
 }
 
 void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,

@@ -30,6 +30,9 @@ struct RefittedRanking {
   std::vector<EffectRefit> refits;    // of the effects, in the same order; empty if not refitted
   int count = 0;                      // number of refits
   int limit = 0;                      // the largest number of refits
+  // Of the model without an effect, and the largest one of a refit beyond it; with the noise of the
+  // ranking.
+  double baseline_evidence = 0, best_evidence = 0;
 
   bool IsUsable(size_t effect) const {
     return effects[effect].refitted && effects[effect].refit_message.empty();
@@ -56,7 +59,8 @@ std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int 
 // The effects that first order cannot distinguish from the best refitted one.
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
-// Refits the effects with these indices that have not been refitted, up to the limit.
+// Refits the effects with these indices that have not been refitted, up to the limit. Effects that
+// another refit has clearly beaten (RefitThresholds::beaten_by) are left out.
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked);
 

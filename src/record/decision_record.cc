@@ -46,7 +46,8 @@ json DecisionToJson(const DecisionRecord& decision) {
                              {"names", one.names},
                              {"family", FamilyName(one.family)},
                              {"evidence", NumberOrNull(one.evidence)},
-                             {"probability", one.probability}});
+                             {"probability", one.probability},
+                             {"is_refuted", one.is_refuted}});
   for (const RecordedPower& one : decision.power)
     power.push_back({{"truth", one.truth},
                      {"named", one.named},
@@ -81,7 +82,7 @@ std::vector<HypothesisProbability> ProbabilitiesFromJson(const json& value) {
   for (const json& one : value)
     probabilities.push_back({KindFromName(one.at("kind")), one.at("names"),
                              FamilyFromName(one.at("family")), NumberOr(one.at("evidence")),
-                             one.at("probability")});
+                             one.at("probability"), one.at("is_refuted")});
   return probabilities;
 }
 

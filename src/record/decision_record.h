@@ -20,6 +20,9 @@ struct HypothesisProbability {
   // The log Bayes factor against the model as it is, variants summed, without prior odds.
   double evidence = 0;
   double probability = 0;
+  // An effect with which the error of the held-out frames is not smaller. It counts as refuted,
+  // whatever its evidence: its probability is 0.
+  bool is_refuted = false;
 };
 
 // Whether the most probable hypothesis leaves what noise leaves: tail probabilities under noise

@@ -139,6 +139,18 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
       beside, adequacy.p, adequacy.rms_over_sigma, share);
 }
 
+// The effects that have evidence, but do not lower the error of the held-out frames.
+std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
+  std::vector<std::string> sentences;
+  for (const HypothesisProbability& one : diagnosis.decision.probabilities)
+    if (one.is_refuted && one.evidence > 0)
+      sentences.push_back(fmt::format(
+          "{} explains a part of the error in the frames that were fitted, but with it the error "
+          "of the held-out frames does not fall: it is refuted.",
+          NamesOf(one.names)));
+  return sentences;
+}
+
 // What the verdict names.
 std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> titles;
@@ -165,6 +177,7 @@ std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {
     sentences.push_back(std::visit(ReasonSentence{diagnosis}, reason));
   if (!diagnosis.decision.probabilities.empty()) {
     sentences.push_back(ProbabilitySentence(diagnosis.decision));
+    for (const std::string& sentence : RefutedSentences(diagnosis)) sentences.push_back(sentence);
     sentences.push_back(AdequacySentence(diagnosis.decision.adequacy));
   }
   return fmt::format("{}", fmt::join(sentences, " "));

@@ -60,7 +60,7 @@ TEST(DecisionRules, NamesAMemberAFamilyOrASet) {
   const HypothesisProbability nothing = One(Kind::kNothing, "", 0);
   EXPECT_EQ(
       naming({nothing, One(Kind::kEffect, "a", 20, loss), One(Kind::kEffect, "b", 9, loss)}).level,
-      Naming::Level::kMember);
+      Naming::Level::kCommon);
   const Naming family =
       naming({nothing, One(Kind::kEffect, "a", 20, loss), One(Kind::kEffect, "b", 19, loss),
               One(Kind::kEffect, "c", 5, steady)});
@@ -71,6 +71,20 @@ TEST(DecisionRules, NamesAMemberAFamilyOrASet) {
           .level,
       Naming::Level::kSet);
   EXPECT_EQ(naming({nothing, One(Kind::kEffect, "a", 2, loss)}).level, Naming::Level::kNothing);
+}
+
+TEST(DecisionRules, StatesWhatTheHypothesesHaveInCommon) {
+  const auto loss = EffectFamily::kLossOutside, steady = EffectFamily::kSteadyForce;
+  HypothesisProbability pair = One(Kind::kPair, "a", 41);
+  pair.names.push_back("b");
+  std::vector<HypothesisProbability> all = {One(Kind::kNothing, "", 0),
+                                            One(Kind::kEffect, "a", 39, loss),
+                                            One(Kind::kEffect, "b", 20, steady), pair};
+  SetPosterior(&all);
+  const Naming naming = NameFrom(all);
+  EXPECT_EQ(naming.level, Naming::Level::kCommon);
+  EXPECT_EQ(naming.kept.size(), 2u);
+  EXPECT_THAT(naming.names, ElementsAre("a"));
 }
 
 TEST(Decide, CallsNoiseAdequate) {
