@@ -22,7 +22,7 @@ struct RankedEffect {
   bool refitted = false;      // the fields below are those of the refit
   std::string refit_message;  // why it is not usable; empty: it is usable
   ModelErrors errors;
-  double evidence = 0;                   // ln of the odds against the model as it is
+  double evidence = 0;                   // log Bayes factor against the model as it is
   double held_out_evidence = 0;          // the part of it that the held-out frames contribute
   double explained = 0;                  // share of the squared misfit
   double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best

@@ -16,7 +16,7 @@
 namespace lacuna {
 
 struct Score {
-  double evidence = 0;        // ln of the odds against the model, less the selection penalty
+  double evidence = 0;        // log Bayes factor against the model, less the selection penalty
   Eigen::VectorXd size;       // of the candidate's amounts, in their units
   Eigen::VectorXd deviation;  // standard deviations of the size
   // The smallest sizes that would have been noticed (RankingThresholds::detectable_deviations);

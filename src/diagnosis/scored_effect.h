@@ -1,6 +1,6 @@
 // Effects and nuisances with the evidence that they have to first order, as plain values.
 //
-// Evidence is the natural logarithm of the odds against the model without the hypothesis. Columns
+// Evidence is the log Bayes factor against the model without the hypothesis. Columns
 // have the rows of a LinearisedMisfit, in m per unit of the amount that they belong to.
 #ifndef LACUNA_DIAGNOSIS_SCORED_EFFECT_H_
 #define LACUNA_DIAGNOSIS_SCORED_EFFECT_H_

@@ -1,7 +1,7 @@
 // All numeric thresholds of the diagnosis, in one place.
 //
-// Evidence is the natural logarithm of the odds against the model without the hypothesis; 3 stands
-// for odds of 20 to 1, 5 for 150 to 1. A rms "over σ" is a rms residual divided by the standard
+// Evidence is the log Bayes factor against the model without the hypothesis; 3 stands for a factor
+// of 20, 5 for 150. A rms "over σ" is a rms residual divided by the standard
 // deviation of the noise, so that 1 is noise alone. Each threshold says what a higher and a lower
 // value trade. Tolerances of a solver stay beside the solver.
 #ifndef LACUNA_DIAGNOSIS_THRESHOLDS_H_

@@ -1,7 +1,7 @@
 // The result of a diagnosis as plain data: diagnosis/diagnosis.json in the run's folder.
 //
 // It holds everything that the report needs, so that a diagnosis can be explained without its model
-// and its recordings. Evidence is the natural logarithm of the odds against the unchanged model,
+// and its recordings. Evidence is the log Bayes factor against the unchanged model,
 // reduced by a penalty for having tried many hypotheses. σ is the standard deviation of the noise.
 #ifndef LACUNA_RECORD_DIAGNOSIS_RECORD_H_
 #define LACUNA_RECORD_DIAGNOSIS_RECORD_H_

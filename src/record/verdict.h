@@ -1,7 +1,7 @@
 // The verdict of a diagnosis and the reasons for it, as plain data.
 //
 // A reason holds the data for its sentence, which report/verdict_text.h writes.
-// Evidence is the natural logarithm of the odds against the model without the effect. Errors with
+// Evidence is the log Bayes factor against the model without the effect. Errors with
 // "over_sigma" in their name are rms residuals divided by the standard deviation of the noise; 1 is
 // noise alone. A `nuisance` is an index in the list of nuisances of the same diagnosis.
 #ifndef LACUNA_RECORD_VERDICT_H_

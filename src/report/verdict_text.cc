@@ -71,14 +71,14 @@ struct ReasonSentence {
   }
   std::string operator()(const EvidenceForAnother& reason) const {
     return fmt::format(
-        "{} explains most, with odds of e^{:.0f}, but beside it the odds for {} are e^{:.0f}: "
+        "{} explains most, with a log Bayes factor of {:.0f}, but beside it that of {} is {:.0f}: "
         "either both are missing, or one effect that is not in the catalogue and that each of them "
         "explains in part.",
         TitleOf(diagnosis, reason.effect), reason.evidence, reason.other, reason.other_evidence);
   }
   std::string operator()(const EffectReducesError& reason) const {
     return fmt::format(
-        "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; the odds for it are e^{:.0f}.",
+        "With {}, the {} error{} goes from {:.1f} σ to {:.1f} σ; its log Bayes factor is {:.0f}.",
         reason.effect, JudgedFrames(reason.held_out),
         reason.adjusted_for_nuisances
             ? ", excluding the contributions of mesh, time step and the other adopted nuisances,"

@@ -20,7 +20,7 @@ struct TrialOutcome {
   std::vector<std::string> ranked;  // all effects by evidence, that of the refit if there is one
   double error_before = 0;          // held-out, of the model without any of them
   double error_best = 0;            // held-out, with the first one named; 0: none is named
-  // Evidence (natural logarithm of the odds against the model as it is) of the first two ranked
+  // Evidence (log Bayes factor against the model as it is) of the first two ranked
   // effects, and the one that a twentieth of the controls without an effect exceeds; `left`: the
   // remaining rms residual over the noise. All as the Diagnosis has them.
   double evidence = 0, second_evidence = 0, chance = 0, left = 0;

@@ -45,8 +45,8 @@ TEST(VerdictText, SaysHowMuchTheMissingEffectReducesTheError) {
   record.effects = {"drag"};
   record.reasons = {EffectReducesError{"drag", 300, true, false, 5, 1}};
   EXPECT_EQ(ExplainVerdict(record),
-            "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; the "
-            "odds for it are e^300.");
+            "Missing: Drag of the air. With drag, the held-out error goes from 5.0 σ to 1.0 σ; its "
+            "log Bayes factor is 300.");
   record.reasons = {EffectReducesError{"drag", 300, false, true, 5, 1}};
   EXPECT_THAT(ExplainVerdict(record),
               HasSubstr("the fitted error, excluding the contributions of mesh, time step"));
@@ -85,7 +85,7 @@ TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
             "of the frames: check the camera's clock.");
   record.reasons = {EvidenceForAnother{"drag", 300, "gravity", 16}};
   record.next_steps = {AddAndDiagnose{"drag", "gravity"}};
-  EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it the odds for gravity are e^16"));
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("beside it that of gravity is 16"));
   EXPECT_THAT(DescribeNextSteps(record), HasSubstr("add drag and diagnose again"));
 }
 
