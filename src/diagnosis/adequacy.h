@@ -53,6 +53,14 @@ struct AdequacyTest {
   double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
   // The 95 % quantile of `further` under noise: what chance gives to the best effect.
   double chance = 0;
+
+  // Something that may be left is more probable than noise: an unknown force or a further effect
+  // has a positive log Bayes factor, or the residual itself is the rarest of the statistics.
+  // Otherwise a small p says only that the hypotheses do not describe the noise perfectly.
+  bool IsSupported() const {
+    return found.unknown_force > 0 || found.further > 0 ||
+           (p_variance < p_unknown_force && p_variance < p_further);
+  }
 };
 
 // `further`: columns of the space that belong to the hypothesis, beside the base. `noise_is_known`:

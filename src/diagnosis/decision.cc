@@ -120,7 +120,7 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   adequacy.p_further = test.p_further;
   adequacy.p_variance = test.p_variance;
   adequacy.p = test.p;
-  adequacy.is_adequate = test.p >= kAdequacyLevel;
+  adequacy.is_adequate = test.p >= kAdequacyLevel || !test.IsSupported();
   adequacy.further = test.found.best_further.name;
   adequacy.further_evidence = test.found.further;
   adequacy.rms_over_sigma = std::sqrt(std::max(0.0, test.found.variance));

@@ -57,7 +57,8 @@ class SimulatedDecisions {
     const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, residual);
     Outcome outcome;
     outcome.is_unknown_left =
-        left.unknown_force > null.unknown_force || left.further > null.further ||
+        left.unknown_force > std::max(0.0, null.unknown_force) ||
+        left.further > std::max(0.0, null.further) ||
         (input_.noise_is_known && left.variance / space_.variance > null.variance);
     const Naming naming = NameFrom(posterior);
     outcome.names = naming.names;

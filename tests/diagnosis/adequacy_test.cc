@@ -102,6 +102,7 @@ TEST(Adequacy, SeesAForceAnEffectAndTooMuchNoise) {
       TestAdequacy(synthetic.With(noise + 4 * synthetic.unknown.rowwise().sum()), {}, true, 1);
   EXPECT_LT(force.p_unknown_force, 0.01);
   EXPECT_LT(force.p, 0.01);
+  EXPECT_TRUE(force.IsSupported());
   const HypothesisSpace effect = synthetic.With(noise - 6 * synthetic.Of("fibres"));
   const AdequacyTest without = TestAdequacy(effect, {}, true, 1);
   EXPECT_LT(without.p_further, 0.01);
@@ -110,6 +111,7 @@ TEST(Adequacy, SeesAForceAnEffectAndTooMuchNoise) {
   EXPECT_GT(TestAdequacy(effect, effect.hypotheses[3].columns, true, 1).p, 0.05);
   const HypothesisSpace noisy = synthetic.With(1.3 * noise);
   EXPECT_LT(TestAdequacy(noisy, {}, true, 1).p_variance, 0.01);
+  EXPECT_TRUE(TestAdequacy(noisy, {}, true, 1).IsSupported());
   EXPECT_EQ(TestAdequacy(noisy, {}, false, 1).p_variance, 1);
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -150,6 +151,24 @@ TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   // The uncertainty in the discretisation error counts against every effect.
   input.baseline.discretisation = 50;
   EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
+}
+
+// An effect that does not lower the error of the held-out frames is not named, alone or in a pair.
+TEST(Decide, DoesNotNameARefutedEffect) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(15);
+  DecisionInput input = InputOf(synthetic, noise - 8 * synthetic.Of("drag"));
+  input.refits.push_back({"mass_damping", 40, synthetic.With(noise), /*predicts=*/false});
+  input.refits.push_back({"drag", 30, synthetic.With(noise)});
+  const Decision decision = Decide(input);
+  EXPECT_THAT(decision.names, ElementsAre("drag"));
+  for (const HypothesisProbability& one : decision.record.probabilities) {
+    const bool has_it = std::count(one.names.begin(), one.names.end(), "mass_damping") > 0;
+    if (has_it && one.kind == Kind::kEffect) {
+      EXPECT_TRUE(one.is_refuted);
+      EXPECT_EQ(one.probability, 0);
+    }
+  }
 }
 
 // Nuisances in the base compete with effects in their place.
