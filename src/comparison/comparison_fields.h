@@ -21,8 +21,8 @@ inline constexpr int kMostFieldFrames = 60;
 //   markers.pvd  the measured markers: predicted_m, difference_m,
 //                difference_over_sigma (the length of the difference over √3 `noise`, m), fitted,
 //                marker. Markers that were not observed are left out.
-// Both are in the recording's measuring frame. Returns the number of frames. Throws InputError when
-// a file cannot be written.
+// Both are in the recording's coordinate system. Returns the number of frames. Throws InputError
+// when a file cannot be written.
 int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& residuals,
                           const ReplayedMotion& motion, const UnexplainedForce& force, double noise,
                           const std::filesystem::path& folder);

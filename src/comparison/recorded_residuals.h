@@ -10,7 +10,7 @@
 
 namespace lacuna {
 
-// m points over n frames. Matrices are 3m × n, m, in the measuring frame: x, y, z of a point in
+// m points over n frames. Matrices are 3m × n, m, in its coordinates: x, y, z of a point in
 // three rows, frames in chronological order in the columns, NaN where a point was not observed.
 struct RecordedResiduals {
   std::vector<int> frames;     // n, numbers of the recording's frames

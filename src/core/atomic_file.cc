@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The count makes the name unique among the threads of this process, the id among processes.
+// The count makes the name unique among the threads of this process, and the process id makes it
+// unique among the processes of this machine.
 fs::path TemporaryName(const fs::path& file) {
   static std::atomic<unsigned> count{0};
   return file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
@@ -35,7 +36,7 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
     const fs::path target = fs::weakly_canonical(file_, error);
     if (!error) file_ = target;
   }
-  // Renaming onto a device or a pipe would replace it for everybody.
+  // Renaming a file to the name of a device or a pipe would replace the device or pipe.
   if (fs::exists(file_, error) && !fs::is_regular_file(file_, error)) {
     throw InputError({file.string()}, "cannot be written: it is not an ordinary file");
   }
@@ -92,7 +93,8 @@ void MakeFolder(const std::filesystem::path& folder) {
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
-  // Some file systems refuse to sync a folder; the rename is atomic on them all the same.
+  // The result is ignored: some file systems cannot flush a folder, and the rename is atomic there,
+  // too.
   fsync(descriptor);
   close(descriptor);
 }

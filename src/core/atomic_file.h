@@ -1,7 +1,7 @@
-// Writing files atomically: a reader sees the old content or the new one, never a part.
+// Writing files atomically: a reader sees either the complete old content or the complete new one.
 //
-// The content goes to a temporary file in the same folder, is flushed to the disk (fsync) and takes
-// the final name by rename(2). This holds after a crash, too.
+// The content is written to a temporary file in the same folder, which is flushed to the disk
+// (fsync) and then renamed to its final name by rename(2). The guarantee also holds after a crash.
 #ifndef LACUNA_CORE_ATOMIC_FILE_H_
 #define LACUNA_CORE_ATOMIC_FILE_H_
 
@@ -14,12 +14,13 @@ namespace lacuna {
 // cannot be written; the old content is then unchanged.
 void WriteFileAtomically(const std::filesystem::path& file, std::string_view content);
 
-// The same for content that is produced in pieces: call Write as often as needed, then Commit.
-// Destroying the object without a Commit leaves no trace.
+// The same for content that is produced in pieces: call Write as often as needed, then Commit once.
+// Destroying the object without a Commit deletes the temporary file and leaves `file` unchanged.
 class AtomicFile {
  public:
   // Follows a symbolic link. Throws InputError for a device, pipe or folder, and if the temporary
-  // file cannot be created. Write and Commit throw InputError if the disk refuses.
+  // file cannot be created. Write and Commit throw InputError if the file cannot be written, for
+  // example because the disk is full.
   explicit AtomicFile(const std::filesystem::path& file);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -40,8 +41,8 @@ class AtomicFile {
 // that fails or if the folder is not writable.
 void MakeFolder(const std::filesystem::path& folder);
 
-// Flushes the entries of `folder` to the disk: names that were created, renamed or removed in it.
-// Does nothing on file systems that cannot sync a folder.
+// Flushes the directory entries of `folder` to the disk, so that names that were created, renamed
+// or removed in it survive a crash. Does nothing on file systems that do not support this.
 void SyncFolder(const std::filesystem::path& folder);
 
 }  // namespace lacuna

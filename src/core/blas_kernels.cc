@@ -53,7 +53,7 @@ void RestartWithBlasKernels(const std::string& name, char** argv) {
   unsetenv(kVariable);
   std::cerr << "warning: OpenBLAS uses slow kernels (" << BlasKernelName()
             << ") and the program could not be restarted with better ones (" << std::strerror(error)
-            << "); set " << kVariable << "=" << name << " to make it faster\n";
+            << "); set the environment variable " << kVariable << "=" << name << " to use them\n";
 }
 
 void UseFastBlasKernels(char** argv) {

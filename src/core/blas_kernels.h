@@ -24,12 +24,13 @@ std::string BlasKernelName();
 
 // The instruction sets that matter for the choice of kernels.
 struct VectorInstructions {
-  bool avx2 = false;    // with FMA
-  bool avx512 = false;  // F, DQ, BW, VL, CD
+  bool avx2 = false;    // AVX2 and FMA
+  bool avx512 = false;  // AVX-512 F, DQ, BW, VL and CD, and also avx2
 };
 VectorInstructions InstructionsOfThisProcessor();
 
-// The kernels to request in place of the `chosen` ones; empty if those are good enough.
+// The kernels to request instead of the `chosen` ones; empty if the chosen ones use AVX2 or the
+// processor does not support it.
 std::string BetterBlasKernels(const std::string& chosen, const VectorInstructions& processor);
 
 // Restarts the program with OPENBLAS_CORETYPE set to `name`. Returns only if that fails.

@@ -30,7 +30,8 @@ std::vector<std::string> StepsOf(const std::string& field) {
   return steps;
 }
 
-// How often a mapping or list occurs in the tree: more than once if an alias refers to it.
+// The number of places at which a mapping or list occurs in the tree. It is greater than 1 if an
+// alias refers to the mapping or list.
 int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
   if (tree.is(wanted)) return 1;
   int count = 0;
@@ -41,7 +42,7 @@ int Occurrences(const YAML::Node& tree, const YAML::Node& wanted) {
   return count;
 }
 
-// The index in a step such as "[3"; none if it is not a number within the list.
+// The index in a step such as "[3"; std::nullopt if it is not the index of an item of the list.
 std::optional<size_t> IndexIn(const YAML::Node& list, const std::string& step) {
   size_t index = 0;
   const char* end = step.data() + step.size();
@@ -58,7 +59,7 @@ class Change {
 
   void Put(const YAML::Node& value) {
     const std::vector<std::string> steps = StepsOf(field_);
-    if (steps.empty()) Fail("is not a field; expected one like mesh.max_volume or effects[0].eta");
+    if (steps.empty()) Fail("is not a field name; expected e.g. mesh.max_volume or effects[0].eta");
     YAML::Node at;
     at.reset(root_);
     for (size_t k = 0; k + 1 < steps.size(); ++k) at.reset(Below(at, steps[k]));
@@ -75,7 +76,7 @@ class Change {
   }
 
  private:
-  // The mapping or list below `at`, created if it is absent.
+  // Returns the entry or item `step` of `at`. An absent entry is created as an empty mapping.
   YAML::Node Below(YAML::Node at, const std::string& step) {
     YAML::Node next;
     if (step[0] == '[') {
@@ -94,7 +95,8 @@ class Change {
       next.reset(at[step]);
     }
     if (Occurrences(root_, next) > 1)
-      Fail(path_ + " is shared by several places of the file (a YAML alias); write it out instead");
+      Fail(path_ +
+           " is shared by several places in the file (a YAML alias); replace the alias by a copy");
     return next;
   }
 
@@ -116,7 +118,7 @@ YAML::Node ParseValue(const YamlChange& change) {
   }
 }
 
-// Rewrites the relative paths in a document so that they start at another folder.
+// Rewrites the relative paths in a document relative to another folder.
 class PathMover {
  public:
   PathMover(const YamlDocument& document, const std::vector<YamlChange>& changes,

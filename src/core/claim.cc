@@ -56,7 +56,7 @@ std::string HolderOf(const std::filesystem::path& file) {
   if (fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK) {
     std::array<char, 512> text{};
     const ssize_t count = read(descriptor, text.data(), text.size());
-    // The holder writes its name only after it has got the lock.
+    // The file is empty for a short time, because the name is written after the lock is acquired.
     holder = count > 0 ? std::string(text.data(), static_cast<size_t>(count)) : "another process";
   }
   close(descriptor);

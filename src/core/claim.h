@@ -1,7 +1,7 @@
-// A lock on a file, by which processes agree which of them works on a task.
+// A lock on a file, which ensures that only one process works on a task.
 //
-// It is an open-file-description lock (fcntl(2), F_OFD_SETLK): the kernel releases it when its
-// holder ends, even by a crash, and over NFS it also works between machines.
+// It is an open-file-description lock (fcntl(2), F_OFD_SETLK): the kernel releases it when the
+// process that holds it ends, even by a crash, and over NFS it also works between machines.
 #ifndef LACUNA_CORE_CLAIM_H_
 #define LACUNA_CORE_CLAIM_H_
 
@@ -10,12 +10,13 @@
 
 namespace lacuna {
 
-// Holds the lock of a file until it is destroyed. holds() is false if another process has it.
+// Holds the lock of a file during the lifetime of the object. holds() is false if another process
+// holds the lock.
 class Claim {
  public:
-  // Tries to take the lock without waiting. Creates the file if it is absent, and on success writes
-  // host and process into it. Throws InputError naming the file if it cannot be written or if its
-  // file system does not support locks.
+  // Tries to acquire the lock without waiting. Creates the file if it is absent, and on success
+  // writes the host name and the process id to it. Throws InputError naming the file if it cannot
+  // be written or if its file system does not support locks.
   explicit Claim(const std::filesystem::path& file);
   ~Claim();
   Claim(const Claim&) = delete;
@@ -27,8 +28,8 @@ class Claim {
   bool holds_ = false;
 };
 
-// The holder of the lock on `file`, as "host, process 123"; empty if nobody holds it. Takes no
-// lock.
+// The process that holds the lock on `file`, as "host, process 123"; empty if none does or if the
+// file cannot be read. Does not acquire the lock.
 std::string HolderOf(const std::filesystem::path& file);
 
 }  // namespace lacuna

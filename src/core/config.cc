@@ -62,7 +62,8 @@ std::vector<Config> Config::Items(const std::string& key) const {
     std::vector<std::shared_ptr<ConfigNode>> nodes;
     if (const YAML::Node entry = node_->Find(key)) {
       if (!entry.IsSequence()) {
-        node_->Fail(entry.Mark(), node_->Field(key), "expected a list, each item after a \"- \"");
+        node_->Fail(entry.Mark(), node_->Field(key),
+                    "expected a list whose items begin with \"- \"");
       }
       for (const auto& item : entry) {
         auto child = std::make_shared<ConfigNode>();

@@ -1,12 +1,12 @@
-// A YAML file as a tree of typed reads with units, bounds and error positions.
+// Typed reading of a YAML file, with units, bounds and error positions.
 //
-// Each read names its key, its dimension and its bounds. The reads are the only description of the
-// schema: from them follow the check for unknown keys (with a suggestion), the error messages with
-// file:line:column and field, and the resolved configuration (all values in SI, defaults included)
-// that goes into the manifest.
+// Each read states its key, its dimension and its bounds. The reads are the only description of the
+// schema. The check for unknown keys (with a suggestion), the error messages with file:line:column
+// and field, and the resolved configuration in the manifest (all values in SI units, defaults
+// included) are derived from them.
 //
-// `use: ../configs/scanner/four_cameras.yaml` in a mapping inserts those entries of that file which
-// the mapping does not give itself. Errors in them are reported with that file's name and line.
+// `use: ../configs/scanner/four_cameras.yaml` in a mapping inserts those entries of that file that
+// the mapping does not contain itself. Errors in them are reported with that file's name and line.
 #ifndef LACUNA_CORE_CONFIG_H_
 #define LACUNA_CORE_CONFIG_H_
 
@@ -27,13 +27,15 @@ namespace lacuna {
 
 struct ConfigNode;  // core/config_node.h
 
-// A mapping, or an item of a list of mappings. Copies refer to the same document and share what has
-// been read, so one document must not be read by several threads at once.
+// A mapping, or an item of a list of mappings. Copies refer to the same document and share the
+// record of what has been read, so a document must not be read by several threads at the same time.
 class Config {
  public:
-  // Throws InputError if the file is absent, is not valid YAML, or its top level is not a mapping.
+  // Throws InputError if the file is absent, is not valid YAML, or is not a mapping at the top
+  // level.
   static Config Load(const std::filesystem::path& file);
-  // The same for a text; `name` stands for the file in messages and as the base of relative paths.
+  // The same for YAML in memory. `name` is used as the file name in messages and as the base of
+  // relative paths.
   static Config Parse(const std::string& text, const std::string& name);
 
   // The functions below read `key` of this mapping. Without a default value the key is required.
@@ -51,7 +53,7 @@ class Config {
   bool Flag(const std::string& key, bool default_value) const;
   std::string Text(const std::string& key) const;
   std::string Text(const std::string& key, const std::string& default_value) const;
-  // One text or a list of texts; empty if the key is absent.
+  // One string or a list of strings; empty if the key is absent.
   std::vector<std::string> Texts(const std::string& key) const;
   // A list of whole numbers; empty if the key is absent.
   std::vector<int> Integers(const std::string& key, int min) const;
@@ -62,12 +64,12 @@ class Config {
   // A list of quantities of any length; empty if the key is absent. 0 needs no unit.
   std::vector<double> Quantities(const std::string& key, const Dimension& dimension,
                                  const Bounds& bounds) const;
-  // A path. A relative one starts at the folder of the file that gives it; "${NAME}" is replaced by
-  // an environment variable.
+  // A path. A relative path is resolved from the folder of the file that contains it; "${NAME}" is
+  // replaced by the value of the environment variable NAME.
   std::filesystem::path Path(const std::string& key) const;
   std::filesystem::path Path(const std::string& key, const std::string& default_value) const;
 
-  // The value that the given name stands for; the error message lists the known names.
+  // The value in `choices` with the name that is read; the error message lists the known names.
   template <typename T>
   T Choice(const std::string& key, const std::vector<std::pair<std::string, T>>& choices) const {
     return choices[ChoiceIndex(key, Names(choices), std::nullopt)].second;
@@ -89,17 +91,18 @@ class Config {
   // The items of the list of mappings at `key`; empty if the key is absent.
   std::vector<Config> Items(const std::string& key) const;
 
-  // Throws InputError for the first key, in this mapping or below, that no read has asked for. Call
-  // it after everything has been read.
+  // Throws InputError for the first key, in this mapping or below it, that has not been requested
+  // by any read. Call it after everything has been read.
   void RefuseUnknownKeys() const;
 
   // Throws InputError "field: message" at the position of `key`, or of this mapping for an empty
   // key.
   [[noreturn]] void Fail(const std::string& key, const std::string& message) const;
-  // The same at an item, counted from 0, of the list at `key`.
+  // The same at the position of an item, counted from 0, of the list at `key`.
   [[noreturn]] void FailAtItem(const std::string& key, size_t item,
                                const std::string& message) const;
 
+  // The file given to Load, or the name given to Parse.
   std::filesystem::path File() const;
   // Everything that has been read so far, defaults included, in SI units.
   nlohmann::json Resolved() const;

@@ -1,4 +1,4 @@
-// One mapping of a YAML file with the values that have been read from it: the state behind Config.
+// One mapping of a YAML file with the values that have been read from it, the state of a Config.
 #ifndef LACUNA_CORE_CONFIG_NODE_H_
 #define LACUNA_CORE_CONFIG_NODE_H_
 
@@ -21,29 +21,29 @@ namespace lacuna {
 struct ConfigNode {
   std::shared_ptr<const YamlDocument> document;
   std::shared_ptr<YAML::Node> yaml;              // the mapping itself, never null
-  std::string path;                              // "effects[1]"; empty at the top level
+  std::string path;                              // e.g. "effects[1]"; empty at the top level
   std::map<std::string, nlohmann::json> values;  // scalars and lists of scalars read so far, in SI
   std::map<std::string, std::vector<std::shared_ptr<ConfigNode>>> children;  // mappings read so far
   std::map<std::string, bool> is_list;  // the children whose key holds a list of mappings
 
-  // Whether any read has named `key`, whether or not the file has it.
+  // Whether any read has requested `key`, even if the file does not contain it.
   bool Asked(const std::string& key) const { return values.count(key) || children.count(key); }
 
   // The full name of `key` for messages: "effects[1].eta".
   std::string Field(const std::string& key) const;
 
-  // The entry of `key`; an undefined node if there is none or it is null.
+  // The entry of `key`; an undefined node if it is absent or null.
   YAML::Node Find(const std::string& key) const;
 
-  // The entry of `key`. Throws InputError with `expected` if there is none; the message points out
-  // an unread key of nearly the same name.
+  // The entry of `key`. Throws InputError with `expected` if it is absent or null; the message
+  // mentions an unread key with a similar name, which may be misspelled.
   YAML::Node Required(const std::string& key, const std::string& expected) const;
 
-  // The text of an entry. Throws InputError if it is a mapping or a list.
+  // The text of a scalar entry. Throws InputError with `expected` if it is a mapping or a list.
   std::string Scalar(const YAML::Node& entry, const std::string& field,
                      const std::string& expected) const;
 
-  // Throws InputError "file:line:column: field: message", in the file that `field` came from.
+  // Throws InputError "file:line:column: field: message" with the file that `field` was read from.
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& field,
                          const std::string& message) const;
 };

@@ -1,4 +1,4 @@
-// The reads of Config that give a value: quantities, numbers, texts, lists, paths and choices.
+// The reads of Config that return values: quantities, numbers, strings, lists, paths and choices.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
@@ -93,8 +93,8 @@ bool Config::Flag(const std::string& key, bool default_value) const {
 }
 
 std::string Config::Text(const std::string& key) const {
-  const YAML::Node entry = node_->Required(key, "a text");
-  const std::string text = node_->Scalar(entry, node_->Field(key), "a text");
+  const YAML::Node entry = node_->Required(key, "a string");
+  const std::string text = node_->Scalar(entry, node_->Field(key), "a string");
   node_->values[key] = text;
   return text;
 }
@@ -112,9 +112,10 @@ std::vector<std::string> Config::Texts(const std::string& key) const {
       texts.push_back(entry.Scalar());
     } else if (entry.IsSequence()) {
       for (const auto& item : entry)
-        texts.push_back(node_->Scalar(item, node_->Field(key), "a text"));
+        texts.push_back(node_->Scalar(item, node_->Field(key), "a string"));
     } else {
-      node_->Fail(entry.Mark(), node_->Field(key), "got a mapping; expected a text or a list");
+      node_->Fail(entry.Mark(), node_->Field(key),
+                  "got a mapping; expected a string or a list of strings");
     }
   }
   node_->values[key] = texts;
@@ -147,12 +148,13 @@ std::vector<double> Config::Quantities(const std::string& key, const Dimension& 
   if (const YAML::Node entry = node_->Find(key)) {
     const std::string expected = fmt::format("a list of entries like \"{}\"", dimension.example);
     if (!entry.IsSequence()) node_->Fail(entry.Mark(), node_->Field(key), "expected " + expected);
-    if (entry.size() > kMaxListLength) node_->Fail(entry.Mark(), node_->Field(key), "is too long");
+    if (entry.size() > kMaxListLength)
+      node_->Fail(entry.Mark(), node_->Field(key), "the list has too many entries");
     for (const auto& item : entry) {
       const std::string field = fmt::format("{}[{}]", node_->Field(key), values.size());
       const std::string text = node_->Scalar(item, field, dimension.name);
       try {
-        // Zero means the same in every unit.
+        // Zero needs no unit, because it has the same meaning in every unit.
         values.push_back(
             text == "0" || text == "0.0" ? 0.0 : ParseQuantityWithin(text, dimension, bounds));
       } catch (const std::invalid_argument& problem) {

@@ -7,7 +7,7 @@
 
 namespace lacuna {
 
-// A value and its derivatives in N directions. Neither is initialised by default.
+// A value and its derivatives in N directions. The members are not initialised by default.
 template <int N>
 struct Dual {
   double value;

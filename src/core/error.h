@@ -1,7 +1,7 @@
-// The exception for mistakes in the user's input, with the position at which to correct them.
+// The exception for errors in the user's input, with the position in the file.
 //
-// Lacuna keeps three kinds of failure apart: mistakes in the user's input (InputError, caught once
-// in main), numerical outcomes such as no convergence (a status in the result, never an exception)
+// Lacuna distinguishes three kinds of failure: errors in the user's input (InputError, caught once
+// in main), numerical failures such as no convergence (a status in the result, never an exception)
 // and programming errors (glog's CHECK).
 #ifndef LACUNA_CORE_ERROR_H_
 #define LACUNA_CORE_ERROR_H_
@@ -18,8 +18,8 @@ struct SourcePosition {
   int column = 0;
 };
 
-// Thrown for input that cannot be used. what() reads "file:line:column: message", without the parts
-// that are unknown.
+// Thrown for input that cannot be used. what() has the form "file:line:column: message" without the
+// parts that are unknown.
 class InputError : public std::runtime_error {
  public:
   // For input that has no position, such as an argument of the command line.
@@ -38,8 +38,8 @@ class InputError : public std::runtime_error {
   }
 };
 
-// Calls `action` and returns its result. An InputError that it throws is thrown on with "where: "
-// in front of its message.
+// Calls `action` and returns its result. If it throws an InputError, that error is rethrown as an
+// InputError with "where: " in front of its message.
 template <typename Action>
 auto NamingWhere(const std::string& where, const Action& action) {
   try {

@@ -11,7 +11,7 @@
 // Derivatives are exact, by dual numbers (forward mode; A. Griewank and A. Walther, Evaluating
 // Derivatives, 2nd ed., SIAM 2008, ch. 3). At a kink the derivative is one-sided or zero: 0 for
 // abs(0), that of the first argument for min and max at a tie, and 0 everywhere for step. An
-// infinite slope times an argument that does not vary, such as sqrt(0), contributes 0.
+// infinite slope contributes 0 if the derivative of its argument is 0, as in sqrt(0).
 #ifndef LACUNA_CORE_EXPRESSION_H_
 #define LACUNA_CORE_EXPRESSION_H_
 
@@ -28,17 +28,19 @@ namespace lacuna {
 // Immutable after construction; several threads may evaluate one object.
 class Expression {
  public:
-  // Parses `text`, in which `names` are the variables. Throws ExpressionError with the column for a
-  // formula that is not well formed, names something unknown or is nested too deeply.
+  // Parses `text` with the variables `names`. Throws ExpressionError with the column for a formula
+  // that is not well formed, contains an unknown name, is nested too deeply, or has a constant part
+  // that is not finite.
   Expression(const std::string& text, const std::vector<std::string>& names);
 
   // The value for the given values of the variables, in the order of their names. NaN or infinite
-  // where the formula is undefined, e.g. for the logarithm of a negative number. Allocates nothing.
-  // `Number` is double, or Dual<1> or Dual<3> to get derivatives along those of the variables.
+  // where the formula is undefined, e.g. for the logarithm of a negative number. Allocates no
+  // memory. `Number` is double, or Dual<1> or Dual<3> to get derivatives along those of the
+  // variables.
   template <typename Number>
   Number At(const Number* variables) const;
 
-  // Whether the formula mentions the variable with this index.
+  // Whether the formula contains the variable with this index.
   bool Uses(size_t variable) const { return uses_[variable]; }
 
   const std::string& text() const { return text_; }

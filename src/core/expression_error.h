@@ -7,9 +7,8 @@
 
 namespace lacuna {
 
-// Thrown for a formula that is not well formed. what() reads "column 9: unknown name …". The caller
-// adds the file and the field, which the parser does not know. Columns count UTF-8 characters from
-// 1.
+// Thrown for a formula that cannot be parsed. what() has the form "column 9: unknown name …"; the
+// caller adds the file and the field. Columns are counted in UTF-8 characters from 1.
 class ExpressionError : public std::invalid_argument {
  public:
   ExpressionError(int column, const std::string& message)

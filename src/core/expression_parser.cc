@@ -17,7 +17,7 @@ namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-// Whether `c` is a byte of a UTF-8 character other than its first.
+// Whether `c` is a byte of a UTF-8 character other than the first one.
 bool ContinuesCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
 struct Function {
@@ -59,7 +59,7 @@ class Parser {
 
   ParsedExpression Parse() {
     SkipSpace();
-    if (AtEnd()) Fail(0, "is empty");
+    if (AtEnd()) Fail(0, "the formula is empty");
     Sum();
     if (!AtEnd()) FailAtRest();
     return std::move(expression_);
@@ -89,7 +89,7 @@ class Parser {
       const size_t at = at_;
       if (Take('*')) {
         if (!AtEnd() && text_[at_] == '*' && at_ == at + 1)
-          Fail(at, "a power is written with \"^\", as in x^2");
+          Fail(at, "write a power with \"^\", as in x^2");
         Signed();
         Emit(start, Operation::kMultiply);
       } else if (Take('/')) {
@@ -101,10 +101,10 @@ class Parser {
     }
   }
 
-  // Every nested expression passes through here, so that this rule limits the nesting.
+  // Every nested expression is parsed by this rule, so it limits the depth of nesting.
   void Signed() {
     const size_t start = at_;
-    if (++nesting_ > kMaxNesting) Fail(start, "is nested too deeply");
+    if (++nesting_ > kMaxNesting) Fail(start, "the formula is nested too deeply");
     if (Take('-')) {
       Signed();
       Emit(start, Operation::kNegate);
@@ -122,7 +122,7 @@ class Parser {
 
   void Primary() {
     const size_t start = at_;
-    if (AtEnd()) Fail(start, "ends where a value was expected");
+    if (AtEnd()) Fail(start, "expected a value, but the formula ends");
     const char c = text_[at_];
     if (Take('(')) {
       Sum();
@@ -141,8 +141,9 @@ class Parser {
     double value = 0;
     const char* end_of_text = text_.data() + text_.size();
     const auto [end, error] = std::from_chars(text_.data() + start, end_of_text, value);
-    if (error == std::errc::invalid_argument) Fail(start, "a \".\" without digits");
-    if (error == std::errc::result_out_of_range) Fail(start, "a number out of range");
+    if (error == std::errc::invalid_argument)
+      Fail(start, "expected digits before or after the \".\"");
+    if (error == std::errc::result_out_of_range) Fail(start, "the number is out of range");
     at_ = static_cast<size_t>(end - text_.data());
     SkipSpace();
     Emit(start, Operation::kConstant, 0, value);
@@ -158,7 +159,7 @@ class Parser {
                                        [&](const Function& each) { return each.name == name; });
     if (function != Functions().end()) {
       if (!called) {
-        Fail(start, fmt::format("{} is a function, written {}({})", name, name,
+        Fail(start, fmt::format("{} is a function; write {}({})", name, name,
                                 function->arguments == 1 ? "..." : "..., ..."));
       }
       Call(*function, start);
@@ -171,7 +172,7 @@ class Parser {
       Fail(start, fmt::format("unknown {} \"{}\"{}", called ? "function" : "name", name,
                               Suggestion(name, known)));
     }
-    if (called) Fail(at_, fmt::format("{} is no function; a product needs a \"*\"", name));
+    if (called) Fail(at_, fmt::format("{} is not a function; write a product with \"*\"", name));
     if (name == "pi") {
       Emit(start, Operation::kConstant, 0, std::numbers::pi);
     } else {
@@ -201,7 +202,7 @@ class Parser {
 
   void Close(size_t open) {
     if (Take(')')) return;
-    if (AtEnd()) Fail(at_, fmt::format("no \")\" for the \"(\" in column {}", Column(open)));
+    if (AtEnd()) Fail(at_, fmt::format("missing \")\" for the \"(\" in column {}", Column(open)));
     FailAtRest();
   }
 
@@ -211,8 +212,8 @@ class Parser {
     const int arity = Arity(operation);
     program.push_back({operation, variable, constant});
     depth_ += 1 - arity;
-    if (depth_ > kMaxStackDepth) Fail(start, "is nested too deeply");
-    // An operation on constants only is evaluated at once.
+    if (depth_ > kMaxStackDepth) Fail(start, "the formula is nested too deeply");
+    // An operation whose arguments are all constant is evaluated at once.
     const auto first = program.end() - 1 - arity;
     if (arity == 0 || !std::all_of(first, program.end() - 1, [](const Instruction& each) {
           return each.operation == Operation::kConstant;
@@ -221,7 +222,8 @@ class Parser {
     }
     const double value = RunProgram<double>(program.data() + (first - program.begin()),
                                             program.data() + program.size(), nullptr);
-    if (!std::isfinite(value)) Fail(start, "what starts here is not a finite number");
+    if (!std::isfinite(value))
+      Fail(start, "the value of the subexpression that starts here is not finite");
     program.resize(program.size() - arity);
     program.back() = {Operation::kConstant, 0, value};
   }
@@ -252,14 +254,14 @@ class Parser {
     throw ExpressionError(Column(at), message);
   }
 
-  // Reports the text at the current position, which cannot follow the value just read.
+  // Throws the error for the text at the current position, which cannot follow the last value.
   [[noreturn]] void FailAtRest() const {
     const char c = text_[at_];
     if (IsLetter(c) || IsDigit(c) || c == '.' || c == '(')
       Fail(at_, fmt::format("expected an operator before \"{}\"", c));
     if (c == '<' || c == '>' || c == '=')
-      Fail(at_, fmt::format("\"{}\" is not known; a condition is written with step(...)", c));
-    if (c == ',') Fail(at_, "a \",\" outside the arguments of a function");
+      Fail(at_, fmt::format("unknown operator \"{}\"; write a condition with step(...)", c));
+    if (c == ',') Fail(at_, "unexpected \",\" outside the arguments of a function");
     Fail(at_, fmt::format("unexpected \"{}\"", CharacterAt(at_)));
   }
 

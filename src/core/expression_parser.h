@@ -1,4 +1,4 @@
-// The parser of formulas: text in, instructions out. core/expression.h describes the grammar.
+// The parser that converts a formula to instructions. core/expression.h describes the grammar.
 #ifndef LACUNA_CORE_EXPRESSION_PARSER_H_
 #define LACUNA_CORE_EXPRESSION_PARSER_H_
 
@@ -11,12 +11,12 @@ namespace lacuna {
 
 struct ParsedExpression {
   ExpressionProgram program;
-  std::vector<bool> uses;  // for each variable, whether the formula mentions it
+  std::vector<bool> uses;  // for each variable, whether the formula contains it
 };
 
-// Parses `text`, in which `names` are the variables. Subexpressions of constants are evaluated.
-// Throws ExpressionError (core/expression_error.h) for a formula that is not well formed, names
-// something unknown, is nested too deeply, or has a constant part that is not finite.
+// Parses `text` with the variables `names`. Constant subexpressions are evaluated at once. Throws
+// ExpressionError (core/expression_error.h) for a formula that is not well formed, contains an
+// unknown name, is nested too deeply, or has a constant part that is not finite.
 ParsedExpression ParseExpression(const std::string& text, const std::vector<std::string>& names);
 
 // The names of all functions and constants, which a variable must not have.

@@ -8,9 +8,9 @@
 namespace lacuna {
 namespace {
 
-// The stack of a calculation: values with their derivatives in N directions. Values and derivatives
-// are stored separately, so that each location is always read and written with the same width:
-// a wide load just after several narrow stores to the same place would stall.
+// The stack of an evaluation: values with their derivatives in N directions. Values and derivatives
+// are stored separately, so that each location is always read and written with the same width. A
+// wide load directly after several narrow stores to the same location would stall the processor.
 template <int N>
 class Stack {
  public:
@@ -59,8 +59,8 @@ class Stack {
   }
 
  private:
-  // An argument that does not vary contributes 0 even where the slope is infinite, as for sqrt at
-  // 0.
+  // An argument whose derivative is 0 contributes 0 even where the slope is infinite, as for sqrt
+  // at 0.
   static double Times(double slope, double change) {
     return slope == 0 || change == 0 ? 0 : slope * change;
   }
@@ -142,7 +142,7 @@ void ApplyToTwo(Operation operation, Stack* stack) {
       const double square = x * x + y * y;
       return replace(std::atan2(x, y), y / square, -x / square);
     }
-    // std::min and std::max could drop a NaN.
+    // std::min and std::max are not used, because they can discard a NaN.
     case Operation::kMin:
       return y < x || std::isnan(y) ? replace(y, 0, 1) : replace(x, 1, 0);
     case Operation::kMax:
@@ -154,7 +154,8 @@ void ApplyToTwo(Operation operation, Stack* stack) {
         return y == 0 ? 0 : y * std::pow(x, y - 1);
       };
       const auto by_exponent = [x, y, value, stack] {
-        // A constant exponent needs no logarithm, which a negative base does not have.
+        // For a constant exponent this derivative is not needed, and the logarithm of a negative
+        // base would be NaN.
         const bool flat = !stack->LastVaries() || (x == 0 && y > 0);
         return flat ? 0 : value * std::log(x);
       };

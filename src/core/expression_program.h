@@ -1,4 +1,4 @@
-// A parsed formula as instructions for a stack machine, and their execution.
+// A parsed formula as instructions for a stack machine, and the execution of the instructions.
 //
 // core/expression.h describes the functions and their derivatives at kinks.
 #ifndef LACUNA_CORE_EXPRESSION_PROGRAM_H_
@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-// The operations in the order of the parser's table. kPower computes x^y and pow(x, y) alike.
+// The operations of a formula. kPower computes both x^y and pow(x, y).
 enum class Operation : char {
   kConstant,
   kVariable,
@@ -45,15 +45,15 @@ struct Instruction {
 };
 using ExpressionProgram = std::vector<Instruction>;
 
-// The most values that the stack can hold; the parser refuses deeper programs.
+// The number of values that the stack can hold. The parser rejects formulas that need more.
 inline constexpr int kMaxStackDepth = 64;
 
 // The number of values that the operation takes from the stack: 0, 1 or 2.
 int Arity(Operation operation);
 
-// The result of the instructions [begin, end), which must leave exactly one value on the stack.
-// `Number` is double, Dual<1> or Dual<3>. Allocates nothing and may run in several threads at once.
-// Gives NaN or infinity where the formula is undefined.
+// Returns the result of the instructions [begin, end), which must leave exactly one value on the
+// stack. `Number` is double, Dual<1> or Dual<3>. Allocates no memory and may run in several threads
+// at the same time. Returns NaN or infinity where the formula is undefined.
 template <typename Number>
 Number RunProgram(const Instruction* begin, const Instruction* end, const Number* variables);
 

@@ -1,4 +1,4 @@
-// Content hashes, by which inputs and results are identified.
+// Content hashes, which identify inputs and results.
 //
 // The hash is XXH3 with 128 bits (Y. Collet, xxHash 0.8). It is the same on every machine, and
 // accidental collisions are negligible; it does not protect against deliberate forgery.

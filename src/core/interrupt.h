@@ -1,7 +1,7 @@
-// Handling of Ctrl-C: long computations stop at points where no work is half-done.
+// Handling of Ctrl-C: long computations stop at points where no incomplete result is left behind.
 //
-// The first SIGINT or SIGTERM sets a flag that long loops poll; a second one terminates the program
-// at once. Results are written atomically, so the run folder stays valid in both cases.
+// The first SIGINT or SIGTERM sets a flag that long loops poll; a second signal terminates the
+// program at once. Results are written atomically, so the run folder remains valid in both cases.
 #ifndef LACUNA_CORE_INTERRUPT_H_
 #define LACUNA_CORE_INTERRUPT_H_
 
@@ -19,14 +19,14 @@ class Interrupted : public std::runtime_error {
   int signal_;
 };
 
-// Handles SIGINT and SIGTERM from now on. A signal that the parent process has set to be ignored
-// stays ignored.
+// Installs the handler of SIGINT and SIGTERM. A signal that the parent process has set to be
+// ignored remains ignored.
 void InstallInterruptHandler();
 
 // Whether a signal has arrived. May be called from any thread.
 bool InterruptRequested();
 
-// Throws Interrupted if a signal has arrived. Call it where unfinished work may be discarded.
+// Throws Interrupted if a signal has arrived. Call it only where unfinished work may be discarded.
 void ThrowIfInterrupted();
 
 // Resets the flag, for a program that continues with another task.

@@ -16,7 +16,7 @@ Json NumberOrNull(double value) {
 }
 
 // The reverse: the number in `value`, or `if_null` where it is null. Throws nlohmann's type_error
-// for anything else than a number or null.
+// for anything other than a number or null.
 template <typename Json>
 double NumberOr(const Json& value, double if_null = std::numeric_limits<double>::quiet_NaN()) {
   return value.is_null() ? if_null : value.template get<double>();

@@ -27,7 +27,7 @@ class StandardErrorSink : public google::LogSink {
 
 void InitialiseLogging(const char* program, LogLevel level) {
   google::InitGoogleLogging(program);
-  // Switch off glog's own destinations, so that only our sink writes.
+  // Disable glog's own destinations, so that only this sink writes.
   for (int severity = 0; severity < google::NUM_SEVERITIES; ++severity) {
     google::SetLogDestination(severity, "");
   }

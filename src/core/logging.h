@@ -1,6 +1,6 @@
 // Set-up of glog: all log messages go to standard error, and no log files are written.
 //
-// A line reads "W 12:03:44.123 sor_filter.cc:42] message".
+// A line has the form "W 12:03:44.123 sor_filter.cc:42] message".
 #ifndef LACUNA_CORE_LOGGING_H_
 #define LACUNA_CORE_LOGGING_H_
 
@@ -10,8 +10,8 @@ namespace lacuna {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };  // kDebug also shows VLOG(1)
 
-// Call this once at the start of main. Messages below `level` are dropped; a failed CHECK is always
-// shown.
+// Call this once at the start of main. Messages below `level` are not shown; a failed CHECK is
+// always shown.
 void InitialiseLogging(const char* program, LogLevel level = LogLevel::kWarning);
 
 // Changes the level, e.g. after the command line has been read.

@@ -48,17 +48,19 @@ size_t ElementSize(const std::string& type) {
   return 0;
 }
 
-// The header is a Python dictionary literal with exactly these three keys, in any order.
+// Parses the header, a Python dictionary literal with exactly these three keys in any order.
 void ParseHeader(const std::filesystem::path& file, const std::string& header, RawArray* array) {
   std::smatch match;
   static const std::regex type(R"re(['"]descr['"]\s*:\s*['"]([^'"]*)['"])re");
   static const std::regex order(R"re(['"]fortran_order['"]\s*:\s*(True|False))re");
   static const std::regex shape(R"re(['"]shape['"]\s*:\s*\(([0-9,\s]*)\))re");
-  if (!std::regex_search(header, match, type)) Fail(file, "the .npy header has no simple type");
+  if (!std::regex_search(header, match, type))
+    Fail(file, "the .npy header has no 'descr' with a simple type");
   array->type = match[1];
-  if (!std::regex_search(header, match, order)) Fail(file, "the .npy header has no order");
+  if (!std::regex_search(header, match, order))
+    Fail(file, "the .npy header has no 'fortran_order'");
   array->fortran_order = match[1] == "True";
-  if (!std::regex_search(header, match, shape)) Fail(file, "the .npy header has no shape");
+  if (!std::regex_search(header, match, shape)) Fail(file, "the .npy header has no 'shape'");
   const std::string extents = match[1];
   static const std::regex digits("[0-9]+");
   for (std::sregex_iterator it(extents.begin(), extents.end(), digits), end; it != end; ++it) {
@@ -94,13 +96,13 @@ RawArray ReadRaw(const std::filesystem::path& file) {
   ParseHeader(file, ReadBytes(stream, header_size), &array);
   const size_t element = ElementSize(array.type);
   if (element == 0) {
-    Fail(file, "holds numbers of type '" + array.type +
+    Fail(file, "contains numbers of type '" + array.type +
                    "'; expected little-endian floating-point numbers or integers");
   }
   const size_t expected = element * static_cast<size_t>(array.count);
   if (size - payload_begin != expected) {
-    Fail(file, "holds " + std::to_string(size - payload_begin) + " bytes of numbers; its shape " +
-                   "needs " + std::to_string(expected));
+    Fail(file, "contains " + std::to_string(size - payload_begin) +
+                   " bytes of numbers; its shape requires " + std::to_string(expected));
   }
   array.payload = ReadBytes(stream, expected);
   if (array.payload.size() != expected) Fail(file, "cannot be read completely");
@@ -116,8 +118,8 @@ void ConvertAs(const std::filesystem::path& file, const RawArray& array, std::ve
     if constexpr (std::is_same_v<Stored, int64_t> && std::is_same_v<Value, double>) {
       constexpr int64_t kExact = int64_t{1} << 53;
       if (stored > kExact || stored < -kExact) {
-        Fail(file, "holds the integer " + std::to_string(stored) +
-                       ", too large to be a floating-point number");
+        Fail(file, "contains the integer " + std::to_string(stored) +
+                       ", outside the range of exact integers in float64 (±2^53)");
       }
     }
     // NOLINTNEXTLINE(bugprone-signed-char-misuse): an int8 is a number here, not a character
@@ -130,7 +132,7 @@ template <typename Value>
 std::vector<Value> Convert(const std::filesystem::path& file, const RawArray& array) {
   std::vector<Value> values(static_cast<size_t>(array.count));
   if (array.type[1] == 'f' && std::is_integral_v<Value>) {
-    Fail(file, "holds floating-point numbers where integers are expected");
+    Fail(file, "contains floating-point numbers where integers are expected");
   }
   if (array.type == "<f8") ConvertAs<double>(file, array, &values);
   if (array.type == "<f4") ConvertAs<float>(file, array, &values);

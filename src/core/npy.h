@@ -1,8 +1,8 @@
 // Reading and writing of NumPy's array files (.npy, format 1.0 to 3.0).
 //
-// The reader accepts little-endian float64, float32, int64, int32, int16, uint32, uint16 and single
-// bytes, in C or Fortran order, with any number of dimensions. The writer produces float64 and
-// int64.
+// The reader accepts little-endian float64, float32, int64, int32, int16, uint32 and uint16, and
+// int8 and uint8, in C or Fortran order, with any number of dimensions. The writer produces float64
+// and int64.
 #ifndef LACUNA_CORE_NPY_H_
 #define LACUNA_CORE_NPY_H_
 
@@ -22,8 +22,8 @@ struct NpyArray {
 };
 
 // Reads an array as float64. All readers throw InputError naming the file if it is absent, is not
-// an .npy file, is shorter or longer than its header says, has an unsupported type, or holds
-// integers beyond ±2^53 that are to be read as float64.
+// an .npy file, has a different length than its header states, has an unsupported type, or contains
+// int64 numbers beyond ±2^53 that are to be read as float64.
 NpyArray ReadNpy(const std::filesystem::path& file);
 
 // Reads a 2-D array as rows × columns and a 1-D array as one column. Throws InputError for any

@@ -16,8 +16,8 @@ namespace {
 std::atomic<int> thread_count{0};
 thread_local bool inside_loop = false;
 
-// A helper polls this many times for the next loop before it sleeps: some 50 µs, the typical pause
-// between two loops of one computation.
+// The number of times that a helper polls for the next loop before it sleeps. This takes about
+// 50 µs, the typical time between two loops of one computation.
 constexpr int kSpins = 1000;
 
 void Pause() {
@@ -26,7 +26,7 @@ void Pause() {
 #endif
 }
 
-// A loop in progress. Its blocks are handed out one by one.
+// A loop in progress. The threads take its blocks one at a time.
 struct Loop {
   Loop(int64_t count, int64_t block, const std::function<void(int64_t, int64_t)>& body, int helpers)
       : count(count),
@@ -58,13 +58,13 @@ struct Loop {
   }
 };
 
-// The pool of helper threads. The caller of a loop never waits for a helper to arrive, only for one
-// that is in the middle of a block. When other programs keep the cores busy, a loop is then hardly
-// slower than on one thread; a barrier for all threads, as in OpenMP, would cost a scheduler's time
-// slice per loop.
+// The pool of helper threads. The caller of a loop does not wait until a helper has started, only
+// until the helpers have finished the blocks that they have taken. If other programs occupy the
+// cores, a loop is therefore hardly slower than on one thread. A barrier for all threads, as in
+// OpenMP, would cost a time slice of the scheduler per loop.
 class Helpers {
  public:
-  // Never destroyed, so that the helpers need not be stopped at the end of the process.
+  // The pool is never destroyed, so the helpers need not be stopped at the end of the process.
   static Helpers& Get() {
     static Helpers& helpers = *new Helpers;
     return helpers;
@@ -116,7 +116,7 @@ class Helpers {
 
   std::mutex in_use_;
   int threads_ = 0;
-  std::mutex mutex_;  // protects current_ and the entering of its loop
+  std::mutex mutex_;  // protects current_ and the entry of helpers into its loop
   Loop* current_ = nullptr;
   std::atomic<int64_t> loops_ = 0;
 };
@@ -124,7 +124,7 @@ class Helpers {
 }  // namespace
 
 int ThreadCount() {
-  // Called once only, because the standard library reads a file at each call.
+  // hardware_concurrency() is called once only, because it reads a file at each call.
   static const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int count = thread_count.load();
   return count > 0 ? count : cores;

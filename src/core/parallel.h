@@ -1,8 +1,8 @@
 // Parallel loops whose results do not depend on the number of threads.
 //
-// Results are bit-identical for any number of threads if the caller obeys one rule: a body writes
-// only to locations that belong to its own index, and sums are formed per block and added in block
-// order.
+// Results are identical to the last bit for any number of threads if the caller obeys one rule: a
+// body writes only to locations that belong to its own index, and sums are computed per block and
+// then added in the order of the blocks.
 #ifndef LACUNA_CORE_PARALLEL_H_
 #define LACUNA_CORE_PARALLEL_H_
 
@@ -13,12 +13,14 @@ namespace lacuna {
 
 // The number of threads that the loops below use; initially the number of the machine's cores.
 int ThreadCount();
+// Sets that number; values below 1 count as 1.
 void SetThreadCount(int count);
 
 // Calls body(begin, end) for the consecutive blocks [k·block, (k+1)·block) of [0, count), in any
-// order and possibly at the same time. The blocks depend on `count` and `block` only. A loop inside
-// a body runs serially. An exception of a body ends the loop early and is rethrown to the caller;
-// if several throw, one of them is.
+// order and possibly at the same time. The blocks depend on `count` and `block` only; `block` must
+// be positive. A loop inside a body runs serially. If a body throws an exception, the loop ends
+// early and the exception is rethrown to the caller; if several bodies throw, one of the exceptions
+// is rethrown.
 void ParallelBlocks(int64_t count, int64_t block,
                     const std::function<void(int64_t begin, int64_t end)>& body);
 

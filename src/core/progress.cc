@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::string_view kEraseLine = "\r\x1b[2K";
 
-// Progress reports and log messages share standard error; the mutex keeps their lines apart.
+// Progress reports and log messages share standard error; the mutex prevents their lines from
+// mixing.
 std::mutex standard_error_mutex;
 bool live_line_shown = false;
 
@@ -73,7 +74,7 @@ struct Progress::State {
     if (total <= 0 && done > 0) line += fmt::format(" {:>5}", done);
     if (std::isfinite(residual)) line += fmt::format("  residual {:.3g}", residual);
     line += "  " + Duration(Elapsed());
-    if (std::isfinite(Remaining())) line += ", " + Duration(Remaining()) + " to go";
+    if (std::isfinite(Remaining())) line += ", " + Duration(Remaining()) + " remaining";
     return line;
   }
 };
@@ -89,7 +90,7 @@ Progress::Progress(const ProgressOptions& options) : state_(std::make_unique<Sta
 }
 
 Progress::~Progress() {
-  // If an exception left a stage open, no "end" is reported; only the live line is terminated.
+  // If an exception has left a stage open, no "end" is reported; only the live line is terminated.
   if (!state_->stage.empty() && state_->options.style == ProgressStyle::kLiveLine) {
     const std::lock_guard lock(standard_error_mutex);
     *state_->options.stream << "\n" << std::flush;

@@ -1,4 +1,4 @@
-// Progress reports: the current stage, how much of it is done and how long the rest will take.
+// Progress reports: the current stage, the completed part of it and the estimated remaining time.
 //
 // A terminal gets one line that is rewritten in place. Any other stream gets JSON lines,
 //   {"event":"progress","stage":"fit","done":3,"total":20,"residual":0.0012,"elapsed_s":4.1,
@@ -39,13 +39,13 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Starts a stage of `total` frames, steps or levels; 0 if the number is not known beforehand.
-  // Ends a stage that is still open.
+  // Starts a stage of `total` frames, steps or levels; 0 if the number is not known in advance.
+  // Ends the current stage if there is one.
   void Begin(const std::string& stage, int64_t total);
   // Reports that `done` of the total are finished. `residual` is the quantity that the stage
-  // minimises, in its own unit.
+  // minimises, in the unit of that quantity; NaN if it is unknown.
   void Report(int64_t done, double residual = std::numeric_limits<double>::quiet_NaN());
-  // Ends the stage. `note` says briefly how it ended ("resumed", "3 frames not converged").
+  // Ends the stage. `note` describes briefly how it ended ("resumed", "3 frames not converged").
   void End(const std::string& note = "");
 
  private:
@@ -55,8 +55,8 @@ class Progress {
   const std::unique_ptr<State> state_;
 };
 
-// Writes a whole line to standard error. The live line of a Progress is erased first and reappears
-// with the next report.
+// Writes a line and a newline to standard error. The live line of a Progress is erased first and is
+// written again with the next report.
 void WriteLineToStandardError(std::string_view line);
 
 }  // namespace lacuna

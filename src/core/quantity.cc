@@ -23,7 +23,7 @@ struct Unit {
   Dimension dimension;
 };
 
-// Symbols that may carry an SI prefix; hence "g" and not "kg".
+// The symbols that may have an SI prefix. The list therefore contains "g" and not "kg".
 constexpr std::array kPrefixable = {
     Unit{"m", 1, kLength},          Unit{"g", 1e-3, kMass},   Unit{"s", 1, kTime},
     Unit{"N", 1, kForce},           Unit{"Pa", 1, kPressure}, Unit{"Hz", 1, kRate},
@@ -79,12 +79,18 @@ class UnitReader {
   Unit Read() {
     Unit product{"", 1, kDimensionless};
     int sign = 1;
+    std::string_view before;  // the operator before the next unit
     for (SkipSpace(); !rest_.empty(); SkipSpace()) {
-      if (Take("/")) {
-        sign = -1;
+      std::string_view found;
+      for (const std::string_view operation : {"/", "*", "·"})
+        if (found.empty() && Take(operation)) found = operation;
+      if (!found.empty()) {
+        RequireNoOperator(before);
+        before = found;
+        if (found == "/") sign = -1;
         continue;
       }
-      if (Take("*") || Take("·")) continue;
+      before = "";
       const Unit unit = LookUp(ReadSymbol());
       const int power = sign * ReadPower();
       product.si *= std::pow(unit.si, power);
@@ -95,11 +101,15 @@ class UnitReader {
       product.dimension.radian += power * unit.dimension.radian;
       sign = 1;
     }
-    if (sign < 0) throw std::invalid_argument("a unit must follow \"/\"");
+    RequireNoOperator(before);
     return product;
   }
 
  private:
+  static void RequireNoOperator(std::string_view before) {
+    if (!before.empty())
+      throw std::invalid_argument(fmt::format("a unit must follow \"{}\"", before));
+  }
   void SkipSpace() {
     while (!rest_.empty() && std::isspace(static_cast<unsigned char>(rest_.front())))
       rest_.remove_prefix(1);
@@ -150,10 +160,11 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
-// The number that `text` begins with; `*rest` is what follows it.
+// Returns the number at the beginning of `text`, and in `*rest` the text after it.
 double ReadNumber(std::string_view text, std::string_view* rest) {
   double number = 0;
   const char* begin = text.data();
+  if (text.starts_with("+-")) throw std::invalid_argument("");
   if (text.starts_with('+')) ++begin;
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), number);
   if (error != std::errc()) throw std::invalid_argument("");
@@ -162,7 +173,8 @@ double ReadNumber(std::string_view text, std::string_view* rest) {
   return number;
 }
 
-// A Dimension only points to its texts, so these texts are kept until the program ends.
+// Returns a pointer to a copy of `text` that exists until the program ends, since a Dimension does
+// not own its strings.
 const char* KeptText(const std::string& text) {
   static std::mutex mutex;
   static std::set<std::string> kept;
@@ -170,7 +182,7 @@ const char* KeptText(const std::string& text) {
   return kept.insert(text).first->c_str();
 }
 
-// "kg m/s^2"
+// The SI unit of a dimension, for example "kg m/s^2".
 std::string UnitText(const Dimension& dimension) {
   std::string above, below;
   const std::pair<const char*, int> factors[] = {{"kg", dimension.kilogram},
@@ -187,7 +199,8 @@ std::string UnitText(const Dimension& dimension) {
   return (above.empty() ? "1" : above) + below;
 }
 
-// The dimension with its texts: those of a named dimension if it is one, else made from the unit.
+// The dimension with its strings: those of a named dimension if there is one with these exponents,
+// otherwise strings that are made from the unit.
 Dimension InWords(const Dimension& dimension) {
   for (const Dimension& known :
        {kDimensionless, kLength, kArea, kVolume, kTime, kRate, kVelocity, kAcceleration, kMass,

@@ -9,13 +9,13 @@
 
 namespace lacuna {
 
-// The exponents of the base units, with texts for error messages and output. The texts must have
-// static storage duration.
+// The exponents of the base units, with strings for error messages and output. The strings must
+// have static storage duration.
 struct Dimension {
   int metre = 0, kilogram = 0, second = 0, kelvin = 0, radian = 0;
-  const char* name = "a plain number";  // "a density"
-  const char* example = "0.5";          // "1070 kg/m^3"
-  const char* unit = "";                // SI unit for output: "kg/m^3"
+  const char* name = "a plain number";  // e.g. "a density"
+  const char* example = "0.5";          // e.g. "1070 kg/m^3"
+  const char* unit = "";                // SI unit for output, e.g. "kg/m^3"
 
   bool SameAs(const Dimension& other) const {
     return metre == other.metre && kilogram == other.kilogram && second == other.second &&
@@ -40,10 +40,10 @@ inline constexpr Dimension kStiffness{0, 1, -2, 0, 0, "a stiffness", "200 N/m", 
 inline constexpr Dimension kTemperature{0, 0, 0, 1, 0, "a temperature", "20 K", "K"};
 inline constexpr Dimension kAngle{0, 0, 0, 0, 1, "an angle", "30 deg", "rad"};
 
-// The SI value of `text`, a number and a unit. Products of units are written with a space, '*' or
-// '·', quotients with '/' and powers with '^'. A number without a unit is accepted only for a
-// dimensionless quantity. Throws std::invalid_argument, saying what was expected, for text that is
-// not a finite number, an unknown unit and a unit of another dimension.
+// Returns the SI value of `text`, a number with a unit. Products of units are written with a space,
+// '*' or '·', quotients with '/' and powers with '^'. A number without a unit is accepted only for
+// a dimensionless quantity. Throws std::invalid_argument with a message that states what was
+// expected if `text` is not a finite number, or if its unit is unknown or has another dimension.
 double ParseQuantity(std::string_view text, const Dimension& expected);
 
 // A quantity with the dimension of its own unit, e.g. "3 N/kg"; dimensionless without a unit.

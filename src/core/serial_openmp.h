@@ -5,8 +5,8 @@
 namespace lacuna {
 
 // During the lifetime of an object, OpenMP parallel regions that this thread enters run serially.
-// CHOLMOD uses four OpenMP threads for each small copy between supernodes, whatever the machine; on
-// two cores its factorisation is two to four times slower with them than without.
+// CHOLMOD uses four OpenMP threads for each small copy between supernodes on every machine; on two
+// cores, its factorisation is two to four times slower with these threads than without them.
 class SerialOpenMp {
  public:
   SerialOpenMp();

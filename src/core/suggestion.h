@@ -7,12 +7,12 @@
 
 namespace lacuna {
 
-// The one of `names` with the least Levenshtein distance to `name`, the first of several; empty if
-// all are more than `farthest` edits away.
+// The entry of `names` with the smallest Levenshtein distance to `name`, the first one if there are
+// several; empty if all distances are greater than `farthest`.
 std::string Nearest(const std::string& name, const std::vector<std::string>& names, int farthest);
 
-// `; did you mean "x"?` with the nearest of `names`, to be appended to a message. Empty if more
-// than about half of the characters would have to change.
+// The text `; did you mean "x"?` with the nearest of `names`, to be appended to a message. Empty if
+// the distance is greater than about half of the length of `name`.
 std::string Suggestion(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace lacuna

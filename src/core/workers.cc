@@ -26,7 +26,7 @@ constexpr int kStopped = 3, kThrew = 4;  // exit statuses of a job's process
 constexpr auto kPause = std::chrono::milliseconds(10);
 
 int Work(size_t k, int threads, const std::function<void(size_t)>& job) {
-  // If the parent process is killed, the job should end, too.
+  // The kernel sends SIGTERM to the job if the parent process ends.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   SetThreadCount(threads);
   try {
@@ -64,7 +64,7 @@ int ShareOut(size_t count, const WorkerOptions& options, const std::function<voi
   while (true) {
     while (next < count && static_cast<int>(running.size()) < options.workers &&
            !InterruptRequested()) {
-      std::fflush(nullptr);  // otherwise the child would write the buffered output again
+      std::fflush(nullptr);  // otherwise the child would write buffered output again
       const pid_t child = fork();
       if (child == 0) {
         const int status = Work(next, options.threads, job);
@@ -72,7 +72,7 @@ int ShareOut(size_t count, const WorkerOptions& options, const std::function<voi
         _exit(status);
       }
       if (child < 0 && running.empty())
-        throw InputError(fmt::format("no process can be started: {}", std::strerror(errno)));
+        throw InputError(fmt::format("cannot start a process: {}", std::strerror(errno)));
       if (child < 0) break;
       running[child] = next++;
     }

@@ -23,7 +23,7 @@ namespace {
   throw InputError(position, message);
 }
 
-// YAML-cpp would silently drop one value of a key that is given twice.
+// Throws InputError for a repeated key, of which YAML-cpp would silently discard one value.
 void RefuseRepeatedKeys(const YAML::Node& root, const std::filesystem::path& file) {
   std::vector<YAML::Node> open = {root};
   while (!open.empty()) {
@@ -47,7 +47,7 @@ YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1)
-      Fail(file, documents[1].Mark(), "starts a second YAML document; expected one in a file");
+      Fail(file, documents[1].Mark(), "a second YAML document starts here; expected one per file");
     if (!documents.empty()) root = documents[0];
   } catch (const YAML::ParserException& problem) {
     Fail(file, problem.mark, "is not valid YAML: " + problem.msg);
@@ -60,7 +60,7 @@ YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
   return root;
 }
 
-// Removes the record that `field` and everything below it came from another file.
+// Removes the entries of `field`, and of everything below it, from the list of inserted fields.
 void Forget(const std::string& field, YamlDocument* document) {
   auto& files = document->file_of_field;
   for (auto at = files.begin(); at != files.end();) {
@@ -72,8 +72,8 @@ void Forget(const std::string& field, YamlDocument* document) {
   }
 }
 
-// Inserts the pieces into a mapping or list and everything below it. `files` are the files that are
-// being read, the outermost first.
+// Inserts the pieces into a mapping or list and into everything below it. `files` are the files
+// that are being read, from the main file to the innermost piece.
 void PutInPieces(YAML::Node node, const std::string& path,
                  const std::vector<std::filesystem::path>& files, YamlDocument* document) {
   const auto below = [&path](const std::string& key) {
@@ -95,7 +95,7 @@ void PutInPieces(YAML::Node node, const std::string& path,
     const std::filesystem::path file =
         given.is_absolute() ? given : (files.back().parent_path() / given).lexically_normal();
     if (std::find(files.begin(), files.end(), file) != files.end())
-      Fail(files.back(), mark, below("use") + ": " + file.string() + " would use itself");
+      Fail(files.back(), mark, below("use") + ": " + file.string() + " would include itself");
     if (!std::filesystem::is_regular_file(file))
       Fail(files.back(), mark, below("use") + ": there is no file " + file.string());
     YAML::Node piece = Parse(ReadWholeFile(file), file);
@@ -117,7 +117,7 @@ void PutInPieces(YAML::Node node, const std::string& path,
   for (const auto& entry : node)
     if (entry.first.IsScalar()) keys.push_back(entry.first.Scalar());
   for (const std::string& key : keys) {
-    if (document->file_of_field.count(below(key)) > 0) continue;  // from a piece: already complete
+    if (document->file_of_field.count(below(key)) > 0) continue;  // from a piece, already complete
     PutInPieces(node[key], below(key), files, document);
   }
 }

@@ -1,4 +1,4 @@
-// A measuring frame that moves slowly, and evenly, during a recording.
+// A coordinate system of the measurement that moves slowly, and evenly, during a recording.
 #include "diagnosis/nuisance_catalogue.h"
 
 namespace lacuna {
@@ -7,8 +7,8 @@ namespace {
 NuisanceCard Card() {
   NuisanceCard card;
   card.name = "registration_drift";
-  card.title = "a slow drift of the measuring frame";
-  card.directions = "the measuring frame shifted and rotated in proportion to the time";
+  card.title = "a slow drift of the coordinate system of the measurement";
+  card.directions = "the coordinate system shifted and rotated in proportion to the time";
   card.prior = "1 mm and 0.02 rad over the recording";
   card.residual_when_present =
       "The whole object moves away like a rigid body, from the first frame to the last.";
@@ -21,7 +21,7 @@ std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   const std::vector<double>& times = at.part.layout.times;
   const double duration = times.back() - times.front();
   NuisanceCandidate candidate;
-  candidate.what = "a slow drift of the measuring frame of " + at.Name();
+  candidate.what = "a slow drift of the coordinate system of " + at.Name();
   candidate.columns.resize(at.misfit.residual.size(), 6);
   for (int axis = 0; axis < 6; ++axis)
     candidate.columns.col(axis) = at.Column([&](Eigen::Index frame, int series) {

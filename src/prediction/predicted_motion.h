@@ -24,8 +24,8 @@ struct Misfit {
   Eigen::VectorXd residual;  // components·points·frames
   Eigen::MatrixXd jacobian;  // ∂residual/∂(direction), one column per direction
   std::vector<int> count;    // points × frames: number of measurements averaged; 0: not seen
-  // points × frames: the deformation gradient F (Observed), rotated into the measuring frame; empty
-  // for scans.
+  // points × frames: the deformation gradient F (Observed), rotated into the recording's
+  // coordinates; empty for scans.
   std::vector<Eigen::Matrix3d> deformation;
   std::vector<Observed> observed;  // for each frame: what the prediction was compared with
   PredictionSummary summary;
@@ -41,7 +41,7 @@ struct Misfit {
 // The variable by which one column of a Misfit's Jacobian is the derivative.
 struct MisfitDirection {
   // A parameter of the model, or a nuisance parameter of the recording: the delay, s, of its clock,
-  // or the translation, m, or rotation, rad, of its measuring frame along or about an axis.
+  // or the translation, m, or rotation, rad, of its coordinate system along or about an axis.
   enum class Kind { kModel, kClock, kShift, kTurn };
   Kind kind = Kind::kModel;
   int axis = 0;
@@ -105,10 +105,10 @@ class RecordingModel {
   // recording's clock.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
-  // The transform from the fixture's frame, which is the model's, to the recording's measuring
-  // frame: a rotation about the mean of the markers' places, then a translation.
+  // The transform from the fixture's coordinate system, which is the model's, to the recording's: a
+  // rotation about the mean of the markers' places, then a translation.
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
-  // The derivative of a place in the measuring frame by a translation or a small rotation.
+  // The derivative of a place in the recording's coordinates by a translation or a small rotation.
   Eigen::Vector3d ByRegistration(const MisfitDirection& direction,
                                  const Eigen::Isometry3d& registration,
                                  const Eigen::Vector3d& place) const;

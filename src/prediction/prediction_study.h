@@ -47,7 +47,7 @@ struct PredictedRecording {
   // 0 where they agree.
   double clock_deviation = 0;
   // Standard deviations (priors, for each axis) of the translation, m, and the rotation, rad,
-  // between the measuring frame and the fixture; 0 where they agree.
+  // between the recording's coordinate system and the fixture; 0 where they agree.
   double shift_deviation = 0, turn_deviation = 0;
   EffectList effects;  // effects in this recording only, such as an attached mass
 

@@ -20,7 +20,7 @@ struct ReplayedMotion {
   PredictionSummary summary;
   double delay = 0;  // s, delay of the recording's clock; model time is recorded time − delay
   Eigen::VectorXd nuisance;  // values of RecordingModel::nuisances()
-  // The transform from the model's frame to the measuring frame. Places, velocities and F are in
+  // The transform from the model's to the recording's coordinates. Places, velocities and F are in
   // the latter.
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();
   Eigen::MatrixXd predicted;                 // 3m, m, places of the markers

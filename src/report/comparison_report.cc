@@ -38,8 +38,8 @@ std::string SizeText(const ComparedRecording& recording, const ErrorSize& error)
                       recording.point_names[error.largest_point], error.largest_time);
   if (error.rms_over_sigma >= kBeyondNoise && error.steady > error.changing) {
     text += fmt::format(
-        " Most of the error, {} rms, is the same in all frames; {}, a rotated measuring frame or a "
-        "steady load would cause this. The part that varies is {} rms.",
+        " Most of the error, {} rms, is the same in all frames; {}, a rotated coordinate system or "
+        "a steady load would cause this. The part that varies is {} rms.",
         Millimetres(error.steady),
         recording.is_scan ? "a different rest shape" : "misplaced markers",
         Millimetres(error.changing));

@@ -43,7 +43,7 @@ SearchResult MinimiseByCobyla(const SearchProblem& problem, const SearchControl&
   descent.max_iterations = 1000 + 20 * control.max_evaluations;
   const CobylaRestarts& restarts = options.restarts;
   SearchStatus status = SearchStatus::kNotRun;
-  int barren = 0;  // descents in a row that evaluated nothing new
+  int barren = 0;  // consecutive descents without a new evaluation
   for (int round = 0; round <= restarts.max_restarts && barren < 2; ++round) {
     descent.final_radius = std::max(options.final_radius, 1e-14 * descent.initial_radius);
     if (restarts.max_restarts > 0) {

@@ -9,15 +9,15 @@
 namespace lacuna {
 
 struct Descent {
-  Eigen::VectorXd start;  // free variables
+  Eigen::VectorXd start;  // n, the free variables only
   double initial_radius = 0;
-  double side = 1;  // 1 or -1: whether the first vertices lie above or below the start
+  double side = 1;  // 1 if the first vertices lie above the start, -1 if they lie below it
   double final_radius = 0;
   int max_iterations = 0;  // limit on trust-region and geometry steps together
 };
 
-// The rules of Powell 1994: a single radius ρ, which never grows. Evaluates only through
-// `evaluator`, which also holds the results.
+// The rules of Powell 1994: a single radius ρ, which never grows. All evaluations are made and
+// recorded by `evaluator`.
 SearchStatus DescendByPowellRules(const Descent& descent, Evaluator* evaluator);
 
 // The modern rules: a trust radius Δ, adapted to the success of the steps, above a resolution ρ.

@@ -30,7 +30,7 @@ std::string ContentOf(const SearchStep& step) {
   return content;
 }
 
-// False if `content` is not what ContentOf writes for these sizes.
+// Returns false if `content` does not have the format of ContentOf for these sizes.
 bool ParseContent(const std::string& content, int variable_count, int constraint_count,
                   SearchStep* step) {
   std::istringstream stream(content);

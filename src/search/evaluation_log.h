@@ -1,10 +1,11 @@
 // An append-only file of evaluations, from which an interrupted search resumes.
 //
 // A search is a function of its inputs and of the outcomes so far, so the log is its entire state:
-// called again with the same log, the search starts from the beginning, receives the outcomes from
-// the file in order, and continues with new evaluations where the file ends. Each line contains the
-// hash of its content, and numbers are written exactly. An incomplete last line, left by a crash,
-// is removed. Each line is handed to the operating system at once, but not synced to the disk.
+// if it is called again with the same log, the search starts from the beginning, receives the
+// outcomes from the file in order, and continues with new evaluations where the file ends. Each
+// line contains the hash of its content, and numbers are written exactly. An incomplete last line,
+// left by a crash, is removed. Each line is passed to the operating system immediately, but it is
+// not flushed to the disk (fsync), so a power failure can lose the last lines.
 #ifndef LACUNA_SEARCH_EVALUATION_LOG_H_
 #define LACUNA_SEARCH_EVALUATION_LOG_H_
 

@@ -30,7 +30,7 @@ Evaluation Normalised(Evaluation outcome, int constraint_count) {
       outcome.failure.clear();
       return outcome;
     }
-    outcome.failure = "a value is not finite";
+    outcome.failure = "the objective or a constraint is not finite";
   }
   outcome.value.reset();
   outcome.constraints.resize(0);
@@ -69,7 +69,7 @@ Evaluator::Evaluator(const SearchProblem& problem, const SearchControl& control,
 SearchStatus Evaluator::StopReason() const {
   if (evaluation_count() >= control_.max_evaluations) return SearchStatus::kEvaluations;
   if (log_ && evaluation_count() < static_cast<int>(log_->steps().size())) {
-    return SearchStatus::kNotRun;  // reading from the log takes no time
+    return SearchStatus::kNotRun;  // reading from the log takes almost no time
   }
   if (control_.interrupted && control_.interrupted()) return SearchStatus::kInterrupted;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
@@ -83,7 +83,8 @@ SearchStep Evaluator::Evaluate(Eigen::VectorXd x) {
     const SearchStep& step = log_->steps()[index];
     if (step.x != x) {
       throw InputError({control_.log.string(), index + 2},
-                       "the search does not visit this point: another version wrote the log");
+                       "the search does not evaluate this point; the log was probably written by "
+                       "another version of the program");
     }
     return step;
   }
@@ -106,7 +107,8 @@ bool Evaluator::IsBetter(const Evaluation& outcome) const {
 Eigen::VectorXd Evaluator::Whole(const Eigen::VectorXd& free_x) const {
   Eigen::VectorXd x = problem_.start;
   for (int i = 0; i < n(); ++i) {
-    CHECK(lower_[i] <= free_x[i] && free_x[i] <= upper_[i]) << "a search left its bounds";
+    CHECK(lower_[i] <= free_x[i] && free_x[i] <= upper_[i])
+        << "a search requested a point outside the bounds";
     x[free_[i]] = free_x[i] + 0.0;  // -0 becomes +0
   }
   return x;

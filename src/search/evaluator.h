@@ -1,4 +1,5 @@
-// The interface between a search and its objective: cache, log, budget, bounds and best point.
+// The interface between a search and its objective. It caches and logs the evaluations, applies the
+// stopping rules, checks the bounds and keeps the best point.
 #ifndef LACUNA_SEARCH_EVALUATOR_H_
 #define LACUNA_SEARCH_EVALUATOR_H_
 
@@ -13,28 +14,29 @@
 
 namespace lacuna {
 
-// A search sees only the free variables: `lower`, `upper`, `start` and the points of At() omit the
-// fixed ones (lower == upper).
+// A search works with the n free variables only: `lower`, `upper`, `start` and the points of At()
+// omit the fixed ones (lower == upper).
 class Evaluator {
  public:
   // `method` describes the search and its options. Together with the problem and control.log_key it
-  // forms the key of the log. CHECKs that the problem is consistent; throws InputError for a bad
-  // log.
+  // forms the key of the log. CHECKs that the problem is consistent. Throws InputError if the log
+  // cannot be used (evaluation_log.h).
   Evaluator(const SearchProblem& problem, const SearchControl& control, const std::string& method);
 
-  int n() const { return static_cast<int>(free_.size()); }
-  int m() const { return problem_.constraint_count; }
+  int n() const { return static_cast<int>(free_.size()); }  // number of free variables
+  int m() const { return problem_.constraint_count; }       // number of constraints
   const Eigen::VectorXd& lower() const { return lower_; }
   const Eigen::VectorXd& upper() const { return upper_; }
   const Eigen::VectorXd& start() const { return start_; }
 
-  // The outcome at `x`, which must lie within the bounds: from memory if it has been evaluated
-  // before, else from the log or the objective. Null once the search must stop. The pointer stays
-  // valid as long as the evaluator.
+  // Returns the outcome at `x` (n), which must lie within the bounds (CHECK). A point is evaluated
+  // once; later requests return the stored outcome. Returns null once the search must stop. The
+  // pointer remains valid during the lifetime of the evaluator. Throws InputError if the log
+  // contains another point in this place or cannot be written, and any exception of the objective.
   const Evaluation* At(const Eigen::VectorXd& x);
 
-  // ∂f/∂x for the free variables at an `x` whose outcome has a value; NaN if the problem does not
-  // provide it.
+  // ∂f/∂x (n) for the free variables at an `x` (n) whose outcome has a value; NaN if the problem
+  // does not provide the derivative.
   Eigen::VectorXd GradientAt(const Eigen::VectorXd& x) const;
 
   double feasibility_tolerance() const { return control_.feasibility_tolerance; }
@@ -46,12 +48,12 @@ class Evaluator {
   Eigen::VectorXd PointOf(int index) const;
   const Evaluation& OutcomeOf(int index) const { return result_.trace[index].outcome; }
 
-  // Returns the result. A stopping rule that has applied takes precedence over `status`. Call it
-  // once, at the end.
+  // Returns the result. If a stopping rule has ended the search, its status takes precedence over
+  // `status`. Call it once, at the end.
   SearchResult Finish(SearchStatus status, const std::string& message = "");
 
  private:
-  Eigen::VectorXd Whole(const Eigen::VectorXd& free_x) const;  // with the fixed variables
+  Eigen::VectorXd Whole(const Eigen::VectorXd& free_x) const;  // adds the fixed variables
   SearchStatus StopReason() const;
   SearchStep Evaluate(Eigen::VectorXd x);
   bool IsBetter(const Evaluation& outcome) const;

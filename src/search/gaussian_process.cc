@@ -13,7 +13,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// The kernel k as a function of the squared distance of points scaled by the lengths.
+// The kernel k as a function of the squared distance between two points whose coordinates have been
+// divided by the length scales.
 double Matern(double squared) {
   const double r = std::sqrt(5 * squared);
   return (1 + r + r * r / 3) * std::exp(-r);

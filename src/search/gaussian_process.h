@@ -24,14 +24,15 @@ class GaussianProcess {
     double deviation = 0;  // standard deviation of f, without the noise
   };
 
-  // `points`: n × N; `values`: N.
+  // Conditions the process on N observations. `points`: n × N; `values`: N.
   GaussianProcess(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                   const GaussianProcessScales& scales);
 
+  // The posterior mean and standard deviation at `x` (n).
   Prediction At(const Eigen::VectorXd& x) const;
 
-  // ln p(values | scales), maximised over s², up to a constant. -∞ if the covariance matrix is not
-  // positive definite in double precision; At() must then not be called.
+  // ln p(values | scales), maximised over s², up to an additive constant. -∞ if the covariance
+  // matrix is not positive definite in double precision; At() must then not be called.
   double LogLikelihood() const { return log_likelihood_; }
 
  private:
@@ -45,9 +46,9 @@ class GaussianProcess {
   double log_likelihood_ = 0;
 };
 
-// The scales that maximise the likelihood times a weak prior, ln l_i ~ N(ln ½, 1), within
-// 0.05 <= l_i <= 10 and 1e-8 <= η <= 1. Starts at `first` and evaluates the likelihood at most
-// `evaluations` times.
+// Returns the scales that maximise the likelihood times a weak prior, ln l_i ~ N(ln ½, 1), within
+// 0.05 <= l_i <= 10 and 1e-8 <= η <= 1. The search starts at `first` and evaluates the likelihood
+// at most `evaluations` times. `points`: n × N; `values`: N.
 GaussianProcessScales FitScales(const Eigen::MatrixXd& points, const Eigen::VectorXd& values,
                                 const GaussianProcessScales& first, int evaluations);
 

@@ -22,7 +22,7 @@ using Eigen::VectorXd;
 
 constexpr std::array<int, 10> kPrimes = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
 
-// The Halton sequence (1960): the digits of `index` in this base, reflected at the radix point.
+// The Halton sequence (1960): the digits of `index` in base `base`, reflected at the radix point.
 double Halton(int index, int base) {
   double value = 0, digit = 1.0 / base;
   for (; index > 0; index /= base, digit /= base) value += digit * (index % base);

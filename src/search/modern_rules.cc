@@ -72,8 +72,8 @@ class ModernDescent {
   }
 
   // Solves the trust-region problem at the best vertex and raises the penalty until the solution
-  // reduces the merit. That may change the best vertex, at most n + 1 times. Returns false if the
-  // simplex is degenerate.
+  // reduces the merit. A larger penalty may change the best vertex, at most n + 1 times. Returns
+  // false if the simplex is degenerate.
   bool RaisePenalty() {
     for (int round = 0; round <= simplex_.n() + 1; ++round) {
       if (!simplex_.MovePole(penalty_)) return false;

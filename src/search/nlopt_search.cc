@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// The state shared by NLopt's two callbacks. It holds an exception of the objective until NLopt's C
-// code has returned.
+// The state shared by NLopt's two callbacks. It stores an exception of the objective until NLopt's
+// C code has returned.
 class Bridge {
  public:
   Bridge(Evaluator* evaluator, nlopt_opt optimiser)
@@ -34,7 +34,7 @@ class Bridge {
     return *outcome->value;
   }
 
-  // The library's constraints are feasible where <= 0.
+  // NLopt considers a constraint feasible where it is <= 0, so the sign is reversed.
   void Constraints(const double* x, double* result) {
     const Evaluation* outcome = At(x);
     for (int i = 0; i < evaluator_.m(); ++i) {
@@ -109,7 +109,8 @@ SearchResult MinimiseByNlopt(const SearchProblem& problem, const SearchControl& 
   const double radius =
       std::min(options.initial_radius, 0.5 * (evaluator.upper() - evaluator.lower()).minCoeff());
   nlopt_set_initial_step1(optimiser.get(), radius);
-  nlopt_set_xtol_rel(optimiser.get(), options.final_radius / radius);  // of the step, not of x
+  // Both algorithms apply this tolerance relative to the initial radius, not to x.
+  nlopt_set_xtol_rel(optimiser.get(), options.final_radius / radius);
   VectorXd x = evaluator.start();
   double value = 0;
   const nlopt_result outcome = nlopt_optimize(optimiser.get(), x.data(), &value);

@@ -1,11 +1,12 @@
-// The COBYLA and BOBYQA of the library NLopt behind this module's interface, as references.
+// COBYLA and BOBYQA of the library NLopt with this module's interface, for comparison with our own
+// searches.
 //
-// Bounds, budget, log and the choice of the best point are those of the other searches, and no
-// point is evaluated twice. NLopt does not know failed evaluations: they get a value that exceeds
-// the worst one so far by the range of all, or 1 if there is none. A search that requests known
-// points 1000 times in a row is stopped. A search that loops without requesting any point, as is
-// reported of NLopt's COBYLA without a tolerance, cannot be stopped, so choose a final radius well
-// above rounding.
+// Bounds, stopping rules, log and the choice of the best point are those of the other searches, and
+// no point is evaluated twice. NLopt has no failed evaluations, so a failed evaluation returns a
+// value that exceeds the largest value so far by at least the range of the values, or 1 if there is
+// no value yet. A search that requests more than 1000 known points in succession is stopped. A
+// search that loops without requesting any point, as has been reported of NLopt's COBYLA without a
+// tolerance, cannot be stopped; the final radius should therefore be well above rounding errors.
 #ifndef LACUNA_SEARCH_NLOPT_SEARCH_H_
 #define LACUNA_SEARCH_NLOPT_SEARCH_H_
 
@@ -20,11 +21,14 @@ enum class NloptAlgorithm {
 
 struct NloptOptions {
   NloptAlgorithm algorithm = NloptAlgorithm::kCobyla;
-  double initial_radius = 0.25;  // as in cobyla.h
+  // As in CobylaOptions (cobyla.h), in the units of the variables.
+  double initial_radius = 0.25;
   double final_radius = 1e-3;
 };
 
-// Minimises the objective. An exception of the objective is thrown on after NLopt has returned.
+// Minimises the objective. An exception of the objective or of the log (InputError) is rethrown
+// after NLopt has returned. If NLopt reports a failure, the status is kLibrary with NLopt's
+// message.
 SearchResult MinimiseByNlopt(const SearchProblem& problem, const SearchControl& control,
                              const NloptOptions& options);
 

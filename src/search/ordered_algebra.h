@@ -1,5 +1,5 @@
-// Linear algebra with a fixed order of summation, so that a search takes the same path however it
-// is compiled.
+// Linear algebra with a fixed order of summation, so that the path of a search does not depend on
+// how the program is compiled.
 //
 // Eigen's reductions and products sum in an order that depends on the width of the vector
 // instructions, and a difference in the last bit can change the path of a search. A compiler that
@@ -31,16 +31,17 @@ double OrderedNorm(const A& a) {
   return std::sqrt(OrderedDot(a, a));
 }
 
-// Whether a > b by more than rounding. Lengths in a simplex are often equal by construction (every
-// full step has the length of the radius), and a choice between equal ones must not depend on their
-// last bits.
+// Whether a exceeds b by more than rounding errors, that is by more than 1e-10 |b|. Lengths in a
+// simplex are often equal by construction (every full step has the length of the radius), and a
+// choice between equal lengths must not depend on their last bits.
 inline bool ClearlyGreater(double a, double b) { return a > b + 1e-10 * std::abs(b); }
 
 // The product of a matrix and a vector.
 Eigen::VectorXd OrderedProduct(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& vector);
 
-// The inverse of a square matrix by Gauss-Jordan elimination with row pivoting; none if a pivot is
-// below 1e-14 of the largest entry of its column.
+// The inverse of a square matrix by Gauss-Jordan elimination with row pivoting. Returns
+// std::nullopt if a pivot does not exceed 1e-14 times the largest entry of its column in the given
+// matrix.
 std::optional<Eigen::MatrixXd> OrderedInverse(Eigen::MatrixXd matrix);
 
 }  // namespace lacuna

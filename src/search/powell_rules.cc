@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Constants of Powell 1994, section 3: eq. 14 (α, β), the geometry step γ, eq. 21 (δ).
+// The constants of Powell 1994, section 3: α and β of eq. 14, γ of the geometry step, and δ of eq.
+// 21.
 constexpr double kAlpha = 0.25;
 constexpr double kBeta = 2.1;
 constexpr double kGamma = 0.5;
@@ -26,8 +27,8 @@ bool IsAcceptable(const Simplex& simplex, double rho) {
   return true;
 }
 
-// The vertex that a geometry step moves: the farthest if it is too far, else the one nearest to its
-// opposite face (eq. 15 and 16).
+// The vertex that a geometry step moves: the one farthest from the pole if it is too far away,
+// otherwise the one nearest to its opposite face (eq. 15 and 16).
 int VertexToMove(const Simplex& simplex, double rho) {
   int worst = -1;
   for (int j = 0; j < simplex.n(); ++j) {
@@ -43,7 +44,8 @@ int VertexToMove(const Simplex& simplex, double rho) {
 }
 
 // The vertex that the trial point replaces (eq. 19 to 22); -1 if none. Among equally distant
-// vertices, a frequent case that the paper leaves open, the one with the lower merit is chosen.
+// vertices, a frequent case for which the paper gives no rule, the one with the lower merit is
+// chosen.
 int VertexToDrop(const Simplex& simplex, const VectorXd& step, double rho, double penalty,
                  bool is_better) {
   int dropped = -1;
@@ -108,7 +110,7 @@ class PowellDescent {
         const Outcome outcome = MoveVertex();
         if (outcome == Outcome::kStopped) return SearchStatus::kEvaluations;
         if (outcome == Outcome::kGood) continue;
-        if (!Shrink()) return Converged();  // no room for a better geometry
+        if (!Shrink()) return Converged();  // the geometry cannot be improved
         continue;
       }
       wants_geometry = false;
@@ -125,7 +127,8 @@ class PowellDescent {
   }
 
  private:
-  // Returns kPoor if the bounds leave no room or if all three evaluations fail.
+  // Evaluates a geometry step and replaces a vertex by it. Returns kPoor if the bounds permit no
+  // such step or if all three evaluations fail.
   Outcome MoveVertex() {
     const int moved = VertexToMove(simplex_, rho_);
     const VectorXd pole = simplex_.Vertex(simplex_.pole());
@@ -173,7 +176,8 @@ class PowellDescent {
     return reduction > 0 && reduction >= 0.1 * expected ? Outcome::kGood : Outcome::kPoor;
   }
 
-  // Section 2, after eq. 9. Returns true if another vertex has become the best.
+  // Raises the penalty if necessary (section 2, after eq. 9). Returns true if another vertex has
+  // become the best one.
   bool RaisePenalty(const Prediction& predicted) {
     const double needed = predicted.reduction_of_violation > 0
                               ? predicted.change_of_value / predicted.reduction_of_violation
@@ -196,8 +200,8 @@ class PowellDescent {
     return x.cwiseMax(evaluator_.lower()).cwiseMin(evaluator_.upper());
   }
 
-  // Not a rule of 1994: the last step that was too short to be tried is evaluated if the best
-  // vertex is infeasible, because it may be feasible.
+  // If the best vertex is infeasible, evaluates the last step that was too short to be tried,
+  // because its end may be feasible. Powell 1994 has no such rule.
   SearchStatus Converged() {
     if (short_trial_ && simplex_.violation(simplex_.pole()) > evaluator_.feasibility_tolerance()) {
       evaluator_.At(*short_trial_);

@@ -11,21 +11,21 @@ const char* ToString(SearchStatus status) {
     case SearchStatus::kConverged:
       return "converged";
     case SearchStatus::kEvaluations:
-      return "evaluations used up";
+      return "evaluation limit reached";
     case SearchStatus::kTime:
-      return "time used up";
+      return "time limit reached";
     case SearchStatus::kInterrupted:
       return "interrupted";
     case SearchStatus::kRounding:
-      return "stopped by rounding";
+      return "stopped by rounding errors";
     case SearchStatus::kNoValue:
       return "no evaluation succeeded";
     case SearchStatus::kAllFixed:
-      return "nothing to search";
+      return "no free variables";
     case SearchStatus::kIterationLimit:
-      return "iteration limit";
+      return "iteration limit reached";
     case SearchStatus::kLibrary:
-      return "library gave up";
+      return "external library failed";
   }
   return "unknown";
 }

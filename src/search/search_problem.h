@@ -1,9 +1,9 @@
-// The common interface of all searches: the problem, when to stop, and the result.
+// The common interface of all searches: the problem, the stopping rules and the result.
 //
 //   minimise f(x)   subject to   c_i(x) >= 0, i < m,   lower <= x <= upper
 //
-// One evaluation gives f and all c_i at one x. An evaluation may fail (the mesher refused, a time
-// step did not converge), which is an outcome of its own and never a number. No search evaluates
+// One evaluation gives f and all c_i at one x. An evaluation may fail, for example because meshing
+// failed or a time step did not converge; the outcome then has no value. No search evaluates
 // outside the bounds or twice at the same x.
 #ifndef LACUNA_SEARCH_SEARCH_PROBLEM_H_
 #define LACUNA_SEARCH_SEARCH_PROBLEM_H_
@@ -19,7 +19,7 @@
 namespace lacuna {
 
 struct Evaluation {
-  // f(x); none if the evaluation failed. A value or constraint that is not finite also counts as a
+  // f(x); empty if the evaluation failed. A value or constraint that is not finite also counts as a
   // failure.
   std::optional<double> value;
   Eigen::VectorXd constraints;  // m, feasible if >= 0; empty after a failure
@@ -27,29 +27,30 @@ struct Evaluation {
 };
 
 struct SearchProblem {
-  Eigen::VectorXd lower, upper;  // n each; infinite for no bound; equal for a fixed variable
+  Eigen::VectorXd lower, upper;  // n each; infinite if there is no bound; equal if x_i is fixed
   Eigen::VectorXd start;         // n, within the bounds
   int constraint_count = 0;      // m
   // The objective. It is called from one thread, in an order that depends only on its results. If
-  // it throws, the search ends with that exception; the log keeps the earlier evaluations.
+  // it throws an exception, the search ends with that exception; the log keeps the earlier
+  // evaluations.
   std::function<Evaluation(const Eigen::VectorXd& x)> evaluate;
-  // ∂f/∂x (n) at an x whose evaluation has succeeded; NaN for derivatives that must be found by
-  // differences. May be empty. Used by gradient searches only (fit/gradient_search.h).
+  // ∂f/∂x (n) at an x whose evaluation has succeeded; NaN for derivatives that must be approximated
+  // by finite differences. May be empty. Used by gradient searches only (fit/gradient_search.h).
   std::function<Eigen::VectorXd(const Eigen::VectorXd& x)> gradient = {};
 };
 
-// When to stop, and where to log.
+// The stopping rules and the log of a search.
 struct SearchControl {
   int max_evaluations = 500;  // distinct points, including those read from the log
-  // Limit on the wall time, s, checked before each evaluation. A search stopped by it resumes from
-  // its log when called again.
+  // Limit on the wall time, s, checked before each evaluation. A search that this limit has stopped
+  // resumes from its log when it is called again.
   double max_seconds = std::numeric_limits<double>::infinity();
   // Called before each evaluation if set; the search stops when it returns true.
   std::function<bool()> interrupted;
   // The largest violation of a constraint at which a point still counts as feasible.
   double feasibility_tolerance = 1e-6;
   std::filesystem::path log;  // the file of the evaluation log (evaluation_log.h); none if empty
-  std::string log_key;        // identifies the objective; the log of another one is refused
+  std::string log_key;        // identifies the objective in the log (evaluation_log.h)
 };
 
 enum class SearchStatus {
@@ -80,10 +81,10 @@ struct SearchStep {
 struct SearchResult {
   SearchStatus status = SearchStatus::kNotRun;
   std::string message;
-  std::optional<int> best;  // index into trace; none if no evaluation succeeded
+  std::optional<int> best;  // index into trace; empty if no evaluation succeeded
   std::vector<SearchStep> trace;
   int failures = 0;
-  std::string trace_hash;  // hash of all x and outcomes in order, equal for identical searches
+  std::string trace_hash;  // hash of all x and outcomes in order; equal for identical searches
 
   bool IsUsable() const { return best.has_value(); }
   // The best point, its value and its violation; only valid if IsUsable().

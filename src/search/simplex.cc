@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// The step along axis i that the bounds allow: `wanted`, or the opposite step if only that fits, or
-// else the longest step to either side.
+// The step along axis i that the bounds allow: `wanted` if it lies within them, otherwise the
+// opposite step if that does, otherwise the longest step to either side.
 double AxisStep(const VectorXd& x, int i, double wanted, const Evaluator& evaluator) {
   const double above = evaluator.upper()[i] - x[i];
   const double below = x[i] - evaluator.lower()[i];
@@ -26,8 +26,8 @@ VectorXd Within(const VectorXd& x, const Evaluator& evaluator) {
   return x.cwiseMax(evaluator.lower()).cwiseMin(evaluator.upper());
 }
 
-// The start, or if its evaluation fails the first neighbour that succeeds, at up to one and a half
-// radii on both sides along each axis.
+// The start, or, if its evaluation fails, the first neighbour whose evaluation succeeds. Neighbours
+// are tried on both sides along each axis, at distances of up to one and a half radii.
 std::optional<VectorXd> FirstSuccess(const VectorXd& start, double radius, Evaluator* evaluator) {
   const Evaluation* outcome = evaluator->At(start);
   if (outcome == nullptr || outcome->value) return outcome ? std::optional(start) : std::nullopt;

@@ -16,12 +16,14 @@ namespace lacuna {
 
 class Simplex {
  public:
-  // Evaluates `start` and one neighbour along each axis, at a distance |step| from the best point
-  // so far: on the upper side for a positive `step`, else on the lower one, unless the bounds leave
-  // more room on the other side. A neighbour that fails is tried on the other side and then nearer;
-  // if it still fails, it gets a value worse than all others. A start that fails is replaced by the
-  // first point around it that succeeds. Returns none if the search must stop, if all points around
-  // the start fail, or if the bounds are too close together for a second point.
+  // Evaluates `start` (n) and one neighbour along each axis, at a distance |step| from the best
+  // point so far: on the upper side for a positive `step`, otherwise on the lower side, unless only
+  // the other side is wide enough. If the evaluation of a neighbour fails, the other side and then
+  // smaller distances are tried; if all fail, the neighbour is assigned a value that exceeds the
+  // largest one by at least the range of the values. If the evaluation of the start fails, the
+  // first point around it whose evaluation succeeds takes its place. Returns std::nullopt if the
+  // search must stop, if all evaluations around the start fail, or if the bounds are too close
+  // together for a second point.
   static std::optional<Simplex> Around(const Eigen::VectorXd& start, double step,
                                        Evaluator* evaluator);
 
@@ -32,7 +34,7 @@ class Simplex {
   double value(int j) const { return values_[j]; }
   double violation(int j) const { return violations_[j]; }
   Eigen::VectorXd Constraints(int j) const { return constraints_.col(j); }
-  // f + penalty · max(0, max_i -c_i) at vertex j.
+  // The merit f + penalty · max(0, max_i -c_i) at vertex j.
   double Merit(int j, double penalty) const { return values_[j] + penalty * violations_[j]; }
 
   // Makes the vertex of least merit the pole. Returns false if the simplex is degenerate; the
@@ -52,13 +54,14 @@ class Simplex {
 
   // The point at the distance `length` from the pole along the normal of the face opposite to
   // vertex j, on the side with the better predicted merit, or on the other side if the bounds would
-  // cut off more than half of the step. Equal to the pole if there is no room at all.
+  // shorten the step to less than half and the other step is longer. Equal to the pole if the
+  // bounds permit no step.
   Eigen::VectorXd GeometryPoint(int j, double length, double penalty,
                                 const Evaluator& evaluator) const;
 
-  // An upper limit on a sensible penalty (Powell 1994, eq. 12 and 13): the range of f over the
+  // An upper limit on a useful penalty (Powell 1994, eq. 12 and 13): the range of f over the
   // vertices, divided by the least range of a constraint among those that are violated, or nearly
-  // so, at some vertex. 0 if there is no such constraint.
+  // violated, at some vertex. 0 if there is no such constraint.
   double PenaltyLimit() const;
 
  private:

@@ -30,8 +30,8 @@ struct Basis {
     r = MatrixXd::Zero(k, k);
     for (int j = 0; j < k; ++j) {
       VectorXd normal = rows[active[j]].normal;
-      for (int pass = 0; pass < 2;
-           ++pass) {  // the second pass removes rounding errors of the first
+      // The second pass removes the rounding errors of the first.
+      for (int pass = 0; pass < 2; ++pass) {
         for (int i = 0; i < j; ++i) {
           const double part = OrderedDot(q[i], normal);
           r(i, j) += part;
@@ -70,7 +70,7 @@ struct Basis {
     return u;
   }
 
-  // The y that minimises |N y − vector|.
+  // Returns the y that minimises ‖N y − vector‖.
   VectorXd Coordinates(const VectorXd& vector) const {
     VectorXd u(size());
     for (int i = 0; i < size(); ++i) u[i] = OrderedDot(q[i], vector);

@@ -20,15 +20,15 @@ struct TrustRegionStep {
   bool on_boundary = false;  // ‖step‖ = radius
 };
 
-// Among the steps with ‖d‖ <= radius and lower <= d <= upper (which must include 0), returns the
-// one that
+// Among the steps with ‖d‖ <= radius and lower <= d <= upper (n each; the bounds must include 0),
+// returns the one that
 //   1. minimises the largest violation max(0, max_i -(c + J d)_i),
-//   2. then minimises g·d,
-//   3. then is shortest.
-// It is the end of a piecewise linear path: for a decreasing violation, and then for an increasing
-// weight on the objective, the shortest d is followed from one change of its active constraints to
-// the next (parametric quadratic programming). Each of the two parts makes at most
-// 100 (m + 2 n + 1) changes.
+//   2. of these steps, minimises g·d,
+//   3. of these steps, is the shortest.
+// The step is the end of a piecewise linear path: for a decreasing violation, and then for an
+// increasing weight of the objective, the shortest d is followed from one change of the active
+// constraints to the next (parametric quadratic programming). Each of the two parts makes at most
+// 100 (m + 2 n + 1) changes; a part that reaches this limit ends at its current point.
 TrustRegionStep SolveTrustRegion(const LinearInterpolant& model, const Eigen::VectorXd& lower,
                                  const Eigen::VectorXd& upper, double radius);
 

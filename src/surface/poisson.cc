@@ -14,7 +14,7 @@ namespace lacuna {
 namespace {
 
 // Redirects standard output to standard error during the lifetime of an object. PCL prints messages
-// on standard output, which is reserved for our results.
+// on standard output, which is reserved for the results of the program.
 class StandardOutputToError {
  public:
   StandardOutputToError() {
@@ -53,7 +53,8 @@ TriMesh PoissonIsoSurface(const PointCloud& oriented, const PoissonOptions& opti
     cloud->push_back(point);
   }
 
-  // PCL's octree allocates its nodes from one global allocator.
+  // PCL's octree allocates its nodes from one global allocator, so reconstructions must not
+  // overlap.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   pcl::Poisson<pcl::PointNormal> poisson;

@@ -21,15 +21,15 @@ constexpr Eigen::Index kFewestPoints = 10;
 void RefuseUnusable(const PointCloud& cloud) {
   if (cloud.Size() < kFewestPoints) {
     throw InputError(
-        fmt::format("a surface needs at least {} points, got {}", kFewestPoints, cloud.Size()));
+        fmt::format("a surface requires at least {} points, got {}", kFewestPoints, cloud.Size()));
   }
-  if (!cloud.HasNormals()) throw InputError("a surface needs points with normals");
+  if (!cloud.HasNormals()) throw InputError("a surface requires points with normals");
   for (Eigen::Index i = 0; i < cloud.Size(); ++i) {
     if (!cloud.points.col(i).allFinite() || !cloud.normals.col(i).allFinite()) {
       throw InputError(fmt::format("point {} of {} is not finite", i + 1, cloud.Size()));
     }
   }
-  if (!(BoundingBoxDiagonal(cloud.points) > 0)) throw InputError("all points lie in one place");
+  if (!(BoundingBoxDiagonal(cloud.points) > 0)) throw InputError("all points coincide");
 }
 
 int DepthForSpacing(const PointCloud& cloud, double spacing) {
@@ -73,7 +73,7 @@ void Append(std::vector<std::string>& notes, const std::vector<std::string>& mor
   notes.insert(notes.end(), more.begin(), more.end());
 }
 
-// Sets status and message of the result from its report.
+// Sets the status and the message of the result according to its report.
 void Conclude(const SurfaceOptions& options, Surface& surface) {
   SurfaceReport judged = surface.report;
   if (!options.closed) {
@@ -98,7 +98,7 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
   RefuseUnusable(oriented);
   Surface surface;
   surface.spacing = TypicalSpacing(oriented.points);
-  if (!(surface.spacing > 0)) throw InputError("most points coincide with others");
+  if (!(surface.spacing > 0)) throw InputError("most points coincide with other points");
   surface.depth = options.depth > 0 ? std::clamp(options.depth, kMinDepth, kMaxDepth)
                                     : DepthForSpacing(oriented, surface.spacing);
 
@@ -113,7 +113,8 @@ Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& opt
   surface.notes = std::move(repaired.notes);
   if (repaired.mesh.triangles.cols() == 0) {
     surface.status = SurfaceStatus::kEmpty;
-    surface.message = "Poisson reconstruction found no surface: are the normals consistent?";
+    surface.message =
+        "Poisson reconstruction found no surface; check that the normals point outward everywhere";
     return surface;
   }
   if (options.remesh_iterations > 0) {

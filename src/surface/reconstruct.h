@@ -1,4 +1,5 @@
-// Reconstruction of the surface of one frame from its points: Poisson surface, repair, remeshing.
+// Reconstruction of the surface of one frame from its points: Poisson reconstruction, repair and
+// remeshing.
 #ifndef LACUNA_SURFACE_RECONSTRUCT_H_
 #define LACUNA_SURFACE_RECONSTRUCT_H_
 
@@ -12,7 +13,8 @@
 namespace lacuna {
 
 struct SurfaceOptions {
-  // True for a closed surface around all points, false for an open one that ends where they end.
+  // True for a closed surface around all points, false for an open surface that ends where the
+  // points end.
   bool closed = true;
   // Levels of the Poisson octree, 3..12. For 0 the finest cells get a width between half the point
   // spacing and the spacing. Each further level resolves finer detail, and more of the noise, in
@@ -39,7 +41,7 @@ struct SurfaceOptions {
 enum class SurfaceStatus {
   kNotRun,
   kUsable,
-  kFaulty,  // the surface does not have the required properties; `message` says where
+  kFaulty,  // the surface lacks required properties; `message` describes the faults
   kEmpty,   // no surface was found
 };
 
@@ -48,7 +50,7 @@ struct Surface {
   SurfaceReport report;            // of `mesh`
   double spacing = 0;              // TypicalSpacing of the points, m
   int depth = 0;                   // levels of the octree that was used
-  std::vector<std::string> notes;  // every repair, one sentence each
+  std::vector<std::string> notes;  // one entry for each repair
   SurfaceStatus status = SurfaceStatus::kNotRun;
   std::string message = "not run";
 
@@ -56,17 +58,17 @@ struct Surface {
 };
 
 // Reconstructs the surface through points with outward normals: the iso-surface of the screened
-// Poisson equation (Kazhdan & Hoppe 2013, by PCL) is reduced to its largest component, repaired
+// Poisson equation (surface/poisson.h) is reduced to its largest component, repaired
 // (surface/repair.h) and remeshed isotropically. A usable closed result bounds a volume; a usable
 // open one is manifold, oriented and free of self-intersections. The same points give the same
-// surface, bit by bit. Throws InputError for fewer than 10 points, points without normals, values
-// that are not finite, points that all coincide, and an edge length that would give more than four
-// million triangles.
+// surface to the last bit. Throws InputError for fewer than 10 points, points without normals,
+// values that are not finite, points most or all of which coincide, and an edge length that would
+// give more than four million triangles.
 Surface ReconstructSurface(const PointCloud& oriented, const SurfaceOptions& options);
 
-// The distance between neighbours if the points were spread evenly over the same surface: the
-// median over the points of √(π/k) times the distance of the k-th nearest neighbour, k = 8.
-// `points`: 3 × n, m, n ≥ 2.
+// The distance, m, between neighbours if the points were spread evenly over the same surface: the
+// median over the points of √(π/k) times the distance to the k-th nearest neighbour, k = 8 (or n −
+// 1 if that is less). `points`: 3 × n, m, n ≥ 2.
 double TypicalSpacing(const Eigen::Matrix3Xd& points);
 
 }  // namespace lacuna

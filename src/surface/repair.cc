@@ -128,10 +128,11 @@ void RemoveSelfIntersections(SurfaceMesh& surface, Notes& notes) {
   surface.collect_garbage();
   const auto before = FindSelfIntersections(FromSurfaceMesh(surface));
   if (before.empty()) return;
-  // If a large part of the surface intersects itself, repair is hopeless and would take minutes.
+  // If a large part of the surface intersects itself, a repair would take minutes and fail.
   constexpr double kHopeless = 0.05;
   if (static_cast<double>(before.size()) > kHopeless * surface.number_of_faces()) {
-    notes.push_back(fmt::format("kept {} self-intersections: too many to repair", before.size()));
+    notes.push_back(
+        fmt::format("kept {} self-intersections, which are too many to repair", before.size()));
     return;
   }
   processing::experimental::remove_self_intersections(surface);

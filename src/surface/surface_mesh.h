@@ -1,6 +1,6 @@
 // Conversion between TriMesh and a halfedge mesh with the interface of CGAL::Surface_mesh.
 //
-// The type is a template parameter, so that this header shows nothing of CGAL.
+// The type is a template parameter, so that this header does not depend on CGAL.
 #ifndef LACUNA_SURFACE_SURFACE_MESH_H_
 #define LACUNA_SURFACE_SURFACE_MESH_H_
 
@@ -11,7 +11,7 @@
 namespace lacuna {
 
 // Converts to a halfedge mesh. `mesh` must be manifold and consistently oriented; otherwise
-// triangles are missing in the result. Vertices keep their numbers.
+// triangles are missing in the result. The vertices keep their indices.
 template <typename SurfaceMesh>
 SurfaceMesh ToSurfaceMesh(const TriMesh& mesh) {
   using Vertex = typename SurfaceMesh::Vertex_index;
@@ -25,7 +25,7 @@ SurfaceMesh ToSurfaceMesh(const TriMesh& mesh) {
   return result;
 }
 
-// Converts from a halfedge mesh. Vertices without triangles are dropped; the others keep their
+// Converts from a halfedge mesh. Vertices without triangles are omitted; the others keep their
 // order.
 template <typename SurfaceMesh>
 TriMesh FromSurfaceMesh(const SurfaceMesh& surface) {

@@ -236,7 +236,7 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   EXPECT_LT(together[0].held_out.rms, 3e-4);
 }
 
-// Of a recording that is not fitted, the measuring frame may have been set up anew.
+// Of a recording that is not fitted, the coordinate system may have been set up anew.
 // On two cores, with an effect that both recordings share and that remembers.
 TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
   const TemporaryFolder folder;
@@ -303,7 +303,7 @@ TEST(CalibrationProblem, KnowsTheRegistrationOfARecording) {
   EXPECT_GT(misfits("")[0].held_out.rms, 1e-3);
   const std::vector<RecordingMisfit> registered =
       misfits("    registration: {shift_deviation: 1 mm, turn_deviation: 1 deg}\n");
-  // As well as the same motion is predicted in the measuring frame that the model is in.
+  // As well as the same motion is predicted in the coordinate system of the model.
   EXPECT_LT(registered[0].held_out.rms,
             1.2 * std::max(registered[1].in_fit.rms, registered[1].held_out.rms));
 }

@@ -63,8 +63,8 @@ TEST_F(ChangedYamlTest, RefusesFieldsThatCannotExist) {
   refuses("effects.eta", "effects is not a mapping");
   refuses("scan.x", "scan is not a mapping");
   refuses("again.x", "again is shared by several places");
-  refuses("bar..size", "is not a field");
-  refuses("bar.", "is not a field");
+  refuses("bar..size", "is not a field name");
+  refuses("bar.", "is not a field name");
   EXPECT_THAT(
       [&] {
         Changed({{"bar", "[1", "s.yaml"}});

@@ -95,7 +95,7 @@ TEST(Config, RefusesInvalidYamlAndOtherThanAMapping) {
   EXPECT_THROW(Config::Parse("", "a.yaml"), InputError);
   EXPECT_THROW(Config::Load("no/such/file.yaml"), InputError);
   ExpectInputError([] { Config::Parse("a: 1\n---\nb: 2\n", "a.yaml"); },
-                   "a.yaml:3:1: starts a second YAML document; expected one in a file");
+                   "a.yaml:3:1: a second YAML document starts here; expected one per file");
 }
 
 TEST(Config, InsertsPiecesWhoseEntriesTheFileOverrides) {
@@ -121,7 +121,7 @@ TEST(Config, InsertsPiecesWhoseEntriesTheFileOverrides) {
                    HasSubstr("camera.yaml"));  // items[1].lens, not read
 
   std::ofstream(folder / "pieces/camera.yaml") << "use: four.yaml\n";
-  ExpectInputError([&] { Config::Load(folder / "main.yaml"); }, HasSubstr("would use itself"));
+  ExpectInputError([&] { Config::Load(folder / "main.yaml"); }, HasSubstr("would include itself"));
   std::filesystem::remove(folder / "pieces/camera.yaml");
   ExpectInputError([&] { Config::Load(folder / "main.yaml"); },
                    HasSubstr("pieces/four.yaml:1:6: list[0].use"));

@@ -111,13 +111,14 @@ TEST_F(Npy, BrokenFilesAreRefusedWithTheirCause) {
   const std::string good = "{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }";
   const fs::path file = WriteByHand(good, two);
   fs::resize_file(file, fs::file_size(file) - 1);
-  expect(file, "15 bytes of numbers; its shape needs 16");
+  expect(file, "15 bytes of numbers; its shape requires 16");
   fs::resize_file(file, 30);
   expect(file, "ends within");
   fs::resize_file(file, 4);
   expect(file, "is not an .npy file");
   expect(WriteByHand("{'descr': '>f8', 'fortran_order': False, 'shape': (2,), }", two), "'>f8'");
-  expect(WriteByHand("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", two), "needs 24");
+  expect(WriteByHand("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }", two),
+         "requires 24");
   expect(WriteByHand("{'descr': '<f8', 'shape': (2,), }", two), "order");
   expect(WriteByHand(
              "{'descr': '<f8', 'fortran_order': False, 'shape': (99999999999, 99999999999)}", two),

@@ -112,7 +112,7 @@ TEST_F(ProgressTest, LiveLineIsRewrittenInPlaceAndKeptAtTheEnd) {
   EXPECT_EQ(stream_.str().find('\n'), std::string::npos);
   EXPECT_THAT(stream_.str(), HasSubstr("10 / 20"));
   EXPECT_THAT(stream_.str(), HasSubstr("residual 0.0125"));
-  EXPECT_THAT(stream_.str(), HasSubstr("1:00 min, 1:00 min to go"));
+  EXPECT_THAT(stream_.str(), HasSubstr("1:00 min, 1:00 min remaining"));
   progress.End("done");
   EXPECT_EQ(stream_.str().back(), '\n');
 }

@@ -47,6 +47,9 @@ TEST(Quantity, RefusesInvalidTextAndSaysWhatWasExpected) {
   ExpectRefused("nan mm", kLength, "not a finite number");
   ExpectRefused("1e999 mm", kLength, "expected a length");
   ExpectRefused("3 m/", kVelocity, "must follow \"/\"");
+  ExpectRefused("3 m//s", kVelocity, "must follow \"/\"");
+  ExpectRefused("3 m*", kLength, "must follow \"*\"");
+  ExpectRefused("+-3 m", kLength, "+-3 m");
   ExpectRefused("3 m^x", kArea, "must follow \"^\"");
   ExpectRefused("3 kmin", kTime, "unknown unit");  // a minute takes no prefix
 }

@@ -207,7 +207,7 @@ TEST(ReconstructSurface, RefusesCloudsWithoutASurface) {
 
   PointCloud in_one_place = cloud;
   in_one_place.points.colwise() = Eigen::Vector3d(1, 2, 3);
-  EXPECT_THAT(FailureOf(in_one_place), HasSubstr("one place"));
+  EXPECT_THAT(FailureOf(in_one_place), HasSubstr("all points coincide"));
 }
 
 }  // namespace
