@@ -23,31 +23,29 @@ const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& eff
   return nullptr;
 }
 
-double LogSum(double a, double b) {
-  const double largest = std::max(a, b);
-  return largest + std::log(std::exp(a - largest) + std::exp(b - largest));
-}
-
-// The nuisances that are in the base become a hypothesis of their own; all others stand beside
-// them, or in their place.
+// Adopted nuisances are in the base, so that every hypothesis contains them. Hypotheses without
+// them are added: effects in their place, and nothing.
 void CompareWithAdopted(const DecisionInput& input, double effects,
                         std::vector<HypothesisProbability>* hypotheses) {
   if (input.adopted.empty()) return;
   // The prior probability that there is such a nuisance, and that nothing else is missing.
   const double adopted = input.adopted_evidence + std::log(kPriorNuisances);
+  std::vector<HypothesisProbability> in_place;
   for (HypothesisProbability& one : *hypotheses) {
+    for (const WeighedRefit& refit : input.in_place_of_adopted) {
+      if (one.kind != Kind::kEffect || refit.effect != one.names.front()) continue;
+      HypothesisProbability& alone = in_place.emplace_back(one);
+      alone.evidence = refit.evidence - effects - input.baseline.discretisation;
+      alone.is_refuted = !refit.predicts;
+    }
     one.evidence += adopted;
     if (one.kind == Kind::kNothing) {
       one.kind = Kind::kNuisance;
-      one.names = input.adopted;
       one.evidence += std::log(kPriorNothing / kPriorNuisances);
-    } else if (one.kind == Kind::kEffect) {
-      for (const WeighedRefit& refit : input.in_place_of_adopted)
-        if (refit.effect == one.names.front())
-          one.evidence =
-              LogSum(one.evidence, refit.evidence - effects - input.baseline.discretisation);
     }
+    one.names.insert(one.names.end(), input.adopted.begin(), input.adopted.end());
   }
+  hypotheses->insert(hypotheses->end(), in_place.begin(), in_place.end());
   hypotheses->emplace_back();  // nothing, and no nuisance
 }
 
@@ -129,45 +127,75 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   return adequacy;
 }
 
+// An effect with the evidence of everything else beside it.
+struct EffectWithFurther {
+  std::string effect;
+  double evidence = 0;  // of the effect against the model as it is
+  TestedSpace tested;
+  std::vector<NamedEvidence> further;
+
+  // The evidence of this effect together with a further one. Either of the two may be found first.
+  double With(const NamedEvidence& second) const {
+    return evidence + second.evidence - tested.space->discretisation + std::log(2.0);
+  }
+};
+
 // Two effects that may be missing together, with the space in which both are tested.
 struct Pair {
   HypothesisProbability hypothesis;
   TestedSpace tested;
 };
 
-// Each effect that was refitted, together with the best further effect beside it.
-std::vector<Pair> PairsOf(const DecisionInput& input,
+// Each effect that was refitted, and the most probable one, together with the best further effect
+// beside it. The second effect
+// is weighed to first order, which lets it replace the first one in part, even where the two are
+// one too many: where both were refitted, the smaller of the two estimates counts.
+std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
                           const std::vector<HypothesisProbability>& posterior) {
-  std::vector<Pair> pairs;
+  std::vector<EffectWithFurther> effects;
   for (const HypothesisProbability& first : posterior) {
-    const WeighedRefit* refit =
-        first.kind == Kind::kEffect ? FindRefit(input, first.names.front()) : nullptr;
-    if (refit == nullptr || !refit->predicts) continue;
-    const HypothesisSpace& space = refit->space;
-    const ProjectedHypotheses beside(space);
+    if (first.kind != Kind::kEffect || first.is_refuted) continue;
+    if (first.names.size() != 1 + input.adopted.size()) continue;  // in place of adopted nuisances
+    if (FindRefit(input, first.names.front()) == nullptr && &first != &posterior.front()) continue;
+    const TestedSpace tested = SpaceOf(input, first_order, first);
+    const ProjectedHypotheses beside(*tested.space, tested.columns);
+    const Eigen::VectorXd factors =
+        beside.LogBayesFactors(beside.Project(tested.space->model.toward()));
+    effects.push_back(
+        {first.names.front(), first.evidence, tested, SumVariants(*tested.space, factors)});
+  }
+  const auto is_refuted = [&](const std::string& effect) {
+    const WeighedRefit* refit = FindRefit(input, effect);
+    return refit != nullptr && !refit->predicts;
+  };
+  std::vector<Pair> pairs;
+  for (const EffectWithFurther& first : effects) {
+    const std::string& name = first.effect;
     const NamedEvidence* second = nullptr;
-    const std::vector<NamedEvidence> further =
-        SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward())));
-    for (const NamedEvidence& named : further)
-      if (named.kind == HypothesisKind::kEffect && named.name != refit->effect &&
+    for (const NamedEvidence& named : first.further)
+      if (named.kind == HypothesisKind::kEffect && named.name != name && !is_refuted(named.name) &&
           (second == nullptr || named.evidence > second->evidence))
         second = &named;
     if (second == nullptr) continue;
     Pair pair;
     pair.hypothesis.kind = Kind::kPair;
-    pair.hypothesis.names = {refit->effect, second->name};
-    // Either of the two may be found first.
-    pair.hypothesis.evidence =
-        first.evidence + second->evidence - space.discretisation + std::log(2.0);
-    pair.tested = {&space, space.hypotheses[second->best].columns};
-    const auto same = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& other) {
-      return other.hypothesis.names.front() == second->name &&
-             other.hypothesis.names.back() == refit->effect;
+    pair.hypothesis.names = {name, second->name};
+    pair.hypothesis.names.insert(pair.hypothesis.names.end(), input.adopted.begin(),
+                                 input.adopted.end());
+    pair.hypothesis.evidence = first.With(*second);
+    pair.tested = first.tested;
+    const std::vector<int>& columns = first.tested.space->hypotheses[second->best].columns;
+    pair.tested.columns.insert(pair.tested.columns.end(), columns.begin(), columns.end());
+    for (const EffectWithFurther& other : effects) {
+      if (other.effect != second->name) continue;
+      for (const NamedEvidence& named : other.further)
+        if (named.name == name)
+          pair.hypothesis.evidence = std::min(pair.hypothesis.evidence, other.With(named));
+    }
+    const bool is_known = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
+      return other.hypothesis.names[0] == second->name && other.hypothesis.names[1] == name;
     });
-    if (same == pairs.end())
-      pairs.push_back(pair);
-    else if (pair.hypothesis.evidence > same->hypothesis.evidence)
-      *same = pair;
+    if (!is_known) pairs.push_back(pair);
   }
   return pairs;
 }
@@ -199,7 +227,7 @@ Decision Decide(const DecisionInput& input) {
   Decision decision;
   DecisionRecord& record = decision.record;
   record.probabilities = PosteriorOf(input, first_order);
-  const std::vector<Pair> pairs = PairsOf(input, record.probabilities);
+  const std::vector<Pair> pairs = PairsOf(input, first_order, record.probabilities);
   for (const Pair& pair : pairs) record.probabilities.push_back(pair.hypothesis);
   SetPosterior(&record.probabilities);
   const HypothesisProbability& best = record.probabilities.front();
@@ -213,16 +241,25 @@ Decision Decide(const DecisionInput& input) {
 
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;
-  if (!record.adequacy.is_adequate && record.adequacy.left_share >= kToleratedModelError)
+  const auto is_nuisance = [&](const std::string& name) {
+    return std::any_of(record.probabilities.begin(), record.probabilities.end(),
+                       [&](const HypothesisProbability& one) {
+                         return one.kind == Kind::kNuisance &&
+                                std::count(one.names.begin(), one.names.end(), name) > 0;
+                       });
+  };
+  if (!record.adequacy.is_adequate && record.adequacy.left_share >= kToleratedModelError) {
     decision.verdict = Verdict::kNotInLibrary;
-  else if (naming.level == Naming::Level::kNothing)
+  } else if (naming.level == Naming::Level::kNothing) {
     decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;
-  else if (std::all_of(naming.kept.begin(), naming.kept.end(),
-                       [&](size_t k) { return record.probabilities[k].kind == Kind::kNuisance; }))
+  } else if (std::all_of(naming.names.begin(), naming.names.end(), is_nuisance)) {
     decision.verdict = Verdict::kNuisance;
-  else
-    decision.verdict =
-        naming.level == Naming::Level::kCommon ? Verdict::kMissing : Verdict::kAmbiguous;
+  } else if (naming.level == Naming::Level::kCommon) {
+    decision.verdict = Verdict::kMissing;
+    std::erase_if(decision.names, is_nuisance);
+  } else {
+    decision.verdict = Verdict::kAmbiguous;
+  }
   return decision;
 }
 

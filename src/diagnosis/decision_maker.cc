@@ -41,11 +41,6 @@ double EvidenceOfNaturalValue(const RankedEffect& effect) {
   return NaturalValueEvidence(mean, deviation, prior, card.natural_magnitude);
 }
 
-// Whether an effect lowers the error of the held-out frames; true where none are held out.
-bool Predicts(const ModelErrors& with, const ModelErrors& without) {
-  return !without.has_held_out || with.held_out_rms < without.held_out_rms;
-}
-
 }  // namespace
 
 double NaturalValueEvidence(const Eigen::Vector3d& mean, const Eigen::Vector3d& deviation,

@@ -8,6 +8,7 @@
 
 #include "calibration/calibration_fits.h"
 #include "diagnosis/decision_maker.h"
+#include "diagnosis/decision_rules.h"
 #include "diagnosis/effect_refit.h"
 #include "diagnosis/recording_power.h"
 #include "diagnosis/refits.h"
@@ -80,6 +81,29 @@ std::vector<std::string> EffectsOfInterest(const Decision& decision, const Decis
   return effects;
 }
 
+// The effects that the hypotheses of a statement contain, but that were not refitted.
+std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking& ranked) {
+  std::vector<size_t> effects;
+  for (const size_t k : NameFrom(decision.record.probabilities).kept)
+    for (const std::string& name : decision.record.probabilities[k].names)
+      for (size_t e = 0; e < ranked.effects.size(); ++e)
+        if (ranked.effects[e].scored.candidate.type == name && !ranked.effects[e].refitted)
+          effects.push_back(e);
+  return effects;
+}
+
+// Refits what the decision would state without a refit, and so on: only refits are believed.
+RefitNoise RefitWhatIsStated(const RefitContext& context, RefitNoise noise,
+                             const Diagnosis& diagnosis, RefittedRanking* ranked) {
+  for (;;) {
+    const Decision decision = Decide(MakeDecisionInput(context, *ranked, noise, diagnosis));
+    const int before = ranked->count;
+    RefitAll(context, WithoutRefit(decision, *ranked), ranked);
+    if (ranked->count == before) return noise;
+    noise = WeighRefits(context, ranked);
+  }
+}
+
 // Decides, and looks closer where that may change the decision: where the best effect leaves more
 // than noise, or room for a second one, at what it leaves along its own motion; where nuisances
 // explain the residual, at effects in their place.
@@ -127,7 +151,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   const BaselineModel model{problem,          fitted,       ranking.misfit,
                             setting.progress, setting.kept, ranking.noise};
   const RefitContext context{model, ranking};
-  RefittedRanking ranked = StartRefits(context, ranking.effects, options.refits);
+  RefittedRanking ranked = StartRefits(context, ranking.effects, diagnosis.errors, options.refits);
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
   diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
@@ -136,13 +160,14 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
                        &ranked);
   WeighRefits(context, &ranked);
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
-  const RefitNoise noise = WeighRefits(context, &ranked);
+  RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
+  diagnosis.nuisances = ranking.nuisances;
+  noise = RefitWhatIsStated(context, noise, diagnosis, &ranked);
 
   diagnosis.noise_level = noise.level;
   diagnosis.best_rms_over_sigma = noise.least_rms_over_sigma;
   diagnosis.ranking = ranked.effects;
-  diagnosis.nuisances = ranking.nuisances;
   DecideUpon(context, ranked, noise, options, &diagnosis);
   return diagnosis;
 }

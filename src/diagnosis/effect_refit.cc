@@ -280,6 +280,10 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
          !explains_excess;
 }
 
+bool Predicts(const ModelErrors& with, const ModelErrors& without) {
+  return !without.has_held_out || with.held_out_rms < without.held_out_rms;
+}
+
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
   return with.has_held_out &&
          with.without_nuisances > kThresholds.refit.held_out_growth * without.without_nuisances;

@@ -80,6 +80,10 @@ HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& e
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
                 double predicted);
 
+// Whether an effect lowers the error of the held-out frames, without the corrections of nuisances;
+// true where nothing is held out.
+bool Predicts(const ModelErrors& with, const ModelErrors& without);
+
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
 // the effect follows the fitted frames with wrong parameters.
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without);

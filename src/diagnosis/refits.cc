@@ -71,7 +71,7 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   ++ranked->count;
   EffectRefit& refit = ranked->refits[effect];
   refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
-  if (!refit.message.empty()) return;
+  if (!refit.message.empty() || !Predicts(refit.errors, ranked->errors)) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence > ranked->best_evidence) ranked->best_evidence = evidence;
 }
@@ -128,8 +128,9 @@ double RmsOverSigma(const FittedHypothesis& hypothesis) {
 }
 
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
-                            int wanted) {
+                            const ModelErrors& errors, int wanted) {
   RefittedRanking ranked;
+  ranked.errors = errors;
   ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
   ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;

@@ -19,13 +19,6 @@ namespace {
 // linear in the internal variables.
 constexpr double kDifference = 1e-6;
 
-// The error that is left in the forces of the skew part, relative to these forces. A larger value
-// saves solves; the sensitivities are then off by this share of what the skew part contributes.
-constexpr double kSkewTolerance = 1e-3;
-// The same for iterations with a matrix that stands in for the whole tangent, relative to the
-// right-hand side.
-constexpr double kTolerance = 1e-7;
-
 Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd columns) {
   for (Eigen::Index k = 0; k < columns.cols(); ++k) {
     columns.col(k).reshaped(3, node_weight.size()).array().rowwise() *=
@@ -55,7 +48,6 @@ struct TangentLinear::Implementation {
   // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
-  Eigen::MatrixXd second_previous_position;
   std::vector<Memory> inside;   // one per effect of the model
   std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
 
@@ -244,11 +236,10 @@ struct TangentLinear::Implementation {
     if (is_definite && !has_skew) return SolveFree(right);
     ClearFixed(&right);
     if (is_definite) {
-      Eigen::MatrixXd expected = Expected();
-      const Eigen::MatrixXd forces = skew * expected;
-      const Eigen::RowVectorXd wanted =
-          kSkewTolerance * forces.colwise().norm() + kTolerance * right.colwise().norm();
-      const auto solution = Iterate(wanted, right - forces,
+      // The contribution of the skew part changes little from one step to the next.
+      Eigen::MatrixXd expected = position;
+      if (previous_position.size() > 0) expected += position - previous_position;
+      const auto solution = Iterate(right, right - skew * expected,
                                     [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
                                       *residual = skew * (expected - step);
                                       expected.setZero();
@@ -258,28 +249,21 @@ struct TangentLinear::Implementation {
     BlockMatrix stand_in(model.body->pattern);
     equation.Tangent(at, /*convexify=*/true, &stand_in);
     if (!factor.Factorise(stand_in)) return std::nullopt;
-    return Iterate(kTolerance * right.colwise().norm(), right,
-                   [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
-                     *residual -= tangent * step;
-                     if (has_skew) *residual -= skew * step;
-                   });
+    return Iterate(right, right, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
+      *residual -= tangent * step;
+      if (has_skew) *residual -= skew * step;
+    });
   }
 
-  // The sensitivities at the end of the step, extrapolated from the steps before.
-  Eigen::MatrixXd Expected() const {
-    if (second_previous_position.size() > 0)
-      return 3 * (position - previous_position) + second_previous_position;
-    if (previous_position.size() > 0) return 2 * position - previous_position;
-    return position;
-  }
-
-  // Iterative refinement: adds solutions for the residual until the norm of each column is at most
-  // `wanted`. update(step, &residual) computes the residual after a step.
+  // Iterative refinement: adds solutions for the residual until it is small relative to the
+  // right-hand side. update(step, &residual) computes the residual after a step.
   template <typename Update>
-  std::optional<Eigen::MatrixXd> Iterate(const Eigen::RowVectorXd& wanted, Eigen::MatrixXd residual,
+  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd residual,
                                          const Update& update) {
     constexpr int kMaxIterations = 60;
-    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(residual.rows(), residual.cols());
+    constexpr double kTolerance = 1e-7;  // relative residual of each column
+    const Eigen::RowVectorXd wanted = kTolerance * right.colwise().norm();
+    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
     ClearFixed(&residual);
     double last = residual.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -341,7 +325,6 @@ struct TangentLinear::Implementation {
     const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
                                                 : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
     AdvanceMemories(equation, end, moved, speed);
-    second_previous_position = std::move(previous_position);
     previous_position = std::move(position);
     previous_velocity = std::move(velocity);
     previous_acceleration = std::move(acceleration);

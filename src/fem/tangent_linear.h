@@ -14,7 +14,7 @@
 // effects of a catalogue can be tried along one trajectory.
 //
 // If a tangent is not symmetric (effect.h), its symmetric part is factorised and the skew-symmetric
-// part is treated by iterative refinement until a thousandth of its contribution is left.
+// part is treated by iterative refinement until its residual is negligible.
 #ifndef LACUNA_FEM_TANGENT_LINEAR_H_
 #define LACUNA_FEM_TANGENT_LINEAR_H_
 

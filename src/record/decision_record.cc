@@ -1,6 +1,8 @@
 #include "record/decision_record.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -32,10 +34,14 @@ Kind KindFromName(const std::string& name) {
 }  // namespace
 
 double DecisionRecord::FamilyProbability(EffectFamily family) const {
+  std::set<std::string> members;
+  for (const HypothesisProbability& one : probabilities)
+    if (one.kind == Kind::kEffect && one.family == family) members.insert(one.names.front());
   double sum = 0;
-  for (const HypothesisProbability& hypothesis : probabilities)
-    if (hypothesis.kind == Kind::kEffect && hypothesis.family == family)
-      sum += hypothesis.probability;
+  for (const HypothesisProbability& one : probabilities)
+    if (std::any_of(one.names.begin(), one.names.end(),
+                    [&](const std::string& name) { return members.contains(name); }))
+      sum += one.probability;
   return sum;
 }
 

@@ -66,7 +66,7 @@ struct DecisionRecord {
   std::vector<RecordedSeparation> separations;
   double chance = 0;  // the evidence that noise gives to the best effect in 1 of 20 recordings
 
-  // The summed probability of a family.
+  // The probability that a member of the family is missing, alone or in a pair.
   double FamilyProbability(EffectFamily family) const;
 };
 

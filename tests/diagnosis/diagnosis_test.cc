@@ -71,8 +71,7 @@ TEST(Diagnosis, ShortensATimeStepWhoseErrorCouldLookLikeAnEffect) {
       if (nuisance.candidate.card.shrinks_with_time_step) return nuisance.uncertain_evidence;
     return std::nan("");
   };
-  EXPECT_GT(DiscretisationUncertainty(uncertain_evidence(as_given)),
-            kThresholds.naming.least_evidence);
+  EXPECT_GT(uncertain_evidence(as_given), kThresholds.refit.uncertain_step_evidence);
   EXPECT_LT(uncertain_evidence(shortened), 0.5 * uncertain_evidence(as_given));
 }
 
