@@ -176,7 +176,8 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
       if (named.kind == HypothesisKind::kEffect && named.name != name && !is_refuted(named.name) &&
           (second == nullptr || named.evidence > second->evidence))
         second = &named;
-    if (second == nullptr) continue;
+    // The error of the first effect's model may give so much evidence to any other effect.
+    if (second == nullptr || second->evidence < kToleratedModelError * first.evidence) continue;
     Pair pair;
     pair.hypothesis.kind = Kind::kPair;
     pair.hypothesis.names = {name, second->name};

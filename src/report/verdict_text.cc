@@ -128,7 +128,8 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
   const std::string beside =
       adequacy.beside.empty() ? "The model as it is" : "The model with " + NamesOf(adequacy.beside);
   if (adequacy.is_adequate)
-    return fmt::format("{} leaves no more than noise does (p = {:.2f}).", beside, adequacy.p);
+    return fmt::format("{} leaves nothing that is more probable than noise (p = {:.2g}).", beside,
+                       adequacy.p);
   const std::string share =
       std::isfinite(adequacy.left_share)
           ? fmt::format(", {:.1f} % of what it explains", 100 * adequacy.left_share)
