@@ -17,7 +17,7 @@ constexpr size_t kFewestFrames = 8;
 // Noise with a larger lag-one correlation cannot be distinguished from motion.
 constexpr double kLargestCorrelation = 0.9;
 constexpr double kCorrelationStep = 0.05;
-constexpr int kCorrelationSteps = 18;  // up to kLargestCorrelation
+constexpr int kCorrelationSteps = static_cast<int>(kLargestCorrelation / kCorrelationStep + 0.5);
 
 // Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
 // series was not observed become 0.
