@@ -337,7 +337,7 @@ Repeatability CompareRepeats(const Eigen::VectorXd& first_times, const Eigen::Ma
       const Repeatability tried = compare_at(shift);
       if (2 * tried.frames >= start.frames && tried.distance < best.distance) best = tried;
     }
-    reach /= kSteps / 2;
+    reach /= 0.5 * kSteps;
   }
   return std::isnan(best.distance) ? Repeatability{} : best;
 }

@@ -17,6 +17,7 @@ constexpr size_t kFewestFrames = 8;
 // Noise with a larger lag-one correlation cannot be distinguished from motion.
 constexpr double kLargestCorrelation = 0.9;
 constexpr double kCorrelationStep = 0.05;
+constexpr int kCorrelationSteps = static_cast<int>(kLargestCorrelation / kCorrelationStep + 0.5);
 
 // Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
 // series was not observed become 0.
@@ -100,7 +101,8 @@ double DeviationAboutTrend(const Eigen::VectorXd& times, const Eigen::MatrixXd& 
   const double series = static_cast<double>(rows.rows());
   const double freedom = series * static_cast<double>(count - 2);
   double most = -std::numeric_limits<double>::infinity(), deviation = 0;
-  for (double correlation = 0; correlation < kLargestCorrelation; correlation += kCorrelationStep) {
+  double correlation = 0;
+  for (int step = 0; step < kCorrelationSteps; ++step, correlation += kCorrelationStep) {
     Eigen::MatrixXd white = seen;
     double log_determinant = 0;
     for (Eigen::Index f = 1; f < count; ++f) {

@@ -126,8 +126,10 @@ double ChiSquareTail(double statistic, int degrees_of_freedom) {
   const double half = 0.5 * statistic;
   const bool odd = degrees_of_freedom % 2 == 1;
   double tail = odd ? std::erfc(std::sqrt(half)) : 0;
-  for (double power = odd ? 0.5 : 0; power < 0.5 * degrees_of_freedom - 0.25; power += 1)
+  for (int k = 0; k < degrees_of_freedom / 2; ++k) {
+    const double power = odd ? k + 0.5 : k;
     tail += std::exp(power * std::log(half) - half - std::lgamma(power + 1));
+  }
   return std::min(1.0, tail);
 }
 

@@ -57,9 +57,9 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
 
 }  // namespace
 
-FitWithTimeStep FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
-                                        Progress* progress) {
-  FitWithTimeStep fit;
+AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
+                                   Progress* progress) {
+  AdaptedFit fit;
   Calibration beginning;
   if (study->chooses_time_step) {
     // A first estimate of the step, from the short horizon.

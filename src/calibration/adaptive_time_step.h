@@ -9,7 +9,7 @@
 
 namespace lacuna {
 
-struct FitWithTimeStep {
+struct AdaptedFit {
   Calibration calibration;
   // The rms change of the fitted frames, σ, when the step is halved. It is three quarters of the
   // step's error for a second-order scheme and half of it for a first-order scheme.
@@ -19,8 +19,7 @@ struct FitWithTimeStep {
 // FitFromStart (calibration_fits.h). Where the study does not give a step, it is shortened until
 // step_error is small against the noise or the model's residual, and the fit is continued
 // each time. `study` receives the step that was chosen. Throws Interrupted.
-FitWithTimeStep FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
-                                        Progress* progress);
+AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study, Progress* progress);
 
 }  // namespace lacuna
 

@@ -102,7 +102,7 @@ class Fitter {
     return Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
-          const Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
+          Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
           progress_.Report(++evaluations_,
                            prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
           return prediction;

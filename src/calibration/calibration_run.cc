@@ -30,7 +30,7 @@ struct CalibrationStage {
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
                             Progress* progress) {
-  const FitWithTimeStep fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(reference.mesh, &study, progress);
   const Calibration& calibration = fit.calibration;
   const CalibrationProblem problem(study, reference.mesh);
   CalibrationStage stage;

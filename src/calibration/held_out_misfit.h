@@ -1,5 +1,5 @@
-// The distance of a fitted model from each of its recordings, whether the recording was fitted or
-// not.
+// The misfit of a fitted model in each of its recordings: in the frames that were fitted, and in
+// those that were held out.
 #ifndef LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_
 #define LACUNA_CALIBRATION_HELD_OUT_MISFIT_H_
 

@@ -9,6 +9,7 @@
 
 #include "core/expression.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 
 namespace lacuna {
 
@@ -75,6 +76,12 @@ std::vector<std::string> ImplausibleParameters(const EffectList& effects) {
     }
   }
   return warnings;
+}
+
+std::string GravityWarning(const RecordedObject& object, const EffectList& effects) {
+  if (!object.gravity || GravityOf(effects)) return "";
+  return "the object was recorded under gravity, but the model has none; this is valid only if the "
+         "reference shape was measured under the same gravity";
 }
 
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name) {

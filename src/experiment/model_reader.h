@@ -11,6 +11,7 @@
 #include "fem/model.h"
 #include "fem/step_equation.h"
 #include "meshing/tetrahedralize.h"
+#include "scan/recorded_object.h"
 #include "scan/region.h"
 
 namespace lacuna {
@@ -37,6 +38,10 @@ std::vector<OwnLaw> ReadCandidates(const Config& config, const Effect* material)
 
 // One warning for each value far outside the plausible range on its effect's card.
 std::vector<std::string> ImplausibleParameters(const EffectList& effects);
+
+// A warning where the object was recorded under gravity, of which the model has none; empty
+// otherwise. `gravity` in recording.yaml does not enter the model.
+std::string GravityWarning(const RecordedObject& object, const EffectList& effects);
 
 // Reads `scheme: quasi_static | implicit_euler | bdf2 | two_step`.
 TimeScheme ReadTimeScheme(const Config& config, const std::string& default_name);

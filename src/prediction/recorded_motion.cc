@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/gravity.h"
+#include "experiment/model_reader.h"
 #include "prediction/recording_noise.h"
 
 namespace lacuna {
@@ -90,14 +90,12 @@ std::string SlownessWarning(const PredictedRecording& item, const PredictionStud
       item.name, steps, 1e3 * study.time_step, item.frames.size());
 }
 
-// `gravity` in recording.yaml says how the object was recorded, and does not enter the model.
+// The model of a recording has the effects of the study and its own.
 std::string GravityWarning(const PredictedRecording& item, const PredictionStudy& study) {
-  if (!item.recording.object.gravity || GravityOf(study.effects) || GravityOf(item.effects))
-    return "";
-  return fmt::format(
-      "{}: was recorded under gravity, but the model has none; this is valid only if the reference "
-      "shape was measured under the same gravity",
-      item.name);
+  EffectList effects = study.effects;
+  effects.insert(effects.end(), item.effects.begin(), item.effects.end());
+  const std::string warning = GravityWarning(item.recording.object, effects);
+  return warning.empty() ? "" : item.name + ": " + warning;
 }
 
 std::string UnseenWarning(const PredictedRecording& item) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "effects/gravity.h"
 #include "experiment/scan_settings.h"
 
 namespace lacuna {
@@ -195,11 +194,9 @@ ReconstructionStudy ReadReconstruction(const Config& config, const Recording& re
   CheckMeasuredForces(config, &study);
   for (const std::string& warning : ImplausibleParameters(study.effects))
     study.recording.warnings.push_back(warning);
-  if (study.recording.object.gravity && !GravityOf(study.effects)) {
-    study.recording.warnings.push_back(
-        "the recording was made under gravity, but the model has none; this is valid if the "
-        "reference shape was scanned under the same gravity");
-  }
+  if (const std::string warning = GravityWarning(study.recording.object, study.effects);
+      !warning.empty())
+    study.recording.warnings.push_back(warning);
   study.configuration = config.Resolved();
   return study;
 }

@@ -15,7 +15,7 @@ class AdaptiveTimeStepOfABar : public testing::Test {
  protected:
   AdaptiveTimeStepOfABar() { WriteBarRecording(folder_.Path(), FilmHeldBar(truth_)); }
 
-  FitWithTimeStep Fit(PredictionStudy* study) const {
+  AdaptedFit Fit(PredictionStudy* study) const {
     ProgressOptions silent;
     silent.style = ProgressStyle::kSilent;
     Progress progress(silent);
@@ -30,7 +30,7 @@ TEST_F(AdaptiveTimeStepOfABar, ShortensTheStepUntilItHardlyMatters) {
   PredictionStudy study = ReadBarStudy(folder_.Path(), kWithoutStep);
   EXPECT_TRUE(study.chooses_time_step);
   EXPECT_EQ(study.time_step, 0.005);  // half the distance of the frames
-  const FitWithTimeStep fit = Fit(&study);
+  const AdaptedFit fit = Fit(&study);
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_LT(study.time_step, 0.004);
   EXPECT_GT(study.time_step, 0.0005);
@@ -39,7 +39,7 @@ TEST_F(AdaptiveTimeStepOfABar, ShortensTheStepUntilItHardlyMatters) {
 
   PredictionStudy coarse =
       ReadBarStudy(folder_.Path(), {{"motion: {time_step: 1.5 ms}", "motion: {time_step: 5 ms}"}});
-  const FitWithTimeStep with_coarse = Fit(&coarse);
+  const AdaptedFit with_coarse = Fit(&coarse);
   EXPECT_EQ(coarse.time_step, 0.005);  // as it was told
   EXPECT_EQ(with_coarse.step_error, 0);
   EXPECT_LT(fit.calibration.rms, with_coarse.calibration.rms);
@@ -55,7 +55,7 @@ TEST_F(AdaptiveTimeStepOfABar, DoesNotResolveWhatTheModelLacksAnyway) {
         "fit: {parameters: []}"},
        {"noise: 0.05 mm", "noise: 0.0005 mm"},
        {"young_modulus: 0.15 MPa", "young_modulus: 0.05 MPa"}});  // half of the truth's
-  const FitWithTimeStep fit = Fit(&study);
+  const AdaptedFit fit = Fit(&study);
   EXPECT_GT(fit.calibration.rms, 100);
   EXPECT_GT(fit.step_error, 1);
   EXPECT_LT(fit.step_error, 0.05 * fit.calibration.rms);

@@ -236,7 +236,6 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   EXPECT_LT(together[0].held_out.rms, 3e-4);
 }
 
-// Of a recording that is not fitted, the coordinate system may have been set up anew.
 // On two cores, with an effect that both recordings share and that remembers.
 TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
   const TemporaryFolder folder;
@@ -277,6 +276,7 @@ TEST(CalibrationProblem, PredictsRecordingsSideBySideAsOneAfterTheOther) {
   for (size_t r = 0; r < 2; ++r) EXPECT_EQ(misfits[0][r].in_fit.rms, misfits[1][r].in_fit.rms);
 }
 
+// Of a recording that is not fitted, the coordinate system may have been set up anew.
 TEST(CalibrationProblem, KnowsTheRegistrationOfARecording) {
   const TemporaryFolder folder;
   const Eigen::Matrix3d turn =

@@ -9,6 +9,7 @@ namespace lacuna {
 namespace {
 
 TEST(Interrupt, SignalIsRememberedUntilASafePoint) {
+  signal(SIGINT, SIG_DFL);  // tests that run in the background of a script inherit SIG_IGN
   InstallInterruptHandler();
   EXPECT_FALSE(InterruptRequested());
   EXPECT_NO_THROW(ThrowIfInterrupted());

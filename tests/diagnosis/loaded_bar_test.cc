@@ -9,8 +9,8 @@
 #include <random>
 #include <sstream>
 
-#include "calibration/calibration_fits.h"
 #include "calibration/adaptive_time_step.h"
+#include "calibration/calibration_fits.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
@@ -133,7 +133,7 @@ place_deviation: 0.1 mm
 TEST_F(LoadedBar, IsFittedInAStepAFrame) {
   PredictionStudy study = Record({});
   EXPECT_EQ(study.time_step, 1);
-  const FitWithTimeStep fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_EQ(study.time_step, 1);  // nothing depends on rates
   EXPECT_LT(fit.step_error, 0.01);
@@ -181,7 +181,7 @@ TEST_F(LoadedBar, TellsThatItCreeps) {
       Record({MakeEffect("viscoelastic_branch",
                          {{"modulus", 4e4}, {"relaxation_time", 2.5}, {"poisson_ratio", kRatio}})});
   const TetMesh mesh = BarMesh({7, 1, 1}, 2);
-  const FitWithTimeStep fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
   DiagnosisOptions options;
