@@ -161,6 +161,18 @@ std::string FindCircle(const std::string& module, const std::map<std::string, st
   return "";
 }
 
+// Without what stands in anonymous namespaces and belongs to its file alone. (A regular expression
+// of the standard library that matches a long text overflows the stack.)
+std::string WithoutAnonymousNamespaces(std::string text) {
+  const std::string open = "\nnamespace {\n", close = "\n}  // namespace\n";
+  for (size_t begin = text.find(open); begin != std::string::npos; begin = text.find(open, begin)) {
+    const size_t end = text.find(close, begin);
+    if (end == std::string::npos) break;
+    text.erase(begin, end + close.size() - 1 - begin);
+  }
+  return text;
+}
+
 // Classes and structs that headers define at the level of the namespace, with the units that do.
 std::map<std::string, std::vector<std::string>> DefinedNames(const Units& units) {
   static const std::regex definition(
@@ -168,9 +180,7 @@ std::map<std::string, std::vector<std::string>> DefinedNames(const Units& units)
   std::map<std::string, std::vector<std::string>> names;
   for (const auto& [module, of_module] : units)
     for (const auto& [unit, text] : of_module) {
-      // What stands in an anonymous namespace belongs to its file alone.
-      const std::regex anonymous(R"re(\nnamespace \{\n[^]*?\n\}  // namespace\n)re");
-      const std::string open = std::regex_replace(text, anonymous, "\n");
+      const std::string open = WithoutAnonymousNamespaces(text);
       for (std::sregex_iterator match(open.begin(), open.end(), definition), end; match != end;
            ++match)
         names[(*match)[1]].push_back(module + "/" + unit);

@@ -221,7 +221,10 @@ ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);
   ExtendedFit fit{calibration, {}};
-  if (memory.values == calibration.parameters) fit.misfit = std::move(memory.latest);
+  // Without a prediction of all frames (scans, fits that were kept) `values` is empty.
+  if (memory.values.size() == calibration.parameters.size() &&
+      memory.values == calibration.parameters)
+    fit.misfit = std::move(memory.latest);
   return fit;
 }
 
