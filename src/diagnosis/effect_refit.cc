@@ -248,23 +248,23 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
   return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
 }
 
-ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
+Calibration FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
                         RefitFrom from) {
   const Eigen::Index own = extended.OwnCount();
   Eigen::VectorXd start;
   if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
   if (start.size() == 0) start = extended.Start();
-  ExtendedFit fit = extended.CalibrateFrom(start, stage);
+  Calibration calibration = extended.CalibrateFrom(start, stage);
   const bool converged =
-      !fit.calibration.estimates.empty() && fit.calibration.rms <= kThresholds.refit.converged_rms;
+      !calibration.estimates.empty() && calibration.rms <= kThresholds.refit.converged_rms;
   // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
   // with the effect held at a size has given another one already.
-  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return fit;
+  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return calibration;
   const Calibration afresh = extended.CalibrateAfresh();
-  if (afresh.parameters.size() != own) return fit;
+  if (afresh.parameters.size() != own) return calibration;
   start.head(own) = afresh.parameters;
-  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there");
-  return IsBetter(other.calibration, fit.calibration) ? other : fit;
+  Calibration other = extended.CalibrateFrom(start, stage + " from there");
+  return IsBetter(other, calibration) ? other : calibration;
 }
 
 }  // namespace
@@ -296,11 +296,9 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
   EffectRefit refit;
-  ExtendedFit fit =
+  refit.calibration =
       FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
                   effect != nullptr && is_far_off, from);
-  refit.calibration = std::move(fit.calibration);
-  const LinearisedMisfit* known = fit.misfit.usable ? &fit.misfit : nullptr;
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
@@ -308,6 +306,12 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
         refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
+    // With markers, one prediction serves both. It does not continue those of the fit, so that a fit
+    // that was kept leads to the same bits.
+    LinearisedMisfit own_misfit;
+    if (!with.HasScans())
+      own_misfit = with.Linearise(refit.calibration.parameters, true, {}, nullptr, &misfit);
+    const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
     refit.hypothesis =
         HypothesisAt(with, refit.calibration.parameters, adopted, misfit, nullptr, known);
     refit.errors = ErrorsOf(with, refit.calibration.parameters, known);

@@ -153,7 +153,7 @@ Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) cons
     const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
     Eigen::VectorXd at = start.size() > 0 ? start : part_way;
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
-    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true).calibration;
+    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true);
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
     start = fitted.parameters;
@@ -201,7 +201,7 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
   return calibration;
 }
 
-ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                                            bool holds_effect) const {
   const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
   Memory memory;
@@ -220,12 +220,7 @@ ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
                       .near_rms = kInfinity});
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);
-  ExtendedFit fit{calibration, {}};
-  // Without a prediction of all frames (scans, fits that were kept) `values` is empty.
-  if (memory.values.size() == calibration.parameters.size() &&
-      memory.values == calibration.parameters)
-    fit.misfit = std::move(memory.latest);
-  return fit;
+  return calibration;
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
@@ -237,10 +232,9 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
                                     Memory* memory) const {
   Prediction prediction;
   if (with_jacobian && !with_.HasScans()) {
-    // All frames, so that the model at the solution need not be predicted again.
+    // All frames, so that the next prediction can start from this one.
     memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr,
                                      memory->latest.usable ? &memory->latest : &baseline_.misfit);
-    memory->values = at;
     prediction = FittedPart(memory->latest);
   } else {
     memory->of_problem.correspondences.clear();  // each prediction finds its own

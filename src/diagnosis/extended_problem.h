@@ -31,13 +31,6 @@ struct NamedEstimate {
   ParameterEstimate estimate;
 };
 
-struct ExtendedFit {
-  Calibration calibration;
-  // At the solution, with its Jacobian, where the fit has predicted all frames there: not usable
-  // for scans and for fits that were kept.
-  LinearisedMisfit misfit;
-};
-
 // The baseline model with an effect and the adopted nuisances. The order of its parameters is:
 // those of the baseline study, those of the effect, the nuisance parameters of the recordings, and
 // the amounts of the adopted nuisances, which change the residual by the same columns as at the
@@ -70,7 +63,7 @@ class ExtendedProblem {
 
   // Fits all parameters. `holds_effect`: the effect stays near its start, by a narrow prior. Throws
   // Interrupted.
-  ExtendedFit CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+  Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                             bool holds_effect = false) const;
   // Fits the model with the effect, but without adopted nuisances, from the study's own start.
   Calibration CalibrateAfresh() const;
@@ -88,7 +81,6 @@ class ExtendedProblem {
   struct Memory {
     CalibrationProblem::FitMemory of_problem;
     LinearisedMisfit latest;  // the latest prediction with a Jacobian, of recordings with markers
-    Eigen::VectorXd values;   // where that was
   };
   Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
