@@ -109,7 +109,7 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
   return {&input.baseline, {}};
 }
 
-// `removed`: the misfit, σ², that the hypothesis removes.
+// `removed`: the misfit, σ², that the hypothesis and the effects added before have removed.
 RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
                           std::vector<std::string> beside) {
   RecordedAdequacy adequacy;
@@ -124,6 +124,7 @@ RecordedAdequacy RecordOf(const AdequacyTest& test, double removed,
   adequacy.rms_over_sigma = std::sqrt(std::max(0.0, test.found.variance));
   adequacy.left_share = removed > 0 ? std::max(0.0, test.found.left) / removed
                                     : std::numeric_limits<double>::infinity();
+  adequacy.is_tolerated = adequacy.left_share < kToleratedModelError;
   return adequacy;
 }
 
@@ -147,9 +148,9 @@ struct Pair {
 };
 
 // Each effect that was refitted, and the most probable one, together with the best further effect
-// beside it. The second effect
-// is weighed to first order, which lets it replace the first one in part, even where the two are
-// one too many: where both were refitted, the smaller of the two estimates counts.
+// beside it. The second effect is weighed to first order, which lets it replace the first one in
+// part, even where the two are one too many: where both were refitted, the smaller of the two
+// estimates counts.
 std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
                           const std::vector<HypothesisProbability>& posterior) {
   std::vector<EffectWithFurther> effects;
@@ -237,7 +238,7 @@ Decision Decide(const DecisionInput& input) {
     if (pair.hypothesis.names == best.names) tested = pair.tested;
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  record.adequacy = RecordOf(test, 2 * best.evidence, best.names);
+  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, best.names);
   record.chance = test.chance;
 
   const Naming naming = NameFrom(record.probabilities);
@@ -249,7 +250,7 @@ Decision Decide(const DecisionInput& input) {
                                 std::count(one.names.begin(), one.names.end(), name) > 0;
                        });
   };
-  if (!record.adequacy.is_adequate && record.adequacy.left_share >= kToleratedModelError) {
+  if (!record.adequacy.is_adequate && !record.adequacy.is_tolerated) {
     decision.verdict = Verdict::kNotInLibrary;
   } else if (naming.level == Naming::Level::kNothing) {
     decision.verdict = input.is_anything_detectable ? Verdict::kAdequate : Verdict::kNoPower;

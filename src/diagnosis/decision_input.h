@@ -43,6 +43,8 @@ struct DecisionInput {
   // A value that nature fixes, such as the acceleration of gravity: the logarithm of the Bayes
   // factor between a prior half of which is concentrated there and the broad prior.
   std::map<std::string, double> natural_value;
+  // The squared misfit, σ², that effects of the model have removed, found by earlier diagnoses.
+  double explained_misfit = 0;
   bool noise_is_known = false;         // the standard deviation of the noise was given
   bool is_anything_detectable = true;  // some effect of plausible size would be visible
   uint64_t seed = 1;

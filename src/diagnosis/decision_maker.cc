@@ -93,6 +93,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
       if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
         input.adopted_evidence += std::max(0.0, nuisance.evidence);
   }
+  input.explained_misfit = context.model.problem.study().explained_misfit;
   input.noise_is_known = context.model.problem.LeastNoiseVariance() == 1;
   input.is_anything_detectable = IsAnythingDetectable(ranked.effects);
   return input;

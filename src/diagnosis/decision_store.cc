@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
@@ -113,6 +113,7 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
                     {"in_place_of_adopted", in_place},
                     {"families", families},
                     {"natural_value", input.natural_value},
+                    {"explained_misfit", input.explained_misfit},
                     {"noise_is_known", input.noise_is_known},
                     {"is_anything_detectable", input.is_anything_detectable},
                     {"seed", input.seed}};
@@ -145,6 +146,7 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     for (const auto& [effect, family] : value.at("families").items())
       input.families[effect] = FamilyFromName(family);
     input.natural_value = value.at("natural_value").get<std::map<std::string, double>>();
+    input.explained_misfit = value.at("explained_misfit");
     input.noise_is_known = value.at("noise_is_known");
     input.is_anything_detectable = value.at("is_anything_detectable");
     input.seed = value.at("seed");

@@ -138,6 +138,7 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
     if (candidate.effect == nullptr) throw InputError(other);
     if (AmountsOf(candidate).size() != effect.sizes.size()) throw InputError(other);
     Score& score = scored.score;
+    score.evidence = effect.HasUsableRefit() ? effect.refit->evidence : effect.first_order.evidence;
     score.size.setOnes(static_cast<Eigen::Index>(effect.sizes.size()));  // of a pilot
     score.detectable = score.size;
     for (size_t k = 0; k < effect.sizes.size(); ++k) {

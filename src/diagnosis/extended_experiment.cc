@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/atomic_file.h"
@@ -65,6 +66,9 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
     if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
   if (!study.candidates.empty())
     text += fmt::format("candidates: [{}]\n", fmt::join(candidates, ", "));
+  const double explained =
+      fitted.study.explained_misfit + 2 * std::max(0.0, effect.score.evidence);
+  if (explained > 0) text += fmt::format("explained_misfit: {:.6g}\n", explained);
   text += "fit:\n  parameters:\n";
   for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);
   const std::filesystem::path file = parent / (name + ".yaml");

@@ -91,6 +91,9 @@ struct PredictionStudy {
   bool noise_is_estimated = false;  // whether `noise` is an estimate
   // m, σ of a marker's place on the object, an error that is the same in all frames.
   double place_deviation = 0.001;
+  // The squared misfit, σ², that effects have removed which a diagnosis has added to the model. The
+  // next diagnosis judges what the model leaves by it.
+  double explained_misfit = 0;
   ScanSettings scan;
   // The patches of the surface in which scans are averaged; empty: chosen on the mesh. They are
   // given where predictions with different meshes are compared.

@@ -139,6 +139,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
+  study.explained_misfit = config.Number("explained_misfit", kNotNegative, study.explained_misfit);
   study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings")) {
     PredictedRecording recording =

@@ -77,7 +77,8 @@ json DecisionToJson(const DecisionRecord& decision) {
             {"further", adequacy.further},
             {"further_evidence", NumberOrNull(adequacy.further_evidence)},
             {"rms_over_sigma", adequacy.rms_over_sigma},
-            {"left_share", NumberOrNull(adequacy.left_share)}}},
+            {"left_share", NumberOrNull(adequacy.left_share)},
+            {"is_tolerated", adequacy.is_tolerated}}},
           {"power", power},
           {"separations", separations},
           {"chance", NumberOrNull(decision.chance)}};
@@ -111,7 +112,8 @@ DecisionRecord DecisionFromJson(const json& value) {
                        adequacy.at("further"),
                        NumberOr(adequacy.at("further_evidence")),
                        adequacy.at("rms_over_sigma"),
-                       NumberOr(adequacy.at("left_share"))};
+                       NumberOr(adequacy.at("left_share")),
+                       adequacy.at("is_tolerated")};
   decision.chance = NumberOr(value.at("chance"));
   return decision;
 }

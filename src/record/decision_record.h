@@ -35,8 +35,10 @@ struct RecordedAdequacy {
   std::string further;          // the best further effect or nuisance beside it
   double further_evidence = 0;  // its log Bayes factor, with the prior among its rivals
   double rms_over_sigma = 0;    // of the whitened residual of all frames
-  // What could still be removed from the misfit, as a share of what the hypothesis has removed.
+  // What could still be removed from the misfit, as a share of what the hypothesis and the effects
+  // that were added before have removed; infinite where there is neither.
   double left_share = 0;
+  bool is_tolerated = false;  // left_share is within the error of any model
 };
 
 // What these recordings would have said, had this hypothesis been true at the size that was found:

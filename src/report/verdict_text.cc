@@ -130,9 +130,14 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
   if (adequacy.is_adequate)
     return fmt::format("{} leaves nothing that is more probable than noise (p = {:.2g}).", beside,
                        adequacy.p);
+  if (adequacy.is_tolerated)
+    return fmt::format(
+        "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.1f} % of "
+        "the squared misfit that was explained: no more than the error of any model.",
+        beside, adequacy.p, adequacy.rms_over_sigma, 100 * adequacy.left_share);
   const std::string share =
       std::isfinite(adequacy.left_share)
-          ? fmt::format(", {:.1f} % of what it explains", 100 * adequacy.left_share)
+          ? fmt::format(", {:.1f} % of what was explained", 100 * adequacy.left_share)
           : "";
   return fmt::format(
       "Something unknown is left: {} leaves more than noise does (p = {:.3f}, {:.2f} σ over all "

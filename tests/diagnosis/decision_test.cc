@@ -131,12 +131,16 @@ TEST(Decide, NamesTwoEffectsThatAreBothMissing) {
 // An effect that explains a part of an unknown force is not named as what is missing.
 TEST(Decide, SaysThatSomethingUnknownIsLeft) {
   const SyntheticSpace synthetic;
-  const Decision decision =
-      Decide(InputOf(synthetic, SyntheticSpace::Noise(14) - 8 * synthetic.Of("fibres") +
-                                    4 * synthetic.unknown.rowwise().sum()));
+  DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(14) - 8 * synthetic.Of("fibres") +
+                                               4 * synthetic.unknown.rowwise().sum());
+  const Decision decision = Decide(input);
   EXPECT_EQ(decision.verdict, Verdict::kNotInLibrary);
   EXPECT_THAT(decision.names, ElementsAre("fibres"));
   EXPECT_FALSE(decision.record.adequacy.is_adequate);
+  // It is no more than the error of a model whose effects have explained a thousand times as much.
+  input.explained_misfit = 1e5;
+  EXPECT_EQ(Decide(input).verdict, Verdict::kMissing);
+  EXPECT_TRUE(Decide(input).record.adequacy.is_tolerated);
 }
 
 // A refit replaces the first-order evidence, and its own residual is tested.

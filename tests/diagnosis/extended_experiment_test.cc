@@ -52,6 +52,8 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
     if (candidate.type == "mass_damping") scored.candidate = candidate;
   ASSERT_NE(scored.candidate.effect, nullptr);
   scored.score.size = Eigen::VectorXd::Constant(1, 2.5);
+  scored.score.evidence = 40;
+  fitted.study.explained_misfit = 20;
 
   const std::filesystem::path file = WriteExtendedExperiment(fitted, run, scored);
   EXPECT_EQ(file.filename(), "bar+mass_damping.yaml");
@@ -72,6 +74,7 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(alpha.prior_deviation, expected.prior_deviation);
   EXPECT_EQ(alpha.max, expected.max);
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
+  EXPECT_EQ(extended.explained_misfit, 100);
 }
 
 // Mass damping as one of two laws of the user: it has the same score as that of the catalogue, and

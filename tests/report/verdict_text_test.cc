@@ -72,7 +72,12 @@ TEST(VerdictText, StatesProbabilitiesOfFamiliesAndMembers) {
   record.decision.adequacy.p = 0.001;
   record.decision.adequacy.left_share = 0.25;
   EXPECT_THAT(ExplainVerdict(record), HasSubstr("Something unknown is left"));
-  EXPECT_THAT(ExplainVerdict(record), HasSubstr("25.0 % of what it explains"));
+  EXPECT_THAT(ExplainVerdict(record), HasSubstr("25.0 % of what was explained"));
+  record.decision.adequacy.left_share = 0.004;
+  record.decision.adequacy.is_tolerated = true;
+  EXPECT_THAT(ExplainVerdict(record),
+              HasSubstr("0.4 % of the squared misfit that was explained: no more than the error of "
+                        "any model"));
 }
 
 TEST(VerdictText, SaysThatTheResidualIsUnexplained) {
