@@ -9,6 +9,8 @@
 
 #include "registration/gaussian_sums.h"
 
+// Each instruction set includes this file once, in a file of its own.
+// NOLINTBEGIN(misc-definitions-in-headers)
 namespace lacuna {
 namespace {
 
@@ -175,3 +177,4 @@ void Project(const LaneRow* values, const TripleBlock& force, int rank, TripleBl
 
 }  // namespace
 }  // namespace lacuna
+// NOLINTEND(misc-definitions-in-headers)

@@ -83,14 +83,15 @@ TEST(ReducedResponse, AgreesWithTheTangentLinearModel) {
   Eigen::MatrixXd held = history(kStart);
   held(1, 1) = 1;
   double difference[2] = {0, 0}, size[2] = {0, 0};
-  response.Respond(held, history, bar.times,
-                   [&](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
-                     const Eigen::MatrixXd moved = response.basis() * q;
-                     for (int k = 0; k < 2; ++k) {
-                       difference[k] += (moved - exact[index]).col(k).squaredNorm();
-                       size[k] += exact[index].col(k).squaredNorm();
-                     }
-                   });
+  response.Respond(
+      held, history, bar.times,
+      [&, &exact = exact](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
+        const Eigen::MatrixXd moved = response.basis() * q;
+        for (int k = 0; k < 2; ++k) {
+          difference[k] += (moved - exact[index]).col(k).squaredNorm();
+          size[k] += exact[index].col(k).squaredNorm();
+        }
+      });
   // Errors of two moments at six states and of the interpolation of the tangents. The abrupt
   // release excites shapes that the basis does not contain.
   EXPECT_LT(std::sqrt(difference[0] / size[0]), 0.03);
@@ -116,12 +117,12 @@ TEST(ReducedResponse, FollowsAQuasiStaticMotion) {
     return Eigen::MatrixXd::Constant(1, 1, Push(time));
   };
   std::vector<int> visited;
-  response.Respond(history(kStart), history, bar.times,
-                   [&](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
-                     visited.push_back(index);
-                     EXPECT_LT((response.basis() * q - exact[index]).norm(),
-                               0.02 * exact[index].norm());
-                   });
+  response.Respond(
+      history(kStart), history, bar.times,
+      [&, &exact = exact](int index, const Eigen::MatrixXd& q, const Eigen::MatrixXd&) {
+        visited.push_back(index);
+        EXPECT_LT((response.basis() * q - exact[index]).norm(), 0.02 * exact[index].norm());
+      });
   EXPECT_EQ(visited, (std::vector<int>{0, 1, 2, 3}));
 }
 
