@@ -101,7 +101,6 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
     drawn[2].push_back(draw.variance / space.variance);
   }
   for (std::vector<double>& values : drawn) std::sort(values.begin(), values.end());
-  test.chance = drawn[1][static_cast<size_t>(0.95 * kDraws)];
   const auto smallest = [&](const AdequacyStatistics& of, double variance, AdequacyTest* tails) {
     const double p[] = {TailProbability(drawn[0], of.unknown_force),
                         TailProbability(drawn[1], of.further),
@@ -157,7 +156,8 @@ ResidualProducts NoiseDraws::Draw(uint64_t seed, uint64_t number) const {
   // The product of noise and discretisation error is neglected: its mean is 0.
   products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest)) + error_ * error_;
   products.toward = std::sqrt(variance_) * (root_ * normal);
-  const auto& along = number % 2 == 0 || effects_.empty() ? forces_ : effects_;
+  const bool along_force = effects_.empty() || (number % 2 == 0 && !forces_.empty());
+  const auto& along = along_force ? forces_ : effects_;
   if (error_ > 0 && !along.empty()) {
     const std::vector<int>& own = along[RandomBits({seed, number, 3}) % along.size()];
     const Eigen::VectorXd amounts =

@@ -51,8 +51,6 @@ struct AdequacyTest {
   AdequacyStatistics found;
   // Tail probabilities under noise alone: of each statistic, and of their smallest.
   double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
-  // The 95 % quantile of `further` under noise: what chance gives to the best effect.
-  double chance = 0;
 
   // Something that may be left is more probable than noise: an unknown force or a further effect
   // has a positive log Bayes factor, or the residual itself is the rarest of the statistics.

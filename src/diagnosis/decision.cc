@@ -52,15 +52,14 @@ void CompareWithAdopted(const DecisionInput& input, double effects,
 // First order overrates large effects. The evidence of an effect that was not refitted is reduced
 // by the share that the best refit has kept of its own.
 double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& first_order) {
-  double best = 0, share = 1;
-  for (const WeighedRefit& refit : input.refits) {
-    if (refit.evidence <= best) continue;
-    for (const NamedEvidence& named : first_order)
-      if (named.name == refit.effect && named.evidence > refit.evidence)
-        share = refit.evidence / named.evidence;
-    best = refit.evidence;
-  }
-  return share;
+  const WeighedRefit* best = nullptr;
+  for (const WeighedRefit& refit : input.refits)
+    if (refit.predicts && refit.evidence > (best != nullptr ? best->evidence : 0)) best = &refit;
+  if (best == nullptr) return 1;
+  for (const NamedEvidence& named : first_order)
+    if (named.name == best->effect && named.evidence > best->evidence)
+      return best->evidence / named.evidence;
+  return 1;
 }
 
 // The posterior over single hypotheses.
@@ -83,8 +82,11 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
           natural != input.natural_value.end())
         one.evidence += natural->second;
     } else if (one.kind == Kind::kNuisance) {
+      // Of those of one name, one for each recording or grip, the best.
+      double refitted = -std::numeric_limits<double>::infinity();
       for (const WeighedNuisance& refit : input.nuisances)
-        if (refit.name == one.names.front()) one.evidence = refit.evidence - nuisances;
+        if (refit.name == one.names.front()) refitted = std::max(refitted, refit.evidence);
+      if (std::isfinite(refitted)) one.evidence = refitted - nuisances;
     }
   }
   CompareWithAdopted(input, effects, &hypotheses);
@@ -107,6 +109,26 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
   for (const NamedEvidence& named : first_order)
     if (named.name == name) return {&input.baseline, input.baseline.hypotheses[named.best].columns};
   return {&input.baseline, {}};
+}
+
+// The log Bayes factor that the best effect exceeds in one of twenty recordings in which nothing is
+// missing. NaN where there is no effect.
+double ChanceOf(const DecisionInput& input) {
+  constexpr int kDraws = 400;
+  const ProjectedHypotheses beside_nothing(input.baseline);
+  const NoiseDraws noise(input.baseline);
+  std::vector<double> best;
+  for (int k = 0; k < kDraws; ++k) {
+    const ResidualProducts draw = noise.Draw(input.seed + 1, static_cast<uint64_t>(k));
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const NamedEvidence& named : SumVariants(
+             input.baseline, beside_nothing.LogBayesFactors(beside_nothing.Project(draw.toward))))
+      if (named.kind == HypothesisKind::kEffect) largest = std::max(largest, named.evidence);
+    best.push_back(largest);
+  }
+  std::sort(best.begin(), best.end());
+  const double chance = best[static_cast<size_t>(0.95 * kDraws)];
+  return std::isfinite(chance) ? chance : std::numeric_limits<double>::quiet_NaN();
 }
 
 // `removed`: the misfit, σ², that the hypothesis and the effects added before have removed.
@@ -238,8 +260,13 @@ Decision Decide(const DecisionInput& input) {
     if (pair.hypothesis.names == best.names) tested = pair.tested;
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, best.names);
-  record.chance = test.chance;
+  // An effect in the place of adopted nuisances is tested beside them all the same.
+  std::vector<std::string> beside = best.names;
+  if (!beside.empty())
+    for (const std::string& name : input.adopted)
+      if (std::count(beside.begin(), beside.end(), name) == 0) beside.push_back(name);
+  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
+  record.chance = ChanceOf(input);
 
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;

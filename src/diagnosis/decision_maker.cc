@@ -80,12 +80,13 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
       input.natural_value[candidate.type] = natural;
   }
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
-    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
-      input.adopted.push_back(nuisance.candidate.card.name);
+    const std::string& name = nuisance.candidate.card.name;
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model &&
+        std::count(input.adopted.begin(), input.adopted.end(), name) == 0)
+      input.adopted.push_back(name);
     if (nuisance.refitted)
       input.nuisances.push_back(
-          {nuisance.candidate.card.name,
-           *nuisance.refitted + SelectionPenalty(diagnosis.nuisances.size())});
+          {name, *nuisance.refitted + SelectionPenalty(diagnosis.nuisances.size())});
   }
   if (!input.adopted.empty()) {
     // To first order, against the parameters and the nuisances that every model has.

@@ -57,17 +57,28 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   };
   if (!holds([](const auto& one) { return one.kind != Kind::kNothing; })) return naming;
   const HypothesisProbability& best = posterior.front();
+  const auto is_nuisance = [&](const std::string& name) {
+    return std::any_of(posterior.begin(), posterior.end(), [&](const auto& one) {
+      return one.kind == Kind::kNuisance && contains(one, name);
+    });
+  };
   for (const std::string& name : best.names)
     if (holds([&](const auto& one) { return contains(one, name); })) naming.names.push_back(name);
-  if (!naming.names.empty()) {
+  // Rival effects that only share the nuisances of every model have nothing in common.
+  const bool share_nuisances = holds([](const auto& one) { return one.kind != Kind::kNuisance; }) &&
+                               std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);
+  if (!naming.names.empty() && !share_nuisances) {
     naming.level = Naming::Level::kCommon;
     return naming;
   }
+  naming.names.clear();
   for (const size_t k : naming.kept)
     for (const std::string& name : posterior[k].names)
-      if (std::count(naming.names.begin(), naming.names.end(), name) == 0)
+      if (std::count(naming.names.begin(), naming.names.end(), name) == 0 &&
+          !(share_nuisances && is_nuisance(name)))
         naming.names.push_back(name);
-  const bool is_family = best.kind == Kind::kEffect && holds([&](const auto& one) {
+  const bool is_family = best.kind == Kind::kEffect && best.family != EffectFamily::kOther &&
+                         holds([&](const auto& one) {
                            return one.kind == Kind::kEffect && one.family == best.family;
                          });
   naming.level = is_family ? Naming::Level::kFamily : Naming::Level::kSet;

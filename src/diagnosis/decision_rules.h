@@ -30,9 +30,6 @@ inline constexpr double kAdequacyLevel = 0.05;
 // this share of the misfit that the effect removes: a model error of a tenth of the amplitude.
 // Higher: effects that compensate for one outside the catalogue are named more often.
 inline constexpr double kToleratedModelError = 0.01;
-// Two effects with a smaller λ (RecordedSeparation) cannot be told apart: with 12 the right one of
-// two is chosen in four cases of five.
-inline constexpr double kSeparableLambda = 12;
 
 // Sets the probabilities from the evidence and the kind of each hypothesis, and sorts by them.
 // Refuted hypotheses get the probability 0. Evidence of an effect or nuisance contains its share of

@@ -164,7 +164,7 @@ HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& e
   // What an effect leaves may be a hundredth of what it explains, so that the columns of the mesh
   // and the time step must be those of its own motion.
   scene.nuisances.clear();
-  if (effect.candidate.replaces_material) scene.pilots.reset();
+  if (effect.candidate.IsPilot()) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
   return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene).space;
@@ -306,8 +306,8 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
         refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    // With markers, one prediction serves both. It does not continue those of the fit, so that a fit
-    // that was kept leads to the same bits.
+    // With markers, one prediction serves both. It does not continue those of the fit, so that a
+    // fit that was kept leads to the same bits.
     LinearisedMisfit own_misfit;
     if (!with.HasScans())
       own_misfit = with.Linearise(refit.calibration.parameters, true, {}, nullptr, &misfit);

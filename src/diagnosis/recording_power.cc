@@ -103,6 +103,8 @@ class SimulatedDecisions {
 struct FoundEffect {
   std::vector<int> columns;
   Eigen::VectorXd amounts;
+
+  bool IsNothing() const { return columns.empty() || amounts.isZero(0); }
 };
 
 FoundEffect Find(const DecisionInput& input, const ProjectedHypotheses& beside_nothing,
@@ -144,12 +146,13 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
   std::vector<std::string> truths = {""};
   truths.insert(truths.end(), effects.begin(), effects.end());
   for (const std::string& truth : truths) {
-    RecordedPower& own = power.emplace_back();
     FoundEffect effect;
     if (!truth.empty()) {
-      own.truth = {truth};
       effect = Find(input, decisions.beside_nothing(), truth);
+      if (effect.IsNothing()) continue;
     }
+    RecordedPower& own = power.emplace_back();
+    if (!truth.empty()) own.truth = {truth};
     std::map<std::string, int> wrong;
     for (int k = 0; k < kDraws; ++k) {
       const auto outcome = decisions.Decide(WithEffect(input.baseline, effect, decisions.draw(k)));
@@ -162,7 +165,7 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
         own.named += kShare;
       else {
         const std::string& name = outcome.names.front();
-        const bool is_member = !truth.empty() && input.families.count(name) > 0 &&
+        const bool is_member = !truth.empty() && FamilyOf(input, name) != EffectFamily::kOther &&
                                FamilyOf(input, name) == FamilyOf(input, truth);
         (is_member ? own.wrong_member : own.wrong) += kShare;
         ++wrong[name];
@@ -201,7 +204,7 @@ std::vector<RecordedSeparation> Separations(const DecisionInput& input,
   std::vector<RecordedSeparation> separations;
   for (size_t a = 0; a < effects.size(); ++a)
     for (size_t b = a + 1; b < effects.size(); ++b) {
-      if (found[a].columns.empty() || found[b].columns.empty()) continue;
+      if (found[a].IsNothing() || found[b].IsNothing()) continue;
       separations.push_back(
           {effects[a], effects[b],
            std::min(distance(found[a], effects[b]), distance(found[b], effects[a]))});

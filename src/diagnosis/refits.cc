@@ -238,6 +238,11 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
   const RefitEvidence before = EvidenceOf(bare, noise.level);
   alternatives.nuisances_evidence =
       EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence - before.all;
+  // The effects in their place pay for their selection, too.
+  for (const ScoredNuisance& nuisance : ranking.nuisances)
+    if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model)
+      alternatives.nuisances_evidence -=
+          nuisance.candidate.selection_penalty + SelectionPenalty(ranking.nuisances.size());
   const double least = kThresholds.refit.alternative_share * alternatives.nuisances_evidence;
   for (const ScoredEffect& scored : ranking.without_adopted) {
     if (static_cast<int>(alternatives.effects.size()) == wanted || scored.score.evidence < least)

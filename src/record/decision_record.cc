@@ -34,14 +34,9 @@ Kind KindFromName(const std::string& name) {
 }  // namespace
 
 double DecisionRecord::FamilyProbability(EffectFamily family) const {
-  std::set<std::string> members;
-  for (const HypothesisProbability& one : probabilities)
-    if (one.kind == Kind::kEffect && one.family == family) members.insert(one.names.front());
   double sum = 0;
   for (const HypothesisProbability& one : probabilities)
-    if (std::any_of(one.names.begin(), one.names.end(),
-                    [&](const std::string& name) { return members.contains(name); }))
-      sum += one.probability;
+    if (one.kind == Kind::kEffect && one.family == family) sum += one.probability;
   return sum;
 }
 

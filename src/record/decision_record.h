@@ -68,7 +68,7 @@ struct DecisionRecord {
   std::vector<RecordedSeparation> separations;
   double chance = 0;  // the evidence that noise gives to the best effect in 1 of 20 recordings
 
-  // The probability that a member of the family is missing, alone or in a pair.
+  // The probability that one effect is missing and belongs to the family; pairs are not counted.
   double FamilyProbability(EffectFamily family) const;
 };
 

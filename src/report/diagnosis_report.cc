@@ -159,10 +159,12 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
                                  : "white in time");
   text += fmt::format(" The residual of the best hypothesis is {:.1f} σ. Time step: {:.3g} ms.",
                       diagnosis.best_rms_over_sigma, 1e3 * diagnosis.time_step);
-  text += fmt::format(
-      " Without any effect, chance gives the best one a log Bayes factor above {:.1f} in one of 20 "
-      "such recordings.",
-      diagnosis.decision.chance);
+  if (std::isfinite(diagnosis.decision.chance))
+    text += fmt::format(
+        " Without any effect, chance gives the best one a log Bayes factor above {:.1f} in one of "
+        "20 "
+        "such recordings.",
+        diagnosis.decision.chance);
   return Paragraph(text);
 }
 

@@ -132,7 +132,8 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
                        adequacy.p);
   if (adequacy.is_tolerated)
     return fmt::format(
-        "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.1f} % of "
+        "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.1f} % "
+        "of "
         "the squared misfit that was explained: no more than the error of any model.",
         beside, adequacy.p, adequacy.rms_over_sigma, 100 * adequacy.left_share);
   const std::string share =
@@ -145,15 +146,22 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
       beside, adequacy.p, adequacy.rms_over_sigma, share);
 }
 
+// Whether the refit of an effect has evidence.
+bool HasEvidence(const DiagnosisRecord& diagnosis, const std::string& type) {
+  for (const RecordedEffect& effect : diagnosis.ranking)
+    if (effect.type == type) return effect.HasUsableRefit() && effect.refit->evidence > 0;
+  return false;
+}
+
 // The effects that have evidence, but do not lower the error of the held-out frames.
 std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> sentences;
   for (const HypothesisProbability& one : diagnosis.decision.probabilities)
-    if (one.is_refuted && one.evidence > 0)
-      sentences.push_back(fmt::format(
-          "{} explains a part of the error in the frames that were fitted, but with it the error "
-          "of the held-out frames does not fall: it is refuted.",
-          NamesOf(one.names)));
+    if (one.is_refuted && HasEvidence(diagnosis, one.names.front()))
+      sentences.push_back(
+          fmt::format("With {} the model fits better, but it does not predict the held-out frames "
+                      "better: {} is refuted.",
+                      one.names.front(), one.names.front()));
   return sentences;
 }
 
