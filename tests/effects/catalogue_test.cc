@@ -55,14 +55,16 @@ TEST(Catalogue, SaysOfEachEffectWhereItIsTried) {
       EXPECT_GE(ParameterIndex(card, at_values->parameter), 0) << card.type;
       EXPECT_FALSE(at_values->values.empty()) << card.type;
     }
-    if (const auto* at_times = std::get_if<TriedAtRelaxationTimes>(&card.tried_at))
+    if (const auto* at_times = std::get_if<TriedAtRelaxationTimes>(&card.tried_at)) {
       EXPECT_GE(ParameterIndex(card, at_times->parameter), 0) << card.type;
+    }
     if (std::holds_alternative<TriedAtPlaces>(card.tried_at)) {
       EXPECT_GE(ParameterIndex(card, "centre_x"), 0) << card.type;
       EXPECT_GE(ParameterIndex(card, "radius"), 0) << card.type;
     }
-    if (std::holds_alternative<TriedAsSupports>(card.tried_at))
+    if (std::holds_alternative<TriedAsSupports>(card.tried_at)) {
       EXPECT_GE(ParameterIndex(card, "point_x"), 0) << card.type;
+    }
   }
 }
 

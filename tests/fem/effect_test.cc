@@ -13,10 +13,16 @@ namespace lacuna {
 namespace {
 
 const EffectCard& LiftCard() {
-  static const EffectCard card{.type = "lift",
-                               .title = "Uniform lift",
-                               .equation = "f_i = a m_i e_z",
-                               .parameters = {{.name = "acceleration", .meaning = "a"}}};
+  static const EffectCard card = [] {
+    EffectCard lift;
+    lift.type = "lift";
+    lift.title = "Uniform lift";
+    lift.equation = "f_i = a m_i e_z";
+    ParameterCard& acceleration = lift.parameters.emplace_back();
+    acceleration.name = "acceleration";
+    acceleration.meaning = "a";
+    return lift;
+  }();
   return card;
 }
 
