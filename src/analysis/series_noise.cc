@@ -16,8 +16,8 @@ constexpr int kLags = 8;  // number of lags in the long-run variance
 constexpr size_t kFewestFrames = 8;
 // Noise with a larger lag-one correlation cannot be distinguished from motion.
 constexpr double kLargestCorrelation = 0.9;
-constexpr double kCorrelationStep = 0.05;
-constexpr int kCorrelationSteps = static_cast<int>(kLargestCorrelation / kCorrelationStep + 0.5);
+constexpr int kCorrelationSteps = 18;  // that are tried, from 0 up to it
+constexpr double kCorrelationStep = kLargestCorrelation / kCorrelationSteps;
 
 // Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
 // series was not observed become 0.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -41,18 +42,22 @@ struct Loop {
   std::atomic<int64_t> next = 0;
   std::atomic<int> helpers_inside = 0;
   std::mutex failure_mutex;
-  std::exception_ptr failure;
+  std::exception_ptr failure;  // that of the first block that failed
+  int64_t failed = std::numeric_limits<int64_t>::max();
 
   void Work() {
     inside_loop = true;
+    int64_t k = 0;
     try {
-      for (int64_t k = next++; k < blocks; k = next++) {
-        body(k * block, std::min(count, (k + 1) * block));
-      }
+      for (k = next++; k < blocks; k = next++) body(k * block, std::min(count, (k + 1) * block));
     } catch (...) {
       next = blocks;
+      // Blocks are taken in order, so all before this one are finished or still running.
       const std::lock_guard lock(failure_mutex);
-      if (!failure) failure = std::current_exception();
+      if (k < failed) {
+        failed = k;
+        failure = std::current_exception();
+      }
     }
     inside_loop = false;
   }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -44,6 +46,22 @@ TEST(Parallel, RethrowsAnExceptionInTheCaller) {
                              if (i == 57) throw std::runtime_error("57");
                            }),
                std::runtime_error);
+}
+
+TEST(Parallel, RethrowsTheExceptionOfTheFirstBlock) {
+  ThreadCountGuard guard;
+  SetThreadCount(4);
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    try {
+      ParallelFor(8, 1, [](int64_t i) {
+        if (i == 1) std::this_thread::sleep_for(std::chrono::microseconds(50));
+        if (i > 0) throw std::runtime_error(std::to_string(i));
+      });
+      FAIL() << "no exception";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "1");
+    }
+  }
 }
 
 TEST(Parallel, RunsALoopInsideALoop) {
