@@ -162,8 +162,7 @@ std::string NoiseParagraph(const DiagnosisRecord& diagnosis) {
   if (std::isfinite(diagnosis.decision.chance))
     text += fmt::format(
         " Without any effect, chance gives the best one a log Bayes factor above {:.1f} in one of "
-        "20 "
-        "such recordings.",
+        "20 such recordings.",
         diagnosis.decision.chance);
   return Paragraph(text);
 }
