@@ -66,11 +66,12 @@ AdequacyStatistics MeasureAdequacy(const HypothesisSpace& space,
                                    const ProjectedHypotheses& projected,
                                    const ResidualProducts& residual) {
   AdequacyStatistics statistics;
-  const Eigen::VectorXd factors = projected.LogBayesFactors(projected.Project(residual.toward));
+  const Eigen::VectorXd toward = projected.Project(residual.toward);
+  const Eigen::VectorXd factors = projected.LogBayesFactors(toward);
   for (size_t h = 0; h < space.hypotheses.size(); ++h)
     if (space.hypotheses[h].kind == HypothesisKind::kUnknownForce)
       statistics.unknown_force = factors[static_cast<Eigen::Index>(h)];
-  statistics.left = projected.ForceMisfit(projected.Project(residual.toward));
+  statistics.left = projected.ForceMisfit(toward);
   statistics.further = -std::numeric_limits<double>::infinity();
   for (const NamedEvidence& named : SumVariants(space, factors)) {
     if (named.evidence <= statistics.further) continue;

@@ -113,9 +113,8 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
 
 // The log Bayes factor that the best effect exceeds in one of twenty recordings in which nothing is
 // missing. NaN where there is no effect.
-double ChanceOf(const DecisionInput& input) {
+double ChanceOf(const DecisionInput& input, const ProjectedHypotheses& beside_nothing) {
   constexpr int kDraws = 400;
-  const ProjectedHypotheses beside_nothing(input.baseline);
   const NoiseDraws noise(input.baseline);
   std::vector<double> best;
   for (int k = 0; k < kDraws; ++k) {
@@ -226,6 +225,12 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
 
 }  // namespace
 
+EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
+                      const std::string& effect) {
+  const auto family = families.find(effect);
+  return family != families.end() ? family->second : EffectFamily::kOther;
+}
+
 std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
                                                 const std::map<std::string, EffectFamily>& families,
                                                 double discretisation) {
@@ -237,8 +242,7 @@ std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>
     one.evidence = named.evidence;
     if (one.kind != Kind::kEffect) continue;
     one.evidence -= discretisation;
-    if (const auto family = families.find(named.name); family != families.end())
-      one.family = family->second;
+    one.family = FamilyOf(families, named.name);
   }
   return hypotheses;
 }
@@ -266,16 +270,12 @@ Decision Decide(const DecisionInput& input) {
     for (const std::string& name : input.adopted)
       if (std::count(beside.begin(), beside.end(), name) == 0) beside.push_back(name);
   record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
-  record.chance = ChanceOf(input);
+  record.chance = ChanceOf(input, beside_nothing);
 
   const Naming naming = NameFrom(record.probabilities);
   decision.names = naming.names;
   const auto is_nuisance = [&](const std::string& name) {
-    return std::any_of(record.probabilities.begin(), record.probabilities.end(),
-                       [&](const HypothesisProbability& one) {
-                         return one.kind == Kind::kNuisance &&
-                                std::count(one.names.begin(), one.names.end(), name) > 0;
-                       });
+    return IsNuisance(record.probabilities, name);
   };
   if (!record.adequacy.is_adequate && !record.adequacy.is_tolerated) {
     decision.verdict = Verdict::kNotInLibrary;

@@ -29,6 +29,10 @@ struct Decision {
 
 Decision Decide(const DecisionInput& input);
 
+// The family of an effect; kOther where it has none.
+EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
+                      const std::string& effect);
+
 // The hypotheses of a space with their log Bayes factors, and "nothing", without probabilities.
 std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
                                                 const std::map<std::string, EffectFamily>& families,

@@ -23,6 +23,10 @@ double LogPrior(Kind kind) {
   return 0;
 }
 
+bool Contains(const HypothesisProbability& one, const std::string& name) {
+  return std::count(one.names.begin(), one.names.end(), name) > 0;
+}
+
 }  // namespace
 
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
@@ -41,6 +45,12 @@ void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
                    [&](const auto& a, const auto& b) { return weight(a) > weight(b); });
 }
 
+bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::string& name) {
+  return std::any_of(posterior.begin(), posterior.end(), [&](const HypothesisProbability& one) {
+    return one.kind == Kind::kNuisance && Contains(one, name);
+  });
+}
+
 Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   Naming naming;
   double sum = 0;
@@ -52,18 +62,11 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
     return std::all_of(naming.kept.begin(), naming.kept.end(),
                        [&](size_t k) { return condition(posterior[k]); });
   };
-  const auto contains = [](const HypothesisProbability& one, const std::string& name) {
-    return std::count(one.names.begin(), one.names.end(), name) > 0;
-  };
   if (!holds([](const auto& one) { return one.kind != Kind::kNothing; })) return naming;
   const HypothesisProbability& best = posterior.front();
-  const auto is_nuisance = [&](const std::string& name) {
-    return std::any_of(posterior.begin(), posterior.end(), [&](const auto& one) {
-      return one.kind == Kind::kNuisance && contains(one, name);
-    });
-  };
+  const auto is_nuisance = [&](const std::string& name) { return IsNuisance(posterior, name); };
   for (const std::string& name : best.names)
-    if (holds([&](const auto& one) { return contains(one, name); })) naming.names.push_back(name);
+    if (holds([&](const auto& one) { return Contains(one, name); })) naming.names.push_back(name);
   // Rival effects that only share the nuisances of every model have nothing in common.
   const bool share_nuisances = holds([](const auto& one) { return one.kind != Kind::kNuisance; }) &&
                                std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);

@@ -36,6 +36,9 @@ inline constexpr double kToleratedModelError = 0.01;
 // the prior among its rivals already (NamedEvidence); that of a pair likewise.
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses);
 
+// Whether `name` is a nuisance of one of the hypotheses.
+bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::string& name);
+
 // What a posterior allows to be said.
 struct Naming {
   enum class Level {

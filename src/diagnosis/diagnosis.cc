@@ -93,25 +93,25 @@ std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking
 }
 
 // Refits what the decision would state without a refit, and so on: only refits are believed.
-RefitNoise RefitWhatIsStated(const RefitContext& context, RefitNoise noise,
-                             const Diagnosis& diagnosis, RefittedRanking* ranked) {
+// Returns the decision, and sets the noise and the input that belong to it.
+Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked, RefitNoise* noise,
+                           Diagnosis* diagnosis) {
   for (;;) {
-    const Decision decision = Decide(MakeDecisionInput(context, *ranked, noise, diagnosis));
+    diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
+    Decision decision = Decide(diagnosis->decision_input);
     const int before = ranked->count;
     RefitAll(context, WithoutRefit(decision, *ranked), ranked);
-    if (ranked->count == before) return noise;
-    noise = WeighRefits(context, ranked);
+    if (ranked->count == before) return decision;
+    *noise = WeighRefits(context, ranked);
   }
 }
 
-// Decides, and looks closer where that may change the decision: where the best effect leaves more
+// Looks closer where that may change the decision: where the best effect leaves more
 // than noise, or room for a second one, at what it leaves along its own motion; where nuisances
 // explain the residual, at effects in their place.
 void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, const RefitNoise& noise,
-                const DiagnosisOptions& options, Diagnosis* diagnosis) {
+                const DiagnosisOptions& options, Decision decision, Diagnosis* diagnosis) {
   DecisionInput& input = diagnosis->decision_input;
-  input = MakeDecisionInput(context, ranked, noise, *diagnosis);
-  Decision decision = Decide(input);
   const HypothesisProbability first = decision.record.probabilities.front();
   if (decision.verdict == Verdict::kNotInLibrary ||
       first.kind == HypothesisProbability::Kind::kPair) {
@@ -163,12 +163,12 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
   diagnosis.nuisances = ranking.nuisances;
-  noise = RefitWhatIsStated(context, noise, diagnosis, &ranked);
+  Decision decision = RefitWhatIsStated(context, &ranked, &noise, &diagnosis);
 
   diagnosis.noise_level = noise.level;
   diagnosis.best_rms_over_sigma = noise.least_rms_over_sigma;
   diagnosis.ranking = ranked.effects;
-  DecideUpon(context, ranked, noise, options, &diagnosis);
+  DecideUpon(context, ranked, noise, options, std::move(decision), &diagnosis);
   return diagnosis;
 }
 

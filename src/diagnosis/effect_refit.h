@@ -67,8 +67,8 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
                         const std::string& type, const NoiseLevel& noise);
 
 // The same with columns along the motion of the refitted model, from a new ranking. `scene`: of the
-// baseline's ranking; its pilots are tried again only beside another elasticity law, which they are
-// compared with. Throws Interrupted.
+// baseline's ranking; its pilots are simulated again only if the effect is one of them, so that it
+// does not stand beside itself. Throws Interrupted.
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                            const EffectRefit& refit, const std::vector<std::string>& without,
                            SceneColumns scene);

@@ -132,11 +132,6 @@ ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& eff
   return noise;
 }
 
-EffectFamily FamilyOf(const DecisionInput& input, const std::string& name) {
-  const auto family = input.families.find(name);
-  return family != input.families.end() ? family->second : EffectFamily::kOther;
-}
-
 }  // namespace
 
 std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
@@ -165,8 +160,9 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
         own.named += kShare;
       else {
         const std::string& name = outcome.names.front();
-        const bool is_member = !truth.empty() && FamilyOf(input, name) != EffectFamily::kOther &&
-                               FamilyOf(input, name) == FamilyOf(input, truth);
+        const bool is_member = !truth.empty() &&
+                               FamilyOf(input.families, name) != EffectFamily::kOther &&
+                               FamilyOf(input.families, name) == FamilyOf(input.families, truth);
         (is_member ? own.wrong_member : own.wrong) += kShare;
         ++wrong[name];
       }

@@ -148,9 +148,8 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
 
 // Whether the refit of an effect has evidence.
 bool HasEvidence(const DiagnosisRecord& diagnosis, const std::string& type) {
-  for (const RecordedEffect& effect : diagnosis.ranking)
-    if (effect.type == type) return effect.HasUsableRefit() && effect.refit->evidence > 0;
-  return false;
+  const RecordedEffect* effect = FindEffect(diagnosis, type);
+  return effect != nullptr && effect->HasUsableRefit() && effect->refit->evidence > 0;
 }
 
 // The effects that have evidence, but do not lower the error of the held-out frames.
