@@ -21,7 +21,7 @@ int Fit(const std::string& file) {
   Progress progress;
   const CalibrationRecord record = RunCalibration(study, &progress);
   fmt::print("{}", CalibrationReport(record));
-  if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
+  if (!record.message.empty()) fmt::print("\nThe fit did not converge: {}\n", record.message);
   fmt::print(
       "\nThe run was written to {}\n"
       "  calibration/calibration.json   parameters with intervals, and errors\n",

@@ -60,13 +60,14 @@ StepCheck CheckStep(const CalibrationProblem& problem, const Eigen::VectorXd& va
 AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
                                    Progress* progress) {
   AdaptedFit fit;
+  FitBudget budget(study->time_step);
   Calibration beginning;
   if (study->chooses_time_step) {
     // A first estimate of the step, from the short horizon.
     PredictionStudy further;
     {
       const CalibrationProblem problem(*study, mesh);
-      beginning = FitShortHorizon(problem, problem.Start(), progress);
+      beginning = FitShortHorizon(problem, problem.Start(), progress, &budget);
       further = problem.WithEstimatedNoise();
       if (beginning.usable)
         further.time_step *= CheckStep(problem, beginning.parameters, progress).Share();
@@ -80,24 +81,25 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
     StepCheck check;
     {
       const CalibrationProblem problem(*study, mesh);
-      const bool goes_on = fit.calibration.usable;
+      const bool goes_on = !fit.calibration.estimates.empty();
       const bool has_begun = tried == 1 && beginning.usable;
-      fit.calibration = goes_on ? RefineFit(problem, fit.calibration.parameters, progress)
-                                : FitFromStart(problem, progress, has_begun ? &beginning : nullptr);
+      fit.calibration =
+          goes_on ? RefineFit(problem, fit.calibration.parameters, progress, &budget)
+                  : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &budget);
       if (!goes_on) start_rms = fit.calibration.start_rms;
       predictions += fit.calibration.predictions;
       fit.calibration.predictions = predictions;
       fit.calibration.start_rms = start_rms;
       if (!study->chooses_time_step) return fit;
-      if (fit.calibration.usable) {
+      if (!fit.calibration.estimates.empty()) {
         check = CheckStep(problem, fit.calibration.parameters, progress);
         fit.step_error = check.error;
         if (check.Share() == 1) return fit;
       }
-      if (tried == kMostSteps) return fit;
       further = problem.WithEstimatedNoise();
+      further.time_step *= check.Share();
+      if (tried == kMostSteps || budget.IsUsedUp(further.time_step)) return fit;
     }
-    further.time_step *= check.Share();
     *study = std::move(further);
   }
 }

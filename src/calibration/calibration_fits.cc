@@ -62,8 +62,13 @@ double Left(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
 // Stages of one fit, whose predictions are counted together.
 class Fitter {
  public:
-  Fitter(const CalibrationProblem& problem, Progress* progress)
-      : problem_(problem), progress_(*progress) {}
+  Fitter(const CalibrationProblem& problem, Progress* progress, FitBudget* budget)
+      : problem_(problem),
+        progress_(*progress),
+        own_budget_(problem.study().time_step),
+        budget_(budget != nullptr ? *budget : own_budget_) {}
+
+  bool IsOutOfBudget() const { return budget_.IsUsedUp(TimeStep()); }
 
   Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start,
                     const CalibrationOptions& options) {
@@ -99,7 +104,9 @@ class Fitter {
       parameters[k].start =
           std::clamp(start[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
     memory_.correspondences.clear();
-    return Calibrate(
+    CalibrationOptions within = options;
+    within.max_predictions = budget_.PredictionsLeft(TimeStep());
+    const Calibration calibration = Calibrate(
         parameters,
         [&](const Eigen::VectorXd& at, bool with_jacobian) {
           Prediction prediction = problem_.Predict(at, with_jacobian, horizon, &memory_);
@@ -107,8 +114,12 @@ class Fitter {
                            prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
           return prediction;
         },
-        options);
+        within);
+    budget_.Spend(calibration.predictions, TimeStep());
+    return calibration;
   }
+
+  double TimeStep() const { return problem_.study().time_step; }
 
   Calibration FitScans(double horizon, const Eigen::VectorXd& start,
                        const CalibrationOptions& options) {
@@ -118,7 +129,7 @@ class Fitter {
     for (int iterations = 0; iterations < options.max_iterations;) {
       of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
       calibration = FitOnce(horizon, values, of_round);
-      if (calibration.estimates.empty()) return calibration;
+      if (calibration.estimates.empty() || calibration.is_out_of_budget) return calibration;
       const double moved = LargestChange(problem_.parameters(), calibration, values);
       values = calibration.parameters;
       if (moved < kSettled) {
@@ -138,6 +149,8 @@ class Fitter {
 
   const CalibrationProblem& problem_;
   Progress& progress_;
+  FitBudget own_budget_;
+  FitBudget& budget_;
   CalibrationProblem::FitMemory memory_;
   int evaluations_ = 0;
 };
@@ -157,24 +170,24 @@ double ShortHorizon(const CalibrationProblem& problem) {
 }
 
 Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
-                            Progress* progress) {
-  return Fitter(problem, progress).Beginning("fit, first part", start);
+                            Progress* progress, FitBudget* budget) {
+  return Fitter(problem, progress, budget).Beginning("fit, first part", start);
 }
 
 Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                         Progress* progress) {
-  Fitter fitter(problem, progress);
+  Fitter fitter(problem, progress, nullptr);
   return fitter.Whole(start, fitter.Beginning("fit, first part", start));
 }
 
 Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
-                      Progress* progress) {
-  return Fitter(problem, progress).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
+                      Progress* progress, FitBudget* budget) {
+  return Fitter(problem, progress, budget).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
 }
 
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
-                         const Calibration* beginning) {
-  Fitter fitter(problem, progress);
+                         const Calibration* beginning, FitBudget* budget) {
+  Fitter fitter(problem, progress, budget);
   if (beginning != nullptr) fitter.CountAlso(beginning->predictions);
   const Eigen::VectorXd start = problem.Start();
   Calibration calibration = fitter.Whole(
@@ -189,7 +202,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     for (size_t k = 0; k < fitted.size(); ++k)
       if (problem.parameters()[k].log_scale && fitted[k].unit == "Pa")
         other[static_cast<Eigen::Index>(k)] *= factor;
-    if (other == start) return calibration;
+    if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
     const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
@@ -197,7 +210,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     least = left;
     nearest = std::move(first);
   }
-  if (nearest.parameters.size() > 0) {
+  if (nearest.parameters.size() > 0 && !fitter.IsOutOfBudget()) {
     Calibration other = fitter.Whole(nearest.parameters, nearest);
     if (other.usable && (!calibration.usable || other.rms < calibration.rms)) {
       other.start_rms = calibration.start_rms;

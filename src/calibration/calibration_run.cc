@@ -21,7 +21,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 14;
+constexpr int kCalibrationVersion = 15;
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -40,7 +40,9 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       std::filesystem::absolute(study.file)
           .lexically_normal()
           .lexically_proximate(std::filesystem::absolute(study.output).lexically_normal());
-  record.usable = calibration.usable;
+  // Parameters that were not quite reached are worth a comparison and a diagnosis: a fit that does
+  // not converge usually lacks physics.
+  record.usable = calibration.usable || calibration.is_out_of_budget;
   record.message = calibration.message;
   record.noise = problem.noise();
   record.scan_noise = problem.scan_noise();

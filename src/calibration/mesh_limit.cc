@@ -14,9 +14,11 @@
 namespace lacuna {
 namespace {
 
-// The finer mesh has about kFineElements elements, but the ratio of the element volumes is kept
-// between these limits.
+// A finer mesh has about kFineElements elements, but the ratio of the element volumes is kept
+// between these limits. A study with more than kManyElements is compared with a mesh whose elements
+// are larger, by the inverse of kLeastVolumeRatio.
 constexpr double kFineElements = 2000, kLeastVolumeRatio = 4, kMostVolumeRatio = 12;
+constexpr double kManyElements = 6000;
 // Beside a clamped edge the error of quadratic elements is proportional to about this power of
 // their volume.
 constexpr double kVolumePower = 0.7;
@@ -24,16 +26,20 @@ constexpr double kVolumePower = 0.7;
 // meshes.
 constexpr double kLongSteps = 3;
 constexpr int kMostSteps = 4;
+// The parameters are first sought with elements whose volume is smaller by kScoutRatio only, where
+// the finer mesh has a ratio that is larger by more than kScoutBelow.
+constexpr double kScoutRatio = 3, kScoutBelow = 1.5;
 constexpr double kSettled = 1;  // σ², smallest reduction of ‖difference‖² by a step
 constexpr double kShortestStep = 1.0 / 4;  // fraction of a full step
 
-// The ratio of the element volumes: as small as a study of the mesh allows.
+// The ratio of the element volumes: the study's over those of the other mesh.
 double RatioFor(const CalibrationProblem& problem) {
   const double elements = static_cast<double>(problem.body()->ElementCount());
+  if (elements > kManyElements) return 1 / kLeastVolumeRatio;
   return std::clamp(kFineElements / elements, kLeastVolumeRatio, kMostVolumeRatio);
 }
 
-// Limits to the change of the parameters by a finer mesh. Its prior has a standard deviation
+// Limits to the change of the parameters by another mesh. Its prior has a standard deviation
 // proportional to the parameter's value or to that of its own prior, without which directions that
 // the motion does not determine would change arbitrarily. The change is at most `most`, part of the
 // distance to the bounds, near which a nearly incompressible body takes too long to simulate.
@@ -95,78 +101,130 @@ PredictionStudy WithLongSteps(const CalibrationProblem& problem) {
 
 }  // namespace
 
-double FinerMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
-double FinerMesh::ToRatio(double other) const {
-  return (1 - std::pow(other, -kVolumePower)) * ToLimit();
+double OtherMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
+double OtherMesh::ToRatio(double other_ratio) const {
+  return (1 - std::pow(other_ratio, -kVolumePower)) * ToLimit();
 }
 
-std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
+std::unique_ptr<const CalibrationProblem> WithOtherElements(const PredictionStudy& study,
                                                             double ratio) {
-  PredictionStudy fine = study;
-  fine.mesh.tets.max_volume /= ratio;
+  PredictionStudy other = study;
+  other.mesh.tets.max_volume /= ratio;
   try {
-    return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(fine).mesh);
+    return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(other).mesh);
   } catch (const InputError&) {
-    return nullptr;  // a shape that cannot be meshed more finely gives no estimate
+    return nullptr;  // a shape that cannot be meshed otherwise gives no estimate
   }
 }
 
-std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
+namespace {
+
+// Finds the parameters with which another mesh moves like the study's own.
+class ChangeSearch {
+ public:
+  // `own`: the residual of the study's mesh. All references must outlive this.
+  ChangeSearch(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+               const LinearisedMisfit& misfit, const Eigen::VectorXd& own, bool fitted_only)
+      : parameters_(problem.parameters()),
+        values_(values),
+        misfit_(misfit),
+        own_(own),
+        fitted_only_(fitted_only),
+        by_(WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only)),
+        prior_(PriorOfChange(problem, values)),
+        model_(Eigen::VectorXd::Zero(by_.rows()), by_, prior_.priors) {}
+
+  struct Found {
+    Eigen::VectorXd change;
+    Eigen::VectorXd residual;  // of the other mesh, m; empty: it could not be simulated
+  };
+  Found Run(const CalibrationProblem& other, Eigen::VectorXd start) const {
+    for (Eigen::Index k = 0; k < start.size(); ++k) {
+      const double most = prior_.most[static_cast<size_t>(k)];
+      start[k] = std::clamp(start[k], -most, most);
+    }
+    LinearisedMisfit latest;
+    Eigen::VectorXd change = start;
+    Tried best = At(other, change, &latest);
+    if (best.difference.size() == 0) return {change, {}};
+    double length = 1;
+    for (int step = 0; step < kMostSteps && length >= kShortestStep; ++step) {
+      const Eigen::VectorXd& left = best.difference;
+      const Eigen::VectorXd way = BestChange(model_, left, by_, change, prior_) - change;
+      const double promised = left.squaredNorm() - (left + by_ * way).squaredNorm();
+      if (!(promised > kSettled)) break;
+      Tried there = At(other, change + length * way, &latest);
+      if (there.difference.size() > 0 && there.difference.squaredNorm() < left.squaredNorm()) {
+        change += length * way;
+        best = std::move(there);
+        length = 1;
+      } else {
+        length /= 2;
+      }
+    }
+    return {change, std::move(best.residual)};
+  }
+
+ private:
+  // The difference is whitened; empty where one of the two motions is not available.
+  struct Tried {
+    Eigen::VectorXd residual, difference;
+  };
+  Tried At(const CalibrationProblem& other, const Eigen::VectorXd& change,
+           LinearisedMisfit* latest) const {
+    LinearisedMisfit here =
+        other.Linearise(MovedBy(parameters_, values_, change), false, {}, nullptr, latest);
+    Tried tried{here.residual, {}};
+    if (here.usable) *latest = std::move(here);
+    if (tried.residual.size() == misfit_.residual.size() && own_.size() == tried.residual.size() &&
+        tried.residual != own_)
+      tried.difference = WhitenedRows(tried.residual - own_, misfit_, 0, fitted_only_);
+    return tried;
+  }
+
+  const std::vector<CalibratedParameter>& parameters_;
+  const Eigen::VectorXd& values_;
+  const LinearisedMisfit& misfit_;
+  const Eigen::VectorXd& own_;
+  const bool fitted_only_;
+  const Eigen::MatrixXd by_;
+  const ChangePrior prior_;
+  const LinearGaussianModel model_;
+};
+
+}  // namespace
+
+std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only) {
   const PredictionStudy study = WithLongSteps(problem);
-  FinerMesh finer{RatioFor(problem), Eigen::VectorXd::Zero(values.size()), {}, {}};
-  const auto fine_problem = WithFinerElements(study, finer.ratio);
-  if (fine_problem == nullptr) return std::nullopt;
-  finer.coarse = CalibrationProblem(study, problem.body()->mesh)
-                     .Linearise(values, false, {}, nullptr, &misfit)
-                     .residual;
-  // The difference is whitened; empty where one of the two motions is not available.
-  struct Tried {
-    Eigen::VectorXd fine, difference;
-  };
-  LinearisedMisfit latest;
-  const auto at = [&](const Eigen::VectorXd& change) {
-    LinearisedMisfit here = fine_problem->Linearise(MovedBy(problem.parameters(), values, change),
-                                                    false, {}, nullptr, &latest);
-    Tried tried{here.residual, {}};
-    if (here.usable) latest = std::move(here);
-    if (tried.fine.size() == misfit.residual.size() && finer.coarse.size() == tried.fine.size() &&
-        tried.fine != finer.coarse)
-      tried.difference = WhitenedRows(tried.fine - finer.coarse, misfit, 0, fitted_only);
-    return tried;
-  };
-  const Eigen::MatrixXd by =
-      WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, fitted_only);
-  const ChangePrior prior = PriorOfChange(problem, values);
-  Tried best = at(finer.change);
-  if (best.difference.size() == 0) return std::nullopt;
-  const LinearGaussianModel model(Eigen::VectorXd::Zero(by.rows()), by, prior.priors);
-  double length = 1;
-  for (int step = 0; step < kMostSteps && length >= kShortestStep; ++step) {
-    const Eigen::VectorXd& left = best.difference;
-    const Eigen::VectorXd way = BestChange(model, left, by, finer.change, prior) - finer.change;
-    const double promised = left.squaredNorm() - (left + by * way).squaredNorm();
-    if (!(promised > kSettled)) break;
-    Tried there = at(finer.change + length * way);
-    if (there.difference.size() > 0 && there.difference.squaredNorm() < left.squaredNorm()) {
-      finer.change += length * way;
-      best = std::move(there);
-      length = 1;
-    } else {
-      length /= 2;
+  OtherMesh mesh{RatioFor(problem), Eigen::VectorXd::Zero(values.size()), {}, {}};
+  const auto other_problem = WithOtherElements(study, mesh.ratio);
+  if (other_problem == nullptr) return std::nullopt;
+  mesh.own = CalibrationProblem(study, problem.body()->mesh)
+                 .Linearise(values, false, {}, nullptr, &misfit)
+                 .residual;
+  const ChangeSearch search(problem, values, misfit, mesh.own, fitted_only);
+  if (mesh.ratio > kScoutBelow * kScoutRatio) {
+    // Most of the way is found with elements that cost little.
+    if (const auto scout = WithOtherElements(study, kScoutRatio)) {
+      const ChangeSearch::Found found = search.Run(*scout, mesh.change);
+      if (found.residual.size() > 0) mesh.change = found.change / mesh.ToRatio(kScoutRatio);
     }
   }
-  finer.fine = std::move(best.fine);
-  return finer;
+  ChangeSearch::Found found = search.Run(*other_problem, mesh.change);
+  if (found.residual.size() == 0) return std::nullopt;
+  mesh.change = std::move(found.change);
+  mesh.other = std::move(found.residual);
+  return mesh;
 }
 
 Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                                const FinerMesh& finer, double ratio) {
+                                const OtherMesh& known, double ratio) {
   const PredictionStudy study = WithLongSteps(problem);
-  const auto other = WithFinerElements(study, ratio);
+  const auto other = WithOtherElements(study, ratio);
   if (other == nullptr) return {};
-  const Eigen::VectorXd change = finer.ToRatio(ratio) * finer.change;
+  const Eigen::VectorXd change = known.ToRatio(ratio) * known.change;
   return other->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
 }
 
@@ -174,10 +232,10 @@ std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
                                            const Eigen::VectorXd& values) {
   const LinearisedMisfit misfit = problem.Linearise(values, true);
   if (!misfit.usable) return std::nullopt;
-  const std::optional<FinerMesh> finer =
-      MakeFinerMesh(problem, values, misfit, /*fitted_only=*/true);
-  if (!finer) return std::nullopt;
-  return MovedBy(problem.parameters(), values, finer->ToLimit() * finer->change);
+  const std::optional<OtherMesh> other =
+      MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true);
+  if (!other) return std::nullopt;
+  return MovedBy(problem.parameters(), values, other->ToLimit() * other->change);
 }
 
 }  // namespace lacuna

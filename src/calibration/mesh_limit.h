@@ -1,4 +1,4 @@
-// The discretisation error of a study's mesh, estimated with a finer mesh.
+// The discretisation error of a study's mesh, estimated with another mesh.
 #ifndef LACUNA_CALIBRATION_MESH_LIMIT_H_
 #define LACUNA_CALIBRATION_MESH_LIMIT_H_
 
@@ -10,50 +10,53 @@
 
 namespace lacuna {
 
-// A finer mesh, and the parameters with which it moves like the study's own mesh.
+// Another mesh, and the parameters with which it moves like the study's own mesh. It is finer; of a
+// study with thousands of elements it is coarser, because a finer one would cost many times what
+// the study itself does.
 //
 // Coarse elements are too stiff, so that a vibration is fitted with a modulus that is too low. With
 // the same parameters on both meshes the two motions drift apart in phase, and their difference
 // cannot be scaled or added to a third motion. With parameters of its own, found by Gauss–Newton
-// steps with the derivatives of the study's mesh, the finer mesh stays in phase, and the difference
+// steps with the derivatives of the study's mesh, the other mesh stays in phase, and the difference
 // that remains is small.
 //
 // Both meshes are simulated with time steps that are longer than the study's. The error of the step
-// is nearly the same on both and cancels in the difference, while the simulations of the finer mesh
+// is nearly the same on both and cancels in the difference, while the simulations of a finer mesh
 // cost a third.
-struct FinerMesh {
-  double ratio = 0;        // volume of the study's elements over that of the finer ones
+struct OtherMesh {
+  double ratio = 0;        // volume of the study's elements over that of the other ones
   Eigen::VectorXd change;  // change of the parameters from the study's values (MovedBy)
   // Residuals with the longer steps, m, in the rows of the study's linearised misfit: of the
-  // study's mesh, and of the finer one with the changed parameters.
-  Eigen::VectorXd coarse, fine;
+  // study's mesh, and of the other one with the changed parameters.
+  Eigen::VectorXd own, other;
 
-  // Factors by which the change is to be multiplied for the limit of infinitely fine elements, and
-  // for elements of another ratio.
+  bool IsFiner() const { return ratio > 1; }
+  // Factors by which the change is to be multiplied for the limit of infinitely fine elements
+  // (negative if the other mesh is coarser), and for elements of another ratio.
   double ToLimit() const;
-  double ToRatio(double other) const;
+  double ToRatio(double other_ratio) const;
 };
 
 // `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. Returns nothing where a finer mesh cannot be made, for example because the mesh was
+// frames alone. Returns nothing where another mesh cannot be made, for example because the mesh was
 // given, or cannot be simulated. Throws Interrupted.
-std::optional<FinerMesh> MakeFinerMesh(const CalibrationProblem& problem,
+std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);
 
-// The residual with elements whose volume is smaller by another `ratio` than those of `finer`, with
-// the longer steps and the change of the parameters that belongs to that ratio. Empty where the
-// shape cannot be meshed so or the mesh not be simulated. Throws Interrupted.
+// The residual with elements whose volume is smaller by `ratio`, with the longer steps and the
+// change of the parameters that belongs to that ratio. Empty where the shape cannot be meshed so or
+// the mesh not be simulated. Throws Interrupted.
 Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                                const FinerMesh& finer, double ratio);
+                                const OtherMesh& known, double ratio);
 
 // The problem with elements whose volume is smaller by this ratio; null where the shape cannot be
-// meshed so finely. The study must outlive it.
-std::unique_ptr<const CalibrationProblem> WithFinerElements(const PredictionStudy& study,
+// meshed so. The study must outlive it.
+std::unique_ptr<const CalibrationProblem> WithOtherElements(const PredictionStudy& study,
                                                             double ratio);
 
 // The values to which the study, fitted to `values`, would be fitted with infinitely fine elements.
-// Returns nothing where MakeFinerMesh does.
+// Returns nothing where MakeOtherMesh does.
 std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
                                            const Eigen::VectorXd& values);
 

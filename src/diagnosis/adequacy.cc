@@ -45,10 +45,11 @@ std::vector<NamedEvidence> SumVariants(const HypothesisSpace& space,
       named.push_back({hypothesis.kind, hypothesis.name, 0, h});
       variants.emplace_back();
     }
-    const double factor = factors[static_cast<Eigen::Index>(h)];
-    NamedEvidence& own = named[at->second];
-    if (factor > factors[static_cast<Eigen::Index>(own.best)]) own.best = h;
-    variants[at->second].push_back(factor);
+    const double factor = factors[static_cast<Eigen::Index>(h)] - hypothesis.selection_penalty;
+    std::vector<double>& same = variants[at->second];
+    if (!same.empty() && factor > *std::max_element(same.begin(), same.end()))
+      named[at->second].best = h;
+    same.push_back(factor);
   }
   std::map<HypothesisKind, int> rivals;
   for (const NamedEvidence& own : named) ++rivals[own.kind];

@@ -104,6 +104,9 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
                     const HypothesisProbability& hypothesis) {
   if (hypothesis.names.empty() || hypothesis.names == input.adopted) return {&input.baseline, {}};
   const std::string& name = hypothesis.names.front();
+  if (hypothesis.kind == Kind::kEffect && hypothesis.names.size() == 1 && !input.adopted.empty())
+    for (const WeighedRefit& refit : input.in_place_of_adopted)
+      if (refit.effect == name) return {&refit.space, {}};
   if (hypothesis.kind == Kind::kEffect)
     if (const WeighedRefit* refit = FindRefit(input, name)) return {&refit->space, {}};
   for (const NamedEvidence& named : first_order)
@@ -264,12 +267,8 @@ Decision Decide(const DecisionInput& input) {
     if (pair.hypothesis.names == best.names) tested = pair.tested;
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  // An effect in the place of adopted nuisances is tested beside them all the same.
-  std::vector<std::string> beside = best.names;
-  if (!beside.empty())
-    for (const std::string& name : input.adopted)
-      if (std::count(beside.begin(), beside.end(), name) == 0) beside.push_back(name);
-  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
+  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit,
+                             best.names.empty() ? input.adopted : best.names);
   record.chance = ChanceOf(input, beside_nothing);
 
   const Naming naming = NameFrom(record.probabilities);

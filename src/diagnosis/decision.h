@@ -6,7 +6,7 @@
 //    further effect, as a pair.
 // 3. The most probable hypothesis is tested against its own residual (adequacy.h). If it leaves
 //    more than noise, something unknown is left.
-// 4. What the hypotheses that reach kNamingProbability have in common is stated, else their set.
+// 4. What the hypotheses that reach kStatedProbability have in common is stated, else their set.
 //
 // Pure: the result depends on the input alone.
 #ifndef LACUNA_DIAGNOSIS_DECISION_H_

@@ -18,9 +18,9 @@ struct WeighedRefit {
   std::string effect;
   double evidence = 0;    // log Bayes factor against the baseline at its best, at the refit
   HypothesisSpace space;  // along the refit; the effect's parameters are in its base
-  // Without the corrections of nuisances, the error of the held-out frames is smaller than that of
-  // the model without the effect. An effect that is missing lowers it; a stand-in follows the
-  // fitted frames with the help of the corrections, and fails later.
+  // Without the corrections of nuisances, the error of the held-out frames is not larger than that
+  // of the model without the effect by more than chance. An effect that is missing lowers it; a
+  // stand-in follows the fitted frames with the help of the corrections, and fails later.
   bool predicts = true;
 };
 

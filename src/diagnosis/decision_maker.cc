@@ -75,7 +75,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     input.refits.push_back(
         {candidate.type, effect.evidence + penalty,
          SpaceOf(ranked.refits[k].hypothesis, ranking, candidate.type, noise.level),
-         Predicts(effect.errors, diagnosis.errors)});
+         effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
@@ -104,10 +104,12 @@ void AddAlternatives(const NuisanceAlternatives& alternatives, DecisionInput* in
   if (alternatives.nuisances_evidence == 0) return;
   input->adopted_evidence = alternatives.nuisances_evidence;
   const double penalty = SelectionPenalty(input->families.size());
-  for (const RankedEffect& effect : alternatives.effects)
-    if (effect.HasUsableRefit() && Predicts(effect.errors, alternatives.bare))
-      input->in_place_of_adopted.push_back(
-          {effect.scored.candidate.type, effect.evidence + penalty, {}});
+  for (size_t k = 0; k < alternatives.effects.size(); ++k) {
+    const RankedEffect& effect = alternatives.effects[k];
+    if (effect.HasUsableRefit())
+      input->in_place_of_adopted.push_back({effect.scored.candidate.type, effect.evidence + penalty,
+                                            alternatives.spaces[k], effect.predicts});
+  }
 }
 
 }  // namespace lacuna

@@ -54,7 +54,7 @@ bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::
 Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   Naming naming;
   double sum = 0;
-  for (size_t k = 0; k < posterior.size() && sum < kNamingProbability; ++k) {
+  for (size_t k = 0; k < posterior.size() && sum < kStatedProbability; ++k) {
     naming.kept.push_back(k);
     sum += posterior[k].probability;
   }

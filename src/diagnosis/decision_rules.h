@@ -3,7 +3,7 @@
 //
 // The posterior probability of a hypothesis is its prior probability times its Bayes factor
 // against the model as it is, normalised. The smallest set of hypotheses that reaches
-// kNamingProbability is kept. What all of them contain is stated as missing; where they have
+// kStatedProbability is kept. What all of them contain is stated as missing; where they have
 // nothing in common, the set itself is stated.
 #ifndef LACUNA_DIAGNOSIS_DECISION_RULES_H_
 #define LACUNA_DIAGNOSIS_DECISION_RULES_H_
@@ -20,9 +20,6 @@ namespace lacuna {
 // value for "nothing" asks for more evidence before an effect is named.
 inline constexpr double kPriorNothing = 0.5, kPriorEffects = 0.3, kPriorNuisances = 0.15,
                         kPriorPairs = 0.05;
-// A name is stated with at least this posterior probability. By definition one name in twenty may
-// be wrong where the assumptions hold.
-inline constexpr double kNamingProbability = 0.95;
 // The level of the test of adequacy: so often a complete model is said to leave something unknown.
 // Lower: something unknown that is small passes for noise more often.
 inline constexpr double kAdequacyLevel = 0.05;
@@ -48,7 +45,7 @@ struct Naming {
     kSet,      // several hypotheses of different families
   };
   Level level = Level::kNothing;
-  // The smallest set that reaches kNamingProbability: indices of the posterior, in its order.
+  // The smallest set that reaches kStatedProbability: indices of the posterior, in its order.
   std::vector<size_t> kept;
   // At the level kCommon what the kept hypotheses have in common, otherwise all that they contain.
   std::vector<std::string> names;

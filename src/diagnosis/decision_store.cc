@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 2;
+constexpr int kSchemaVersion = 3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
@@ -48,8 +48,11 @@ json SpaceToJson(const HypothesisSpace& space) {
     const char* kind = "";
     for (const auto& [known, name] : kKinds)
       if (known == one.kind) kind = name;
-    hypotheses.push_back(
-        {{"kind", kind}, {"name", one.name}, {"variant", one.variant}, {"columns", one.columns}});
+    hypotheses.push_back({{"kind", kind},
+                          {"name", one.name},
+                          {"variant", one.variant},
+                          {"columns", one.columns},
+                          {"selection_penalty", one.selection_penalty}});
   }
   return {
       {"variance", space.variance}, {"rows", space.rows}, {"discretisation", space.discretisation},
@@ -79,6 +82,7 @@ HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& pr
     hypothesis.name = one.at("name");
     hypothesis.variant = one.at("variant");
     hypothesis.columns = one.at("columns").get<std::vector<int>>();
+    hypothesis.selection_penalty = one.at("selection_penalty");
   }
   return space;
 }
@@ -101,16 +105,13 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
   for (const WeighedNuisance& nuisance : input.nuisances)
     nuisances.push_back({{"name", nuisance.name}, {"evidence", nuisance.evidence}});
   for (const auto& [effect, family] : input.families) families[effect] = FamilyName(family);
-  json in_place = json::array();
-  for (const WeighedRefit& refit : input.in_place_of_adopted)
-    in_place.push_back({{"effect", refit.effect}, {"evidence", refit.evidence}});
   const json all = {{"schema_version", kSchemaVersion},
                     {"baseline", SpaceToJson(input.baseline)},
                     {"refits", RefitsToJson(input.refits)},
                     {"nuisances", nuisances},
                     {"adopted", input.adopted},
                     {"adopted_evidence", input.adopted_evidence},
-                    {"in_place_of_adopted", in_place},
+                    {"in_place_of_adopted", RefitsToJson(input.in_place_of_adopted)},
                     {"families", families},
                     {"natural_value", input.natural_value},
                     {"explained_misfit", input.explained_misfit},
@@ -118,8 +119,10 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
                     {"is_anything_detectable", input.is_anything_detectable},
                     {"seed", input.seed}};
   WriteNpy(ProductsFile(folder, 0), ProductsOf(input.baseline.model));
-  for (size_t k = 0; k < input.refits.size(); ++k)
-    WriteNpy(ProductsFile(folder, k + 1), ProductsOf(input.refits[k].space.model));
+  size_t space = 0;
+  for (const auto* refits : {&input.refits, &input.in_place_of_adopted})
+    for (const WeighedRefit& refit : *refits)
+      WriteNpy(ProductsFile(folder, ++space), ProductsOf(refit.space.model));
   WriteFileAtomically(folder / "decision.json", all.dump(1) + "\n");
 }
 
@@ -132,17 +135,21 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     RequireSchemaVersion(value, kSchemaVersion, "lacuna diagnose");
     DecisionInput input;
     input.baseline = SpaceFromJson(value.at("baseline"), ProductsFile(folder, 0));
-    for (const json& one : value.at("refits"))
-      input.refits.push_back(
-          {one.at("effect"), one.at("evidence"),
-           SpaceFromJson(one.at("space"), ProductsFile(folder, input.refits.size() + 1)),
-           one.at("predicts")});
+    size_t space = 0;
+    const auto read_refits = [&](const char* key) {
+      std::vector<WeighedRefit> refits;
+      for (const json& one : value.at(key))
+        refits.push_back({one.at("effect"), one.at("evidence"),
+                          SpaceFromJson(one.at("space"), ProductsFile(folder, ++space)),
+                          one.at("predicts")});
+      return refits;
+    };
+    input.refits = read_refits("refits");
+    input.in_place_of_adopted = read_refits("in_place_of_adopted");
     for (const json& one : value.at("nuisances"))
       input.nuisances.push_back({one.at("name"), one.at("evidence")});
     input.adopted = value.at("adopted").get<std::vector<std::string>>();
     input.adopted_evidence = value.at("adopted_evidence");
-    for (const json& one : value.at("in_place_of_adopted"))
-      input.in_place_of_adopted.push_back({one.at("effect"), one.at("evidence"), {}});
     for (const auto& [effect, family] : value.at("families").items())
       input.families[effect] = FamilyFromName(family);
     input.natural_value = value.at("natural_value").get<std::map<std::string, double>>();

@@ -122,7 +122,7 @@ void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, cons
       for (WeighedRefit& refit : input.refits)
         if (refit.effect == best)
           refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without,
-                                   context.ranking.scene);
+                                   {context.ranking, noise.level});
       decision = Decide(input);
     }
   }

@@ -21,6 +21,7 @@ struct RankedEffect {
   ScoredEffect scored;
   bool refitted = false;      // the fields below are those of the refit
   std::string refit_message;  // why it is not usable; empty: it is usable
+  bool predicts = true;       // as Predicts (effect_refit.h) says
   ModelErrors errors;
   double evidence = 0;                   // log Bayes factor against the model as it is
   double held_out_evidence = 0;          // the part of it that the held-out frames contribute
@@ -36,9 +37,10 @@ struct RankedEffect {
 // Effects fitted in place of the nuisances that were adopted beyond those that every model has.
 // Computed for a verdict "nuisance" only.
 struct NuisanceAlternatives {
-  std::vector<RankedEffect> effects;  // evidence against the bare model
-  double nuisances_evidence = 0;      // of the nuisances against the bare model
-  ModelErrors bare;                   // of the model without both
+  std::vector<RankedEffect> effects;    // evidence against the bare model
+  std::vector<HypothesisSpace> spaces;  // along their refits, with the nuisances as hypotheses
+  double nuisances_evidence = 0;        // of the nuisances against the bare model
+  ModelErrors bare;                     // of the model without both
 };
 
 struct Diagnosis : Conclusion {

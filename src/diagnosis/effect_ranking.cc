@@ -59,7 +59,8 @@ std::vector<MisfitDirection> DirectionsOf(const std::vector<CandidateEffect>& ca
 class HypothesisRanking {
  public:
   HypothesisRanking(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                    const std::vector<std::string>& without, const SceneColumns& known);
+                    const std::vector<std::string>& without, const SceneColumns& known,
+                    const DecidedBase* decided);
 
   // Scores everything, adopts the nuisances that are certain, and moves the result out.
   EffectRanking Rank() &&;
@@ -73,6 +74,8 @@ class HypothesisRanking {
 
   void AddEffects(const Eigen::MatrixXd& columns, PilotHypotheses pilots);
   void AddNuisance(NuisanceCandidate candidate);
+  // Whether an earlier ranking has adopted this nuisance, so that its columns are in the base.
+  bool IsDecided(const NuisanceCandidate& candidate) const;
   // The residual, m, after a fit of these columns to white noise.
   Eigen::VectorXd ResidualAfter(const std::vector<int>& chosen) const;
   void ScoreNuisancesOfEveryModel();
@@ -96,6 +99,7 @@ class HypothesisRanking {
 
   const Eigen::VectorXd values_;
   const Eigen::Index known_;  // number of the problem's parameters
+  const DecidedBase* const decided_;
   std::vector<CandidateEffect> candidates_;
   LinearisedMisfit misfit_;
   Hypotheses hypotheses_;
@@ -111,8 +115,10 @@ class HypothesisRanking {
 HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
                                      const Eigen::VectorXd& values,
                                      const std::vector<std::string>& without,
-                                     const SceneColumns& known)
-    : values_(values), known_(static_cast<Eigen::Index>(problem.parameters().size())) {
+                                     const SceneColumns& known, const DecidedBase* decided)
+    : values_(values),
+      known_(static_cast<Eigen::Index>(problem.parameters().size())),
+      decided_(decided) {
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
   candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
                                 without, study.candidates});
@@ -137,9 +143,15 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   }
   always_ = static_cast<Eigen::Index>(base_.size() - parameters_.size());
 
-  // The noise is what remains when every hypothesis explains as much as it can.
-  ranking_.noise = LevelOf(ResidualAfter(Range(0, hypotheses_.columns.cols())), misfit_,
-                           hypotheses_.columns.cols(), problem.LeastNoiseVariance());
+  if (decided != nullptr) {
+    const AdoptedNuisances further = decided->ranking.adopted.BeyondAlways();
+    base_ = Joined(base_, hypotheses_.Add(further.columns, further.priors));
+    ranking_.noise = decided->noise;
+  } else {
+    // The noise is what remains when every hypothesis explains as much as it can.
+    ranking_.noise = LevelOf(ResidualAfter(Range(0, hypotheses_.columns.cols())), misfit_,
+                             hypotheses_.columns.cols(), problem.LeastNoiseVariance());
+  }
   for (NuisanceCandidate& nuisance : GripNuisances(grips, grip_columns))
     AddNuisance(std::move(nuisance));
   const Eigen::VectorXd whitened =
@@ -167,10 +179,20 @@ void HypothesisRanking::AddEffects(const Eigen::MatrixXd& columns, PilotHypothes
 }
 
 void HypothesisRanking::AddNuisance(NuisanceCandidate candidate) {
+  if (IsDecided(candidate)) return;
   const bool adopted = candidate.card.is_always_in_model;
   of_nuisance_.push_back(hypotheses_.Add(candidate.columns, candidate.priors));
   ranking_.nuisances.push_back({.candidate = std::move(candidate), .adopted = adopted});
   if (adopted) base_ = Joined(base_, of_nuisance_.back());
+}
+
+bool HypothesisRanking::IsDecided(const NuisanceCandidate& candidate) const {
+  if (decided_ == nullptr || candidate.card.is_always_in_model) return false;
+  const std::vector<ScoredNuisance>& before = decided_->ranking.nuisances;
+  return std::any_of(before.begin(), before.end(), [&](const ScoredNuisance& nuisance) {
+    return nuisance.adopted && nuisance.candidate.card.name == candidate.card.name &&
+           nuisance.candidate.what == candidate.what;
+  });
 }
 
 Eigen::VectorXd HypothesisRanking::ResidualAfter(const std::vector<int>& chosen) const {
@@ -183,12 +205,13 @@ Eigen::VectorXd HypothesisRanking::ResidualAfter(const std::vector<int>& chosen)
 
 void HypothesisRanking::ScoreEffectsAndNuisances() {
   const RankingThresholds& thresholds = kThresholds.ranking;
+  const int most = decided_ != nullptr ? 0 : thresholds.most_adopted_nuisances;
   for (int adopted = 0;; ++adopted) {
     const LinearFit before = weighed_->all.Fit(base_, ranking_.noise.variance);
     ScoreEffects(before);
     const int best = ScoreNuisances(before);
     const double rival = BestEvidence();
-    if (best < 0 || adopted == thresholds.most_adopted_nuisances) break;
+    if (best < 0 || adopted == most) break;
     ScoredNuisance& nuisance = ranking_.nuisances[static_cast<size_t>(best)];
     if (nuisance.evidence < rival + thresholds.nuisance_lead) break;
     if (adopted == 0) ranking_.without_adopted = ScoredEntries();
@@ -304,13 +327,12 @@ std::vector<TriedVariant> HypothesisRanking::Tried() const {
     for (const size_t c : entry.variants)
       tried.push_back({candidates_[c].type, candidates_[c].variant,
                        hypotheses_.columns(Eigen::all, of_candidate_[c]), PriorsOf(candidates_[c]),
-                       EffectPenalty(entry), false});
+                       0, false, false});
   for (const ScoredNuisance& nuisance : ranking_.nuisances) {
     const NuisanceCandidate& candidate = nuisance.candidate;
-    if (!nuisance.adopted)
+    if (!candidate.card.is_always_in_model)
       tried.push_back({candidate.card.name, "", candidate.columns, candidate.priors,
-                       candidate.selection_penalty + SelectionPenalty(ranking_.nuisances.size()),
-                       true});
+                       candidate.selection_penalty, true, nuisance.adopted});
   }
   return tried;
 }
@@ -336,10 +358,14 @@ EffectRanking HypothesisRanking::Rank() && {
 
 HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
                             std::vector<LinearPrior> priors, const EffectRanking& ranking,
-                            const std::string& without, const NoiseLevel& noise) {
+                            const std::string& without, const NoiseLevel& noise,
+                            bool base_has_adopted) {
+  const auto is_in_base = [&](const TriedVariant& tried) {
+    return tried.type == without || (tried.is_adopted && base_has_adopted);
+  };
   Eigen::Index width = base.cols() + ranking.unknown_force.cols();
   for (const TriedVariant& tried : ranking.tried)
-    if (tried.type != without) width += tried.columns.cols();
+    if (!is_in_base(tried)) width += tried.columns.cols();
   Eigen::MatrixXd columns(base.rows(), width);
   columns.leftCols(base.cols()) = base;
   Eigen::Index column = base.cols();
@@ -352,15 +378,16 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
     hypotheses.push_back(std::move(hypothesis));
   };
   for (const TriedVariant& tried : ranking.tried) {
-    if (tried.type == without) continue;
+    if (is_in_base(tried)) continue;
     add({tried.is_nuisance ? HypothesisKind::kNuisance : HypothesisKind::kEffect,
          tried.type,
          tried.variant,
-         {}},
+         {},
+         tried.selection_penalty},
         tried.columns);
     priors.insert(priors.end(), tried.priors.begin(), tried.priors.end());
   }
-  add({HypothesisKind::kUnknownForce, "", "", {}}, ranking.unknown_force);
+  add({.kind = HypothesisKind::kUnknownForce}, ranking.unknown_force);
   priors.resize(static_cast<size_t>(width), {0, 1, false});
   HypothesisSpace space = MakeHypothesisSpace(
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
@@ -379,6 +406,10 @@ AdoptedNuisances AdoptedNuisances::Always() const {
   return {columns.leftCols(always), {priors.begin(), priors.begin() + always}, always};
 }
 
+AdoptedNuisances AdoptedNuisances::BeyondAlways() const {
+  return {columns.rightCols(columns.cols() - always), {priors.begin() + always, priors.end()}, 0};
+}
+
 AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const {
   AdoptedNuisances with = *this;
   with.columns.conservativeResize(Eigen::NoChange, columns.cols() + nuisance.columns.cols());
@@ -389,9 +420,9 @@ AdoptedNuisances AdoptedNuisances::And(const NuisanceCandidate& nuisance) const 
 
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without,
-                          const SceneColumns& known) {
+                          const SceneColumns& known, const DecidedBase* decided) {
   progress->Begin("score", 0);
-  EffectRanking ranking = HypothesisRanking(problem, values, without, known).Rank();
+  EffectRanking ranking = HypothesisRanking(problem, values, without, known, decided).Rank();
   progress->End(fmt::format("{} effects in {} variants", ranking.effects.size(), ranking.variants));
   return ranking;
 }

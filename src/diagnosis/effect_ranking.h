@@ -52,17 +52,26 @@ struct EffectRanking {
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of
 // `misfit`) with these priors, for the residual of `misfit`. `without`: a type of effect that is
-// left out, because it is part of the base.
+// left out, because it is part of the base. `base_has_adopted`: so are the adopted nuisances;
+// otherwise they are hypotheses like the others.
 HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixXd& base,
                             std::vector<LinearPrior> priors, const EffectRanking& ranking,
-                            const std::string& without, const NoiseLevel& noise);
+                            const std::string& without, const NoiseLevel& noise,
+                            bool base_has_adopted = true);
+
+// What an earlier ranking of the same recordings has decided: which nuisances are part of the
+// model, beside those of every model, and how large the noise is.
+struct DecidedBase {
+  const EffectRanking& ranking;
+  NoiseLevel noise;
+};
 
 // Ranks the effects of the catalogue, but for the types in `without`, beside the study of `problem`
 // with the fitted `values` of CalibrationProblem::parameters. What `known` has is taken from there
-// instead of simulated. Throws Interrupted.
+// instead of simulated. With `decided`, no nuisance is adopted anew. Throws Interrupted.
 EffectRanking RankEffects(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                           Progress* progress, const std::vector<std::string>& without = {},
-                          const SceneColumns& known = {});
+                          const SceneColumns& known = {}, const DecidedBase* decided = nullptr);
 
 }  // namespace lacuna
 

@@ -32,7 +32,7 @@ std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                      const LinearisedMisfit* known) {
   double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
-  double unfitted_noise = 0;
+  double unfitted_noise = 0, fitted_squares = 0, held_out_squares = 0;
   int fitted_points = 0, held_out_points = 0, unfitted_points = 0;
   const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values, known);
   for (size_t r = 0; r < misfits.size(); ++r) {
@@ -41,6 +41,12 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
       unfitted_noise += out.rms_over_sigma * out.rms_over_sigma * out.points;
       unfitted_points += out.points;
     }
+    const double components = static_cast<double>(problem.models()[r].observer().Components());
+    const auto squares = [&](const MisfitMeasure& measure) {
+      return components * measure.points * measure.rms_over_sigma * measure.rms_over_sigma;
+    };
+    fitted_squares += squares(in_fit);
+    held_out_squares += squares(out);
     fitted += in_fit.rms * in_fit.rms * in_fit.points;
     fitted_noise += in_fit.rms_over_sigma * in_fit.rms_over_sigma * in_fit.points;
     fitted_points += in_fit.points;
@@ -57,6 +63,7 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
     errors.rms_over_sigma = std::sqrt(fitted_noise / fitted_points);
   }
   errors.held_out_rms = errors.in_fit_rms;
+  errors.squares_over_sigma = errors.has_held_out ? held_out_squares : fitted_squares;
   if (errors.has_held_out) {
     errors.held_out_rms = std::sqrt(held_out / held_out_points);
     errors.rms_over_sigma = std::sqrt(held_out_noise / held_out_points);
@@ -160,14 +167,17 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                            const EffectRefit& refit, const std::vector<std::string>& without,
-                           SceneColumns scene) {
+                           const DecidedBase& decided) {
+  SceneColumns scene = decided.ranking.scene;
   // What an effect leaves may be a hundredth of what it explains, so that the columns of the mesh
   // and the time step must be those of its own motion.
   scene.nuisances.clear();
   if (effect.candidate.IsPilot()) scene.pilots.reset();
   const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
   const CalibrationProblem with(study, baseline.problem.body()->mesh);
-  return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene).space;
+  return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene,
+                     &decided)
+      .space;
 }
 
 namespace {
@@ -264,7 +274,10 @@ Calibration FitExtended(const ExtendedProblem& extended, const std::string& stag
   if (afresh.parameters.size() != own) return calibration;
   start.head(own) = afresh.parameters;
   Calibration other = extended.CalibrateFrom(start, stage + " from there");
-  return IsBetter(other, calibration) ? other : calibration;
+  const int predictions = calibration.predictions + afresh.predictions + other.predictions;
+  Calibration& better = IsBetter(other, calibration) ? other : calibration;
+  better.predictions = predictions;
+  return better;
 }
 
 }  // namespace
@@ -280,8 +293,21 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
          !explains_excess;
 }
 
-bool Predicts(const ModelErrors& with, const ModelErrors& without) {
-  return !without.has_held_out || with.held_out_rms < without.held_out_rms;
+double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit) {
+  constexpr double kQuantile = 2.33;  // of a normal distribution, one in 100
+  double persistence = 1;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const std::vector<double>& times = part.layout.times;
+    if (times.size() < 2 || !(noise.correlation_time > 0)) continue;
+    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    const double next = std::exp(-spacing / noise.correlation_time);
+    persistence = std::max(persistence, (1 + next) / (1 - next));
+  }
+  return kQuantile * kQuantile * noise.variance * persistence;
+}
+
+bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance) {
+  return !without.has_held_out || with.squares_over_sigma < without.squares_over_sigma + chance;
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {

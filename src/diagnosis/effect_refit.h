@@ -66,12 +66,12 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
                         const std::string& type, const NoiseLevel& noise);
 
-// The same with columns along the motion of the refitted model, from a new ranking. `scene`: of the
-// baseline's ranking; its pilots are simulated again only if the effect is one of them, so that it
-// does not stand beside itself. Throws Interrupted.
+// The same with columns along the motion of the refitted model, from a new ranking with the
+// nuisances that `decided`, the baseline's ranking, has adopted. Its pilots are simulated again
+// only if the effect is one of them, so that it does not stand beside itself. Throws Interrupted.
 HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
                            const EffectRefit& refit, const std::vector<std::string>& without,
-                           SceneColumns scene);
+                           const DecidedBase& decided);
 
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a
@@ -80,9 +80,17 @@ HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& e
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
                 double predicted);
 
-// Whether an effect lowers the error of the held-out frames, without the corrections of nuisances;
-// true where nothing is held out.
-bool Predicts(const ModelErrors& with, const ModelErrors& without);
+// The growth of the squared misfit of the held-out frames, σ², that an effect which is really
+// missing exceeds in fewer than one recording in 100, whatever its size. If the effect changes the
+// prediction by d, in units of the noise e, the misfit grows by 2 e·d − ‖d‖². It exceeds z² v only
+// if e·d/‖d‖ > (z² v + ‖d‖²)/(2 ‖d‖) ≥ z √v; v is the variance of e·d/‖d‖, that of noise with
+// persistent errors.
+double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit);
+
+// Whether the error of the held-out frames with an effect, without the corrections of nuisances, is
+// compatible with the effect being missing: it does not grow by more than `chance`
+// (HeldOutChance). True where nothing is held out.
+bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance);
 
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
 // the effect follows the fitted frames with wrong parameters.

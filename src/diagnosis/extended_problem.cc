@@ -217,6 +217,7 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
     return Calibrate(parameters, predict,
                      {.max_iterations = holds_effect ? kHoldIterations : kIterations,
                       .cost_tolerance = kTolerance,
+                      .max_predictions = kThresholds.refit.most_predictions,
                       .near_rms = kInfinity});
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);

@@ -61,7 +61,7 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
     ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect));
     if (!record.usable) {
       ledger.ending.reason = LedgerEnding::Reason::kNotFitted;
-    } else if (ledger.models.back().gain < options.least_gain) {
+    } else if (ledger.models.back().gain <= options.least_gain) {
       ledger.ending = {LedgerEnding::Reason::kLittleGain, options.least_gain};
     }
     keep();

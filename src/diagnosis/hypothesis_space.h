@@ -25,6 +25,7 @@ struct WeighedHypothesis {
   std::string name;          // the effect's type or the nuisance's name; empty for an unknown force
   std::string variant;       // the place, direction or time of an effect's variant
   std::vector<int> columns;  // indices in HypothesisSpace::model
+  double selection_penalty = 0;  // as in TriedVariant (scored_effect.h)
 };
 
 struct HypothesisSpace {

@@ -1,9 +1,11 @@
 // The error of the finite element mesh.
 //
-// The first column is the change from the model's mesh to a finer one beyond what the parameters
-// can compensate for (calibration/mesh_limit.h), the second the last part of that change, from an
-// intermediate mesh. The prior of the first expects the extrapolation to infinitely fine elements.
+// The first column is the change from the model's mesh to another one beyond what the parameters
+// can compensate for (calibration/mesh_limit.h), the second the part of that change between the
+// finest of the meshes and one whose elements are twice as large. The prior of the first expects
+// the extrapolation to infinitely fine elements.
 #include <algorithm>
+#include <cmath>
 
 #include "calibration/linear_misfit.h"
 #include "calibration/mesh_limit.h"
@@ -18,7 +20,8 @@ NuisanceCard Card() {
   card.name = "mesh";
   card.title = "the size of the elements";
   card.directions =
-      "the change of the prediction with finer elements, and with elements of twice that volume, "
+      "the change of the prediction with finer (of large meshes: coarser) elements, and with "
+      "elements of twice the volume, "
       "each with parameters that compensate for as much as they can";
   card.prior = "the extrapolation to infinitely fine elements, and how far it is uncertain";
   card.residual_when_present =
@@ -36,17 +39,20 @@ NuisanceCard Card() {
 }
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
-  const std::optional<FinerMesh> finer =
-      MakeFinerMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false);
-  if (!finer) return std::nullopt;
-  const Eigen::VectorXd between = ResidualAtRatio(at.problem, at.values, *finer, finer->ratio / 2);
-  if (between.size() != finer->fine.size()) return std::nullopt;
+  const std::optional<OtherMesh> mesh =
+      MakeOtherMesh(at.problem, at.values, at.misfit, /*fitted_only=*/false);
+  if (!mesh) return std::nullopt;
+  // Between the finest mesh, which is the other or the model's own, and the other.
+  const double halfway = mesh->IsFiner() ? mesh->ratio / 2 : 0.5;
+  const Eigen::VectorXd between = ResidualAtRatio(at.problem, at.values, *mesh, halfway);
+  if (between.size() != mesh->other.size()) return std::nullopt;
   NuisanceCandidate candidate;
   candidate.columns.resize(between.size(), 2);
-  candidate.columns << finer->fine - finer->coarse, finer->fine - between;
-  const double limit = finer->ToLimit();
+  candidate.columns << mesh->other - mesh->own,
+      (mesh->IsFiner() ? mesh->other : mesh->own) - between;
+  const double limit = mesh->ToLimit(), known = mesh->IsFiner() ? 1 : 0;
   const NuisanceThresholds& thresholds = kThresholds.nuisances;
-  candidate.priors = {{limit, std::max(thresholds.mesh_limit, limit - 1), false},
+  candidate.priors = {{limit, std::max(thresholds.mesh_limit, std::abs(limit - known)), false},
                       {0, thresholds.mesh_unknown, false}};
   candidate.unknown = thresholds.mesh_unknown * candidate.columns.col(1);
   return candidate;

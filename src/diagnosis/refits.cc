@@ -37,15 +37,19 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
   };
   EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
   ScoredVariant best = effect->scored;
+  int predictions = refit.calibration.predictions;
+  const auto has_budget = [&] { return predictions < kThresholds.refit.most_of_effect; };
   for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
     if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
       break;
+    if (!has_budget()) break;
     EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
+    predictions += other.calibration.predictions;
     if (!IsBetter(other, refit, context.ranking.noise)) continue;
     refit = std::move(other);
     best = elsewhere;
   }
-  if (!effect->scored.candidate.IsPilot() &&
+  if (!effect->scored.candidate.IsPilot() && has_budget() &&
       IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
     EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
     if (IsBetter(other, refit, context.ranking.noise)) {
@@ -65,13 +69,18 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
   return refit;
 }
 
+double ChanceIn(const RefitContext& context) {
+  return HeldOutChance(context.ranking.noise, context.ranking.misfit);
+}
+
 void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
   RankedEffect& own = ranked->effects[effect];
   if (own.refitted || ranked->count == ranked->limit) return;
   ++ranked->count;
   EffectRefit& refit = ranked->refits[effect];
   refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
-  if (!refit.message.empty() || !Predicts(refit.errors, ranked->errors)) return;
+  own.predicts = Predicts(refit.errors, ranked->errors, ChanceIn(context));
+  if (!refit.message.empty() || !own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence > ranked->best_evidence) ranked->best_evidence = evidence;
 }
@@ -250,8 +259,13 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     RankedEffect& effect = alternatives.effects.emplace_back();
     effect.scored = scored;
     const EffectRefit with = RefitEffect(context, always, bare, &effect);
-    if (with.message.empty())
-      SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
+    effect.predicts = Predicts(with.errors, bare.errors, ChanceIn(context));
+    HypothesisSpace& space = alternatives.spaces.emplace_back();
+    if (!with.message.empty()) continue;
+    SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
+    space = SpaceBeside(with.hypothesis.misfit, with.hypothesis.misfit.jacobian,
+                        with.hypothesis.priors, ranking, effect.scored.candidate.type, noise.level,
+                        /*base_has_adopted=*/false);
   }
   return alternatives;
 }

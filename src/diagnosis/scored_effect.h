@@ -50,7 +50,8 @@ struct AdoptedNuisances {
   std::vector<LinearPrior> priors;
   Eigen::Index always = 0;  // the first columns belong to nuisances that every model has
 
-  AdoptedNuisances Always() const;  // only those
+  AdoptedNuisances Always() const;        // only those
+  AdoptedNuisances BeyondAlways() const;  // only the others
   AdoptedNuisances And(const NuisanceCandidate& nuisance) const;
   bool HasMore() const { return columns.cols() > always; }
 };
@@ -61,8 +62,11 @@ struct TriedVariant {
   std::string variant;  // of the effect
   Eigen::MatrixXd columns;
   std::vector<LinearPrior> priors;
-  double selection_penalty = 0;  // SelectionPenalty of its rivals, which its evidence is reduced by
+  // ln of the number of alternatives from which it was selected before it was tried, such as the
+  // frames among which one is bad.
+  double selection_penalty = 0;
   bool is_nuisance = false;
+  bool is_adopted = false;  // a nuisance that the ranking has taken into the model
 };
 
 }  // namespace lacuna

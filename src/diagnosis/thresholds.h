@@ -46,6 +46,10 @@ struct RefitThresholds {
   double beaten_by = 15, beaten_share = 0.3;
   // The largest number of refitted effects, unless the user asks for more.
   int most_effects = 6;
+  // A fit of a refit ends after so many predictions, and no further start is tried once an effect
+  // has taken `most_of_effect`. The best parameters so far count. Higher: a hopeless effect takes
+  // longer, and a slow minimum is found more often.
+  int most_predictions = 60, most_of_effect = 120;
   // A refit also starts from other variants (places, times) with this share of the evidence of the
   // best variant. Lower: slower, fewer local minima.
   double variant_share = 0.8;

@@ -211,6 +211,21 @@ class UntilAtTurn : public ceres::IterationCallback {
   int steps_ = 0;
 };
 
+// Ends a round once a number of predictions has been made.
+class UntilOutOfBudget : public ceres::IterationCallback {
+ public:
+  UntilOutOfBudget(const SecantPredictions& predictions, int most)
+      : predictions_(predictions), most_(most) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& /*step*/) override {
+    return IsUsedUp() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+  bool IsUsedUp() const { return predictions_.count() >= most_; }
+
+ private:
+  const SecantPredictions& predictions_;
+  const int most_;
+};
+
 // The trust-region radius for the next round: that of the last accepted step, because each rejected
 // step shrinks the radius faster than the one before.
 double NextRadius(const ceres::Solver::Summary& summary) {
@@ -262,7 +277,8 @@ class BoundedDescent {
   DescentEnd Run(bool is_near) {
     DescentEnd end;
     UntilAtTurn until_at_turn([this] { return IsAtTurn(); });
-    solver_.callbacks = {&until_at_turn};
+    UntilOutOfBudget until_out_of_budget(predictions_, options_.max_predictions);
+    solver_.callbacks = {&until_at_turn, &until_out_of_budget};
     bool ended = false;
     for (int round = 0; !ended; ++round) {
       predictions_.FollowSecants(is_near && round < kSecantRounds);
@@ -277,6 +293,13 @@ class BoundedDescent {
       solver_.initial_trust_region_radius = NextRadius(summary);
       const bool has_budget = end.iterations < options_.max_iterations;
       const bool has_failed = summary.termination_type == ceres::FAILURE;
+      if (until_out_of_budget.IsUsedUp()) {
+        end.is_out_of_budget = true;
+        end.usable = false;
+        end.message = "the search was ended after " + std::to_string(predictions_.count()) +
+                      " predictions, before it had converged";
+        break;
+      }
       if (has_failed || !has_budget) break;
       ended = !IsWorthARound();
     }
@@ -325,7 +348,9 @@ class BoundedDescent {
   // can do neither.
   bool IsWorthARound() {
     const Eigen::VectorXd scaled = Scaled(), values = Values(scaled);
-    const QuadraticCost model = ModelOf(predictions_.ExactAt(values), parameters_, values);
+    const Prediction& here = predictions_.ExactAt(values);
+    if (!here.usable) return false;  // a motion that can be simulated, but not linearised
+    const QuadraticCost model = ModelOf(here, parameters_, values);
     const double least_gain = solver_.function_tolerance * cost_;
     const bool has_gained = cost_ - model.cost > least_gain;
     cost_ = model.cost;

@@ -19,10 +19,11 @@
 namespace lacuna {
 
 struct DescentEnd {
-  Eigen::VectorXd parameters;  // θ, SI, within the bounds
-  bool usable = false;         // whether the search has converged
-  std::string message;         // why it has not
-  int iterations = 0;          // iterations of Ceres in all rounds
+  Eigen::VectorXd parameters;     // θ, SI, within the bounds
+  bool usable = false;            // whether the search has converged
+  std::string message;            // why it has not
+  int iterations = 0;             // iterations of Ceres in all rounds
+  bool is_out_of_budget = false;  // CalibrationOptions::max_predictions has ended it
 };
 
 // Searches from the starts of the parameters, of which there must be at least one. `first` is the

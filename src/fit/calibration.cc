@@ -177,13 +177,20 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     calibration.usable = end.usable;
     calibration.message = end.message;
     calibration.iterations = end.iterations;
+    calibration.is_out_of_budget = end.is_out_of_budget;
   } else {
     calibration.usable = true;
   }
 
   const Prediction& last = predictions.ExactAt(calibration.parameters);
   calibration.predictions = predictions.count();
-  CHECK(last.usable) << "the solution could not be predicted a second time: " << last.message;
+  if (!last.usable) {
+    // The search asked for the residual only, and its derivative is not available there: a step at
+    // the limit of stability, for example.
+    calibration.usable = false;
+    calibration.message = "the motion at the solution cannot be linearised: " + last.message;
+    return calibration;
+  }
   calibration.rms = RootMeanSquare(last.residual);
   calibration.inflation = std::max(1.0, calibration.rms);
   calibration.memory = MemoryOf(last);

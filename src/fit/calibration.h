@@ -22,6 +22,7 @@ namespace lacuna {
 struct Calibration {
   bool usable = false;
   std::string message;                       // why the result is not usable
+  bool is_out_of_budget = false;             // CalibrationOptions::max_predictions ended the search
   int iterations = 0;                        // iterations of the optimiser
   int predictions = 0;                       // evaluations of the prediction function
   Eigen::VectorXd parameters;                // θ, SI

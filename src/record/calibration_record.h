@@ -54,7 +54,8 @@ struct FittedRecording {
 struct CalibrationRecord {
   std::filesystem::path experiment;  // relative path from the run's folder
   bool usable = false;
-  std::string message;  // why it is not usable
+  // Why it is not usable; of a usable record, that the fit was ended before it had converged.
+  std::string message;
   // m, the standard deviations that whiten the residuals: of one coordinate of a marker, and of a
   // scanned point along the surface normal. 0 where there are no markers or no scans.
   double noise = 0, scan_noise = 0;

@@ -40,15 +40,20 @@ double DecisionRecord::FamilyProbability(EffectFamily family) const {
   return sum;
 }
 
+json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities) {
+  json all = json::array();
+  for (const HypothesisProbability& one : probabilities)
+    all.push_back({{"kind", KindName(one.kind)},
+                   {"names", one.names},
+                   {"family", FamilyName(one.family)},
+                   {"evidence", NumberOrNull(one.evidence)},
+                   {"probability", one.probability},
+                   {"is_refuted", one.is_refuted}});
+  return all;
+}
+
 json DecisionToJson(const DecisionRecord& decision) {
-  json probabilities = json::array(), power = json::array(), separations = json::array();
-  for (const HypothesisProbability& one : decision.probabilities)
-    probabilities.push_back({{"kind", KindName(one.kind)},
-                             {"names", one.names},
-                             {"family", FamilyName(one.family)},
-                             {"evidence", NumberOrNull(one.evidence)},
-                             {"probability", one.probability},
-                             {"is_refuted", one.is_refuted}});
+  json power = json::array(), separations = json::array();
   for (const RecordedPower& one : decision.power)
     power.push_back({{"truth", one.truth},
                      {"named", one.named},
@@ -61,7 +66,7 @@ json DecisionToJson(const DecisionRecord& decision) {
     separations.push_back(
         {{"first", one.first}, {"second", one.second}, {"lambda", NumberOrNull(one.lambda)}});
   const RecordedAdequacy& adequacy = decision.adequacy;
-  return {{"probabilities", probabilities},
+  return {{"probabilities", ProbabilitiesToJson(decision.probabilities)},
           {"adequacy",
            {{"beside", adequacy.beside},
             {"p_unknown_force", adequacy.p_unknown_force},

@@ -11,6 +11,11 @@
 
 namespace lacuna {
 
+// What is stated about missing physics has at least this posterior probability: the hypotheses that
+// reach it together are kept, the most probable ones first. By definition one statement in twenty
+// may be wrong where the assumptions hold.
+inline constexpr double kStatedProbability = 0.95;
+
 // The posterior probability of one hypothesis about what is missing.
 struct HypothesisProbability {
   enum class Kind { kNothing, kEffect, kNuisance, kPair };
@@ -20,8 +25,8 @@ struct HypothesisProbability {
   // The log Bayes factor against the model as it is, variants summed, without prior odds.
   double evidence = 0;
   double probability = 0;
-  // An effect with which the error of the held-out frames is not smaller. It counts as refuted,
-  // whatever its evidence: its probability is 0.
+  // An effect with which the error of the held-out frames grows by more than chance. It counts as
+  // refuted, whatever its evidence: its probability is 0.
   bool is_refuted = false;
 };
 
@@ -73,6 +78,7 @@ struct DecisionRecord {
 };
 
 nlohmann::json DecisionToJson(const DecisionRecord& decision);
+nlohmann::json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities);
 // Both throw nlohmann::json::exception and InputError. The first reads the list under the key
 // "probabilities" alone.
 std::vector<HypothesisProbability> ProbabilitiesFromJson(const nlohmann::json& value);

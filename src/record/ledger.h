@@ -48,7 +48,7 @@ struct LedgerEnding {
     kUndecided,    // the last verdict is ambiguous, and no effect is added by guess
     kMostEffects,  // as many effects were added as allowed
     kNotFitted,    // the last added effect could not be fitted
-    kLittleGain,   // the last added effect reduced the error by less than `least_gain`
+    kLittleGain,   // the last added effect did not reduce the error by more than `least_gain`
   };
   Reason reason = Reason::kNone;
   double least_gain = 0;  // threshold of kLittleGain

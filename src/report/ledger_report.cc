@@ -159,6 +159,12 @@ std::string DescribeEnding(const Ledger& ledger) {
       return fmt::format("The search ended because {} cannot be fitted: {}.", last.added,
                          last.record.message);
     case Reason::kLittleGain:
+      if (ledger.ending.least_gain == 0)
+        return fmt::format(
+            "The search ended because the {} error with {} is not smaller, but {:.1f} % larger: {} "
+            "does not count.",
+            last.errors.has_held_out ? "held-out" : "fitted", last.added, -100 * last.gain,
+            last.added);
       return fmt::format(
           "The search ended because {} reduces the {} error by {:.1f} %, less than {:g} %.",
           last.added, last.errors.has_held_out ? "held-out" : "fitted", 100 * last.gain,

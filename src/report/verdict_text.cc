@@ -46,6 +46,11 @@ struct ReasonSentence {
            "needed.";
   }
   std::string operator()(const ErrorIsNoise& reason) const {
+    const RecordedAdequacy& adequacy = diagnosis.decision.adequacy;
+    if (adequacy.is_tolerated && !adequacy.is_adequate)
+      return fmt::format(
+          "The error is {:.3f} mm or {:.1f} σ, and no effect has sufficient evidence.",
+          Millimetres(reason.rms), reason.rms_over_sigma);
     return fmt::format(
         "The error, {:.3f} mm or {:.1f} σ, is that of the noise, and no effect has sufficient "
         "evidence.",
@@ -152,16 +157,28 @@ bool HasEvidence(const DiagnosisRecord& diagnosis, const std::string& type) {
   return effect != nullptr && effect->HasUsableRefit() && effect->refit->evidence > 0;
 }
 
-// The effects that have evidence, but do not lower the error of the held-out frames.
+// The effects that have evidence, but increase the error of the held-out frames.
 std::vector<std::string> RefutedSentences(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> sentences;
   for (const HypothesisProbability& one : diagnosis.decision.probabilities)
     if (one.is_refuted && HasEvidence(diagnosis, one.names.front()))
       sentences.push_back(
-          fmt::format("With {} the model fits better, but it does not predict the held-out frames "
-                      "better: {} is refuted.",
+          fmt::format("With {} the model fits better, but it predicts the held-out frames worse, "
+                      "and by more than chance: {} is refuted.",
                       one.names.front(), one.names.front()));
   return sentences;
+}
+
+// Whether a pair of effects is among the hypotheses that together reach the probability that a
+// statement needs.
+bool KeepsPair(const DecisionRecord& decision) {
+  double sum = 0;
+  for (const HypothesisProbability& one : decision.probabilities) {
+    if (one.kind == HypothesisProbability::Kind::kPair) return true;
+    sum += one.probability;
+    if (sum >= kStatedProbability) break;
+  }
+  return false;
 }
 
 // What the verdict names.
@@ -171,8 +188,9 @@ std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
   if (diagnosis.verdict == Verdict::kMissing)
     return {fmt::format("Missing: {}.", fmt::join(titles, "; "))};
   if (diagnosis.verdict == Verdict::kAmbiguous)
-    return {
-        fmt::format("These recordings cannot distinguish between: {}.", fmt::join(titles, "; "))};
+    return {fmt::format("These recordings cannot distinguish between: {}{}.",
+                        fmt::join(titles, "; "),
+                        KeepsPair(diagnosis.decision) ? "; or two of them at once" : "")};
   return {};
 }
 

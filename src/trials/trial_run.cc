@@ -131,11 +131,9 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
 }
 
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
-  DecisionRecord decision;
-  decision.probabilities = outcome.probabilities;
   const nlohmann::json all = {{"schema_version", 2},
                               {"verdict", VerdictName(outcome.verdict)},
-                              {"probabilities", DecisionToJson(decision).at("probabilities")},
+                              {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
                               {"p_adequate", outcome.p_adequate},
                               {"named", outcome.named},
                               {"ranked", outcome.ranked},

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -60,10 +61,10 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
   // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
-  const auto finer = MakeFinerMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
+  const auto finer = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false);
   ASSERT_TRUE(finer.has_value());
   const PredictionStudy study = coarse.problem.WithEstimatedNoise();
-  const auto on_finer = WithFinerElements(study, finer->ratio);
+  const auto on_finer = WithOtherElements(study, finer->ratio);
   ASSERT_NE(on_finer, nullptr);
   const auto part = [&](const Eigen::VectorXd& change) {
     const Eigen::VectorXd there =
@@ -74,17 +75,29 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   EXPECT_LT(part(finer->change), 0.5 * with_the_same);
   // With long steps on both meshes the difference is nearly the same one.
   const Eigen::VectorXd with_steps =
-      on_finer
-          ->Linearise(MovedBy(coarse.problem.parameters(), values, finer->change), false)
+      on_finer->Linearise(MovedBy(coarse.problem.parameters(), values, finer->change), false)
           .residual -
       before;
-  EXPECT_LT((finer->fine - finer->coarse - with_steps).norm(), 0.3 * with_steps.norm());
-  const Eigen::VectorXd again =
-      ResidualAtRatio(coarse.problem, values, *finer, finer->ratio);
-  ASSERT_EQ(again.size(), finer->fine.size());
-  EXPECT_LT((again - finer->fine).norm(), 1e-3 * (finer->fine - finer->coarse).norm());
+  EXPECT_LT((finer->other - finer->own - with_steps).norm(), 0.3 * with_steps.norm());
+  const Eigen::VectorXd again = ResidualAtRatio(coarse.problem, values, *finer, finer->ratio);
+  ASSERT_EQ(again.size(), finer->other.size());
+  EXPECT_LT((again - finer->other).norm(), 1e-3 * (finer->other - finer->own).norm());
   EXPECT_EQ(coarse.problem.Linearise(values, false).residual, before)
       << "a prediction depends on nothing that was predicted before it";
+}
+
+// Richardson's extrapolation from a coarser mesh, which a study of many elements uses.
+TEST(OtherMesh, ExtrapolatesFromBothSides) {
+  const double power = 0.7;
+  const auto at = [&](double ratio) { return 5 + 2 * std::pow(ratio, -power); };
+  for (const double ratio : {12.0, 4.0, 0.25}) {
+    OtherMesh mesh;
+    mesh.ratio = ratio;
+    const double change = at(ratio) - at(1);
+    EXPECT_NEAR(at(1) + mesh.ToLimit() * change, 5, 1e-12);
+    EXPECT_NEAR(at(1) + mesh.ToRatio(0.5) * change, at(0.5), 1e-12);
+    EXPECT_NEAR(mesh.ToRatio(ratio), 1, 1e-12);
+  }
 }
 
 }  // namespace

@@ -61,6 +61,23 @@ TEST(ProjectedHypotheses, AveragesOverTheWidthsOfAnUnknownForce) {
   EXPECT_GT(found, 20);
 }
 
+// One frame that was selected from a hundred needs so much more evidence.
+TEST(SumVariants, ChargesForASelection) {
+  const SyntheticSpace synthetic;
+  HypothesisSpace space = synthetic.With(SyntheticSpace::Noise(1));
+  const Eigen::VectorXd factors =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(space.hypotheses.size()), 8);
+  const auto of_clock = [&] {
+    for (const NamedEvidence& named : SumVariants(space, factors))
+      if (named.name == "clock") return named.evidence;
+    return 0.0;
+  };
+  EXPECT_NEAR(of_clock(), 8, 1e-12);
+  for (WeighedHypothesis& hypothesis : space.hypotheses)
+    if (hypothesis.name == "clock") hypothesis.selection_penalty = std::log(100.0);
+  EXPECT_NEAR(of_clock(), 8 - std::log(100.0), 1e-12);
+}
+
 TEST(NoiseDraws, HaveTheMomentsOfNoise) {
   const SyntheticSpace synthetic;
   HypothesisSpace space = synthetic.With(SyntheticSpace::Noise(3));

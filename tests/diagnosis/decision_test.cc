@@ -183,10 +183,15 @@ TEST(Decide, WeighsAdoptedNuisancesAgainstEffectsInTheirPlace) {
   input.adopted_evidence = 200;
   EXPECT_EQ(Decide(input).verdict, Verdict::kNuisance);
   EXPECT_THAT(Decide(input).names, ElementsAre("jitter"));
-  input.in_place_of_adopted.push_back({"drag", 199, {}});
+  input.in_place_of_adopted.push_back({"drag", 199, synthetic.With(SyntheticSpace::Noise(16))});
   EXPECT_EQ(Decide(input).verdict, Verdict::kAmbiguous);
   input.in_place_of_adopted.front().evidence = 220;
   EXPECT_THAT(Decide(input).names, ElementsAre("drag"));
+  EXPECT_THAT(Decide(input).record.adequacy.beside, ElementsAre("drag"));
+  // What the effect leaves without the nuisances counts, not what the nuisances leave.
+  input.in_place_of_adopted.front().space =
+      synthetic.With(SyntheticSpace::Noise(16) + 4 * synthetic.unknown.rowwise().sum());
+  EXPECT_EQ(Decide(input).verdict, Verdict::kNotInLibrary);
 }
 
 // Two rivals that share the nuisance of every model: an effect is missing, not the nuisance.
@@ -270,6 +275,10 @@ TEST(DecisionStore, DecidesAgainAsBefore) {
   input.refits.push_back({"drag", 30, synthetic.With(SyntheticSpace::Noise(18))});
   input.nuisances.push_back({"clock", 2});
   input.natural_value["gravity"] = 1.5;
+  input.baseline.hypotheses.front().selection_penalty = 0.7;
+  input.adopted = {"jitter"};
+  input.adopted_evidence = 20;
+  input.in_place_of_adopted.push_back({"fibres", 25, synthetic.With(SyntheticSpace::Noise(19))});
   const TemporaryFolder folder;
   SaveDecisionInput(input, folder / "decision");
   const DecisionInput read = LoadDecisionInput(folder / "decision");

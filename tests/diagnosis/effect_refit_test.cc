@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
 
 #include "calibration/calibration_fits.h"
 #include "calibration/linear_misfit.h"
@@ -94,6 +95,43 @@ TEST(PredictsWorse, WhereTheHeldOutErrorGrowsByMoreThanNoiseExplains) {
   EXPECT_FALSE(predicts_worse(2.1, true));
   EXPECT_TRUE(predicts_worse(2.4, true));
   EXPECT_FALSE(predicts_worse(2.4, false));
+}
+
+// The prediction of an effect that is really missing is refuted by noise in fewer than one
+// recording in 100, whatever its size; and an effect that the held-out frames contradict is
+// refuted.
+TEST(Predicts, AllowsForChanceButNotForMore) {
+  LinearisedMisfit misfit;
+  misfit.parts.emplace_back();
+  misfit.parts.back().layout.times = {0, 0.1, 0.2, 0.3};
+  const double chance = HeldOutChance({.correlation_time = 0, .variance = 1.5}, misfit);
+  EXPECT_NEAR(chance, 1.5 * 2.33 * 2.33, 1e-9);
+  // Errors that persist from frame to frame make larger changes probable.
+  EXPECT_GT(HeldOutChance({.correlation_time = 0.1, .variance = 1.5}, misfit), 2 * chance);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  constexpr int kRows = 50, kTimes = 4000;
+  for (const double size : {0.5, 2.33, 6.0}) {
+    int refuted = 0;
+    for (int k = 0; k < kTimes; ++k) {
+      ModelErrors with, without;
+      with.has_held_out = without.has_held_out = true;
+      for (int row = 0; row < kRows; ++row) {
+        const double noise = std::sqrt(1.5) * normal(random);
+        with.squares_over_sigma += noise * noise;
+        without.squares_over_sigma += std::pow(noise - size / std::sqrt(kRows), 2);
+      }
+      refuted += !Predicts(with, without, chance);
+    }
+    EXPECT_LE(refuted, kTimes / 80) << size;  // one in 100, with three standard errors
+  }
+  ModelErrors with, without;
+  with.has_held_out = without.has_held_out = true;
+  without.squares_over_sigma = 100;
+  with.squares_over_sigma = 110;
+  EXPECT_FALSE(Predicts(with, without, chance));
+  without.has_held_out = false;
+  EXPECT_TRUE(Predicts(with, without, chance));
 }
 
 // A nuisance explains its part of the residual, at the cost that its prior puts on the amount.

@@ -287,6 +287,33 @@ TEST(Calibration, EndsIfTheStepThatTheJacobianPredictsGainsNothing) {
   EXPECT_LE(found.predictions, 15);
 }
 
+TEST(Calibration, EndsWithTheBestParametersOfItsBudget) {
+  const Decay decay(2, 0.7, 1);
+  const Calibration whole = Calibrate(AmplitudeAndTime(), decay);
+  const Calibration part = Calibrate(AmplitudeAndTime(), decay, {.max_predictions = 3});
+  ASSERT_TRUE(whole.usable);
+  EXPECT_FALSE(part.usable);
+  EXPECT_TRUE(part.is_out_of_budget);
+  EXPECT_LE(part.predictions, 5);
+  EXPECT_LT(part.rms, part.start_rms);
+  EXPECT_EQ(part.estimates.size(), 2u);
+  EXPECT_THAT(part.message, testing::HasSubstr("3 predictions"));
+  EXPECT_FALSE(Calibrate(AmplitudeAndTime(), decay, {.max_predictions = 500}).is_out_of_budget);
+}
+
+// A motion may be simulated where its derivative cannot be computed.
+TEST(Calibration, ReportsASolutionThatCannotBeLinearised) {
+  const Decay decay(2, 0.7, 1);
+  const auto only_at_start = [&](const Eigen::VectorXd& at, bool with_jacobian) {
+    Prediction prediction = decay(at, with_jacobian);
+    if (with_jacobian && at[1] > 0.3) return Prediction{false, "not definite", {}, {}};
+    return prediction;
+  };
+  const Calibration found = Calibrate(AmplitudeAndTime(), only_at_start, {.near_rms = 1e3});
+  EXPECT_FALSE(found.usable);
+  EXPECT_THAT(found.message, testing::HasSubstr("not definite"));
+}
+
 TEST(Calibration, ReportsAFailedPrediction) {
   const auto fails = [](const Eigen::VectorXd&, bool) {
     return Prediction{false, "element 3 is inverted", {}, {}};
