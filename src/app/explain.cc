@@ -164,10 +164,17 @@ std::string TriedAtText(const CatalogueEntry& entry) {
              " between the time step of the simulation and the duration of the recordings.";
     }
     std::string operator()(const TriedAsSupports& supports) const {
-      return fmt::format(
-          "Tried on the whole surface, and near both ends and the middle of the "
-          "length{}.",
-          supports.slip_shares.empty() ? "" : ", at several slip distances");
+      const std::string girth =
+          "Tried on the whole surface, around the girth near both ends and at the middle of the "
+          "length, and ";
+      const std::string sides =
+          "on each side of the body that faces along ±x, ±y or ±z and is not "
+          "gripped: ";
+      return girth + sides +
+             (supports.slip_shares.empty()
+                  ? "the whole side and three places along a long one. A refit moves the place "
+                    "along the side and changes its radius."
+                  : "the whole side; each at several slip distances.");
     }
     std::string operator()(const TriedAtContactPlanes&) const {
       return "Tried at planes that the predicted body crosses and the measured one does not.";

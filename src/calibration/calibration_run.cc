@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "calibration/adaptive_time_step.h"
@@ -21,7 +22,27 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 15;
+constexpr int kCalibrationVersion = 16;
+
+// What the model has besides the fitted parameters.
+std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
+  std::vector<HeldParameter> held{{"density", "kg/m^3", {study.density}}};
+  const auto is_fitted = [&](const ModelParameter& parameter) {
+    return std::any_of(study.fitted.begin(), study.fitted.end(), [&](const ModelParameter& fitted) {
+      return fitted.prior.name == parameter.prior.name;
+    });
+  };
+  for (const ModelParameter& parameter : ModelParameters(study.effects)) {
+    if (is_fitted(parameter)) continue;
+    std::string name = parameter.prior.name;
+    const bool is_component = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z");
+    if (is_component) name.resize(name.size() - 2);
+    const bool continues = is_component && held.back().name == name;
+    if (!continues) held.push_back({name, parameter.unit, {}});
+    held.back().values.push_back(parameter.prior.start);
+  }
+  return held;
+}
 
 struct CalibrationStage {
   CalibrationRecord record;
@@ -56,6 +77,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
     record.parameters.push_back(
         {prior.name, problem.UnitOf(k), prior.log_scale, calibration.estimates[k], std::nullopt});
   }
+  record.held = HeldIn(study);
   if (calibration.estimates.size() != problem.parameters().size()) return stage;  // no prediction
   progress->Begin("predict", 0);
   const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, calibration.parameters);
@@ -84,6 +106,12 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
         CountModelError(problem.parameters()[k], *parameter.with_finest_mesh, &parameter.estimate);
       }
     progress->End();
+  }
+  for (size_t k = 0; k < record.parameters.size(); ++k) {
+    const CalibratedParameter& prior = problem.parameters()[k];
+    FittedParameter& parameter = record.parameters[k];
+    parameter.near_bound =
+        FindNearBound(parameter.estimate, parameter.log_scale, prior.min, prior.max);
   }
   return stage;
 }

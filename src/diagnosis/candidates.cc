@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "diagnosis/support_sides.h"
 #include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "geometry/farthest_first.h"
@@ -25,6 +26,7 @@ struct Variant {
   std::string name;
   Values values;
   VariantPosition position = {};
+  std::map<std::string, CandidateEffect::Range> known = {};  // besides PlacesOn(body)
 };
 
 // The principal extents of the body.
@@ -206,21 +208,100 @@ std::vector<Variant> AtValues(const ParameterCard& parameter, const std::string&
   return variants;
 }
 
-// The whole surface, and the surface near both ends and the middle of the length.
-std::vector<Variant> Supports(const Extent& extent) {
-  std::vector<Variant> variants = PlacesAlong(extent, {0.05, 0.5, 0.95}, 0.1);
-  variants.insert(variants.begin(), {"of the whole surface", {}});
+// Supports have a place that a refit may move in the coordinates `along` only, each within its
+// range (m), and a radius that it may change by this factor.
+constexpr double kRadiusFactor = 4;
+
+Variant WithMovablePlace(Variant variant, const std::map<int, CandidateEffect::Range>& along) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name = fmt::format("point_{}", "xyz"[axis]);
+    const auto found = variant.values.find(name);
+    const double at = found != variant.values.end() ? found->second : 0;
+    const auto range = along.find(axis);
+    variant.known[name] = range != along.end() ? range->second : CandidateEffect::Range{at, at};
+  }
+  const auto radius = variant.values.find("radius");
+  variant.known["radius"] =
+      radius != variant.values.end()
+          ? CandidateEffect::Range{radius->second / kRadiusFactor, radius->second * kRadiusFactor}
+          : CandidateEffect::Range{0, 0};
+  return variant;
+}
+
+CandidateEffect::Range ExtentAlong(const Body& body, int axis) {
+  const Eigen::RowVectorXd along = body.mesh.nodes.row(axis);
+  return {along.minCoeff(), along.maxCoeff()};
+}
+
+// The whole surface, and around the girth near both ends and at the middle of the length. The place
+// of these can be moved if the length lies along a coordinate axis.
+std::vector<Variant> SupportsOfGirth(const Extent& extent, const Body& body) {
+  constexpr double kAlong = 0.95;  // of the cosine between the length and the coordinate axis
+  std::map<int, CandidateEffect::Range> along;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(extent.axis(axis, 0)) > kAlong) along[axis] = ExtentAlong(body, axis);
+  std::vector<Variant> variants = {WithMovablePlace({"of the whole surface", {}}, {})};
+  for (const Variant& variant : PlacesAlong(extent, {0.05, 0.5, 0.95}, 0.1))
+    variants.push_back(WithMovablePlace(variant, along));
   return variants;
 }
 
-std::vector<Variant> SlippingSupports(const Extent& extent,
+Variant OnWholeSide(const BodySide& side) {
+  Variant variant{fmt::format("on the {} side", side.name), {}};
+  SetVector("side", side.normal, &variant.values);
+  return WithMovablePlace(variant, {});
+}
+
+// Places along a side, each with a radius that covers about a third of it. The place can be moved
+// along the side, and across it where it is not a narrow strip.
+std::vector<Variant> PlacesAlong(const BodySide& side, const Body& body, int line) {
+  constexpr double kShares[] = {1.0 / 6, 0.5, 5.0 / 6};
+  constexpr double kRadiusShare = 1.0 / 6;
+  constexpr double kStrip = 0.4;  // width over length
+  std::map<int, CandidateEffect::Range> along;
+  along[side.longer] = {side.low[side.longer], side.high[side.longer]};
+  if (side.Width() > kStrip * side.Length())
+    along[side.shorter] = {side.low[side.shorter], side.high[side.shorter]};
+  const double radius = kRadiusShare * side.Length();
+  std::vector<Variant> variants;
+  for (const double share : kShares) {
+    const double at = side.low[side.longer] + share * side.Length();
+    Variant variant;
+    variant.name = fmt::format("on the {} side at {} = {:.0f} mm", side.name, "xyz"[side.longer],
+                               1e3 * at + 0.0);
+    SetVector("side", side.normal, &variant.values);
+    SetVector("point", PlaceOn(side, at, radius, body), &variant.values);
+    variant.values["radius"] = radius;
+    variant.position = {.line = line, .number = static_cast<int>(variants.size())};
+    variants.push_back(WithMovablePlace(variant, along));
+  }
+  return variants;
+}
+
+std::vector<Variant> Supports(const Extent& extent, const CandidateSetting& setting) {
+  constexpr double kLong = 0.5;  // length of a long side over that of the body
+  std::vector<Variant> variants = SupportsOfGirth(extent, setting.body);
+  int line = 1;  // that of the girth
+  for (const BodySide& side : SidesOf(setting.body, setting.gripped)) {
+    variants.push_back(OnWholeSide(side));
+    if (side.Length() < kLong * extent.length[0]) continue;
+    const std::vector<Variant> places = PlacesAlong(side, setting.body, ++line);
+    variants.insert(variants.end(), places.begin(), places.end());
+  }
+  return variants;
+}
+
+std::vector<Variant> SlippingSupports(const Extent& extent, const CandidateSetting& setting,
                                       const std::vector<double>& slip_shares) {
+  std::vector<Variant> at_once = SupportsOfGirth(extent, setting.body);
+  for (const BodySide& side : SidesOf(setting.body, setting.gripped))
+    at_once.push_back(OnWholeSide(side));
   std::vector<Variant> variants;
   int line = 0;
   for (const double share : slip_shares) {
     ++line;
     const double distance = share * extent.length[0];
-    for (Variant variant : Supports(extent)) {
+    for (Variant variant : at_once) {
       variant.name += fmt::format(", sliding at {:.2g} mm", 1e3 * distance);
       variant.values["slip_distance"] = distance;
       if (variant.position.line > 0) variant.position.line = line;
@@ -265,8 +346,8 @@ class VariantsOf {
     return AtValues(ParameterOf(card_, times.parameter), times.label, RelaxationTimes(setting_));
   }
   std::vector<Variant> operator()(const TriedAsSupports& supports) const {
-    return supports.slip_shares.empty() ? Supports(extent_)
-                                        : SlippingSupports(extent_, supports.slip_shares);
+    return supports.slip_shares.empty() ? Supports(extent_, setting_)
+                                        : SlippingSupports(extent_, setting_, supports.slip_shares);
   }
   std::vector<Variant> operator()(const TriedAtContactPlanes&) const { return {}; }
 
@@ -279,10 +360,8 @@ class VariantsOf {
 // The coordinates that a place on the body may have.
 std::map<std::string, CandidateEffect::Range> PlacesOn(const Body& body) {
   std::map<std::string, CandidateEffect::Range> ranges;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::RowVectorXd along = body.mesh.nodes.row(axis);
-    ranges[fmt::format("centre_{}", "xyz"[axis])] = {along.minCoeff(), along.maxCoeff()};
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    ranges[fmt::format("centre_{}", "xyz"[axis])] = ExtentAlong(body, axis);
   return ranges;
 }
 
@@ -349,7 +428,8 @@ std::vector<CandidateEffect> MakeCandidates(const CandidateSetting& setting) {
       CHECK(values.allFinite()) << card.type << " has a parameter without a value";
       candidates.push_back({card.type, variant.name, entry.make(values), SizeParameters(card)});
       candidates.back().position = variant.position;
-      candidates.back().known = PlacesOn(setting.body);
+      candidates.back().known = variant.known;
+      candidates.back().known.merge(PlacesOn(setting.body));
     }
   }
   for (const OwnLaw& law : setting.laws) {

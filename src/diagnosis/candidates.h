@@ -47,9 +47,11 @@ struct CandidateEffect {
   // its prior about the pilot setting, SI.
   std::map<std::string, double> refined = {};
   VariantPosition position = {};
-  // Bounds, SI, of further parameters that a refit moves: a place lies within the body.
+  // Bounds, SI, of further parameters that a refit moves: a place lies within the body. A range of
+  // one value holds a parameter at the value that the effect has.
   struct Range {
     double min = 0, max = 0;
+    bool IsHeld() const { return min == max; }
   };
   std::map<std::string, Range> known = {};
   // The effect replaces the elasticity law of the model; false: it is added to the model.
@@ -80,6 +82,7 @@ struct CandidateSetting {
   double duration = 0;                    // s, of the recordings: the longest relaxation time
   std::vector<std::string> without = {};  // types that are excluded
   std::vector<OwnLaw> laws = {};          // laws of the user, tried like those of the catalogue
+  std::vector<char> gripped = {};         // one flag per node (fem/model.h); empty: none is gripped
 };
 
 // All effects of the catalogue whose size has a null value and that the model does not contain yet

@@ -120,8 +120,9 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
       known_(static_cast<Eigen::Index>(problem.parameters().size())),
       decided_(decided) {
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
-  candidates_ = MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study),
-                                without, study.candidates});
+  candidates_ =
+      MakeCandidates({*problem.body(), study.effects, study.time_step, Duration(study), without,
+                      study.candidates, GrippedNodes(problem.models().front().model())});
   const GripMotions grips = MakeGripMotions(problem);
   std::vector<MisfitDirection> directions = DirectionsOf(candidates_);
   const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());

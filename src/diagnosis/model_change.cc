@@ -60,10 +60,16 @@ void KeepPlausible(const ParameterCard& plausible, CalibratedParameter* prior) {
   prior->max = std::min(prior->max, high);
 }
 
-// Gives a parameter the mean and the standard deviation of a uniform distribution over a range.
+// Gives a parameter the mean and the standard deviation of a uniform distribution over a range, on
+// the scale on which it is fitted.
 void KeepWithin(const CandidateEffect::Range& range, CalibratedParameter* prior) {
   prior->min = std::min(range.min, prior->start);
   prior->max = std::max(range.max, prior->start);
+  if (prior->log_scale) {
+    prior->prior_mean = std::sqrt(range.min * range.max);
+    prior->prior_deviation = prior->typical = std::log(range.max / range.min) / std::sqrt(12.0);
+    return;
+  }
   prior->prior_mean = 0.5 * (range.min + range.max);
   prior->prior_deviation = prior->typical = (range.max - range.min) / std::sqrt(12.0);
 }
@@ -89,6 +95,8 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
       const int index = parameter.places.front().index;
       const ParameterCard& card = own.effect->Card().parameters[index];
       CalibratedParameter& prior = parameter.prior;
+      const auto known = own.known.find(card.name);
+      if (known != own.known.end() && known->second.IsHeld()) continue;
       if (own.IsPilot()) {
         const auto refined = own.refined.find(card.name);
         if (refined == own.refined.end()) continue;
@@ -99,7 +107,7 @@ PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& sc
         prior.prior_mean = card.null_value;
         prior.prior_deviation = PlausibleScale(card);
       }
-      if (const auto known = own.known.find(card.name); known != own.known.end())
+      if (known != own.known.end())
         KeepWithin(known->second, &prior);
       else
         KeepPlausible(card, &prior);

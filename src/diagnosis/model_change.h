@@ -16,9 +16,9 @@ namespace lacuna {
 PredictionStudy WithCandidate(const PredictionStudy& study, const CandidateEffect& candidate);
 
 // The study with the effect at the size that first order predicts (a pilot: at its pilot setting).
-// All of its parameters are fitted, within a margin of the plausible range of its card, so that a
-// wrong effect cannot imitate another one at an implausible size. The effect is a copy, not shared
-// with `scored`.
+// All of its parameters that the candidate does not hold are fitted, within a margin of the
+// plausible range of its card, so that a wrong effect cannot imitate another one at an implausible
+// size. The effect is a copy, not shared with `scored`.
 PredictionStudy WithEffect(const PredictionStudy& study, const ScoredVariant& scored);
 
 }  // namespace lacuna

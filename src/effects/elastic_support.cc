@@ -15,7 +15,7 @@ namespace {
 
 class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> {
  public:
-  enum Parameter { kModulus };
+  enum Parameter { kModulus, kPart };
 
   static const EffectCard& TheCard() {
     static const EffectCard card = MakeCard();
@@ -33,7 +33,7 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
   }
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
-    AddScaledForce(at, parameters_[kModulus], force);
+    AddForceOf(*Areas(at.body), parameters_[kModulus], at, force);
   }
 
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool /*convexify*/,
@@ -47,8 +47,11 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
-    CHECK_EQ(parameter, kModulus) << "the others are settings";
-    AddScaledForce(at, 1, derivative);
+    if (parameter == kModulus)
+      AddForceOf(*Areas(at.body), 1, at, derivative);
+    else
+      AddForceOf(part_.AreasBy(at.body, TheCard().type, parameter - kPart), parameters_[kModulus],
+                 at, derivative);
   }
 
   std::optional<double> Energy(const Kinematics& at) const override {
@@ -63,7 +66,9 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
         .type = "elastic_support",
         .family = EffectFamily::kSteadyForce,
         .title = "Elastic support",
-        .equation = "f_i = −k w_i A_i (x_i − X_i),  w_i = exp(−|X_i − c|²/(2 r²)) or 1",
+        .equation =
+            "f_i = −k w_i A_i (x_i − X_i),  w_i = exp(−|X_i − c|²/(2 r²)) or 1,  A_i of the whole "
+            "surface or of one side",
         .citation = "E. Winkler, Die Lehre von der Elasticität und Festigkeit, Prag 1867",
         .parameters = {BeddingModulus()},
         .residual_when_missing =
@@ -86,11 +91,11 @@ class ElasticSupportEffect final : public CloneableEffect<ElasticSupportEffect> 
     return part_.Areas(body, TheCard().type);
   }
 
-  void AddScaledForce(const Kinematics& at, double modulus, Eigen::VectorXd* force) const {
-    const auto areas = Areas(at.body);
+  static void AddForceOf(const Eigen::VectorXd& areas, double modulus, const Kinematics& at,
+                         Eigen::VectorXd* force) {
     for (int i = 0; i < at.body.NodeCount(); ++i) {
       force->segment<3>(3 * i) -=
-          modulus * (*areas)[i] * (at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
+          modulus * areas[i] * (at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
     }
   }
 

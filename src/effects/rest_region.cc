@@ -43,6 +43,21 @@ Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3
 
 Eigen::VectorXd NodeVolumes(const Body& body) { return body.node_mass / body.density; }
 
+Eigen::VectorXd FacingAreas(const Eigen::Vector3d& direction, const Body& body) {
+  if (direction.norm() == 0) return NodeBoundaryAreas(body);
+  const TriMesh& surface = body.boundary.surface;
+  const Eigen::VectorXd area = TriangleAreas(surface);
+  const Eigen::VectorXd cosine = TriangleNormals(surface).transpose() * direction.normalized();
+  Eigen::VectorXd facing = Eigen::VectorXd::Zero(body.NodeCount());
+  for (Eigen::Index t = 0; t < surface.triangles.cols(); ++t) {
+    if (cosine[t] <= 0) continue;
+    const double u = std::clamp(2 * cosine[t] * cosine[t] - 0.5, 0.0, 1.0);
+    for (const int corner : surface.triangles.col(t))
+      facing[body.boundary.node[corner]] += u * u * (3 - 2 * u) * area[t] / 3;
+  }
+  return facing;
+}
+
 Eigen::VectorXd InHalfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                             const Body& body) {
   if (normal.norm() == 0) return Eigen::VectorXd::Ones(body.NodeCount());

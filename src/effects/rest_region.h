@@ -28,6 +28,14 @@ Eigen::VectorXd BumpSharesByCentre(int axis, double radius, const Eigen::Matrix3
 // Volume around each node (n), m³: its lumped mass over the density.
 Eigen::VectorXd NodeVolumes(const Body& body);
 
+// The part of the boundary area around each node (n, m²) that faces a direction m, of any length. A
+// triangle with the outward normal n counts with w = u² (3 − 2u), u = 2 (n·m)² − ½ clamped to [0,
+// 1]: fully within 30° of the direction, not at all beyond 60°, smoothly in between, so that the
+// part of a curved surface does not depend on where the mesh has its edges. w(n·m) + w(√(1 −
+// (n·m)²)) = 1: two sides at right angles share what lies between them. A direction of length zero
+// counts everything.
+Eigen::VectorXd FacingAreas(const Eigen::Vector3d& direction, const Body& body);
+
 // 1 at each node with n·(X − point) ≥ 0, up to rounding, and 0 elsewhere (n). A normal of length
 // zero gives 1 everywhere.
 Eigen::VectorXd InHalfSpace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,

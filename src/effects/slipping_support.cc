@@ -20,7 +20,7 @@ namespace {
 
 class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect> {
  public:
-  enum Parameter { kModulus, kSlipDistance };
+  enum Parameter { kModulus, kSlipDistance, kPart };
 
   static const EffectCard& TheCard() {
     static const EffectCard card = MakeCard();
@@ -59,7 +59,13 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
 
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
-    CHECK(parameter == kModulus || parameter == kSlipDistance) << "the others are settings";
+    if (parameter >= kPart) {
+      const Eigen::VectorXd by = part_.AreasBy(at.body, TheCard().type, parameter - kPart);
+      ForEachSpring(at, [&](int node, double, const Eigen::Vector3d& stretch) {
+        derivative->segment<3>(3 * node) -= Modulus() * by[node] * Held(stretch, SlipDistance());
+      });
+      return;
+    }
     ForEachSpring(at, [&](int node, double area, const Eigen::Vector3d& stretch) {
       if (parameter == kModulus)
         derivative->segment<3>(3 * node) -= area * Held(stretch, SlipDistance());
@@ -101,7 +107,8 @@ class SlippingSupportEffect final : public CloneableEffect<SlippingSupportEffect
         .title = "Support that slips",
         .equation =
             "f_i = −k w_i A_i (u_i − s_i),  ‖u_i − s_i‖ ≤ d,  s_i flows along u_i − s_i at the "
-            "limit only,  u_i = x_i − X_i,  w_i = exp(−|X_i − c|²/(2 r²)) or 1",
+            "limit only,  u_i = x_i − X_i,  w_i = exp(−|X_i − c|²/(2 r²)) or 1,  A_i of the whole "
+            "surface or of one side",
         .citation =
             "E. Winkler, Die Lehre von der Elasticität und Festigkeit, Prag 1867 (the bed); G. "
             "Masing, Eigenspannungen und Verfestigung beim Messing, 1926 (elements that slide); "

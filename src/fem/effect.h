@@ -60,6 +60,8 @@
 
 namespace lacuna {
 
+class Effect;
+
 // The state of the body at which an effect is evaluated: the end of a time step.
 struct Kinematics {
   const Body& body;
@@ -71,6 +73,9 @@ struct Kinematics {
   // Internal variables of this effect at the start of the step, StateSize() entries, e.g. viscous
   // strains. Empty for an effect without memory.
   const Eigen::VectorXd& state;
+  // The elasticity law of the body at its present parameters, for an effect that is defined
+  // relative to that law. Null where no model is at hand.
+  const Effect* elasticity = nullptr;
 };
 
 // Factors of the derivatives of the force in a tangent. Their units make all three terms N/m.
@@ -113,6 +118,12 @@ class Effect {
   // parameter. Not called for parameters that the card marks as settings.
   virtual void AddParameterDerivative(const Kinematics& at, int parameter,
                                       Eigen::VectorXd* derivative) const = 0;
+
+  // For an effect that is defined relative to the elasticity law of the body (at.elasticity): adds
+  // ∂f/∂p of its own force for the parameter p of that number of the law, N per unit of p. The
+  // force of most effects does not depend on the law.
+  virtual void AddElasticityDerivative(const Kinematics& /*at*/, int /*parameter*/,
+                                       Eigen::VectorXd* /*derivative*/) const {}
 
   // The potential E with f = −∂E/∂x, J, up to a constant; no value if the force has no potential.
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }

@@ -2,6 +2,10 @@
 
 namespace lacuna {
 
+const Effect* ElasticityOf(const Model& model) {
+  return model.effects.empty() ? nullptr : model.effects.front().get();
+}
+
 std::vector<char> GrippedNodes(const Model& model) {
   std::vector<char> gripped(model.body->NodeCount(), 0);
   for (const Grip& grip : model.grips)

@@ -28,9 +28,12 @@ using EffectList = std::vector<std::shared_ptr<const Effect>>;
 // Copies are cheap: they share the body and the effects.
 struct Model {
   std::shared_ptr<const Body> body;
-  EffectList effects;
+  EffectList effects;  // the elasticity law first
   std::vector<Grip> grips;
 };
+
+// The elasticity law of the body, owned by the model; null for a model without effects.
+const Effect* ElasticityOf(const Model& model);
 
 // One flag per node: 1 where a grip prescribes the motion.
 std::vector<char> GrippedNodes(const Model& model);

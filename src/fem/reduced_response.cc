@@ -65,9 +65,10 @@ class TangentsAlong {
     const TangentWeights negative{-weights.position, -weights.velocity, -weights.acceleration};
     matrix_.SetZero();
     for (size_t j = 0; j < model_.effects.size(); ++j)
-      model_.effects[j]->AddTangents({*model_.body, state.position, state.velocity, no_acceleration,
-                                      state.time, time_step_, state.effect_state[j]},
-                                     negative, convexify, &matrix_);
+      model_.effects[j]->AddTangents(
+          {*model_.body, state.position, state.velocity, no_acceleration, state.time, time_step_,
+           state.effect_state[j], ElasticityOf(model_)},
+          negative, convexify, &matrix_);
   }
 
   Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {

@@ -63,7 +63,8 @@ Kinematics StepEquation::At(const EndOfStep& end, size_t effect) const {
           end.acceleration,
           end_time_,
           time_step_,
-          history_.effect_state[effect]};
+          history_.effect_state[effect],
+          ElasticityOf(model_)};
 }
 
 Eigen::VectorXd StepEquation::Velocity(const Eigen::VectorXd& position) const {
@@ -120,8 +121,16 @@ bool StepEquation::SkewTangent(const Eigen::VectorXd& position, BlockMatrix* tan
 void StepEquation::ParameterDerivative(const Eigen::VectorXd& position, int effect, int parameter,
                                        Eigen::VectorXd* derivative) const {
   derivative->setZero(position.size());
-  model_.effects[effect]->AddParameterDerivative(At(End(position), effect), parameter, derivative);
+  AddParameterForce(End(position), effect, parameter, derivative);
   *derivative *= -1;
+}
+
+void StepEquation::AddParameterForce(const EndOfStep& end, int effect, int parameter,
+                                     Eigen::VectorXd* force) const {
+  model_.effects[effect]->AddParameterDerivative(At(end, effect), parameter, force);
+  if (effect != 0) return;
+  for (size_t j = 1; j < model_.effects.size(); ++j)
+    model_.effects[j]->AddElasticityDerivative(At(end, j), parameter, force);
 }
 
 double StepEquation::Potential(const Eigen::VectorXd& position) const {

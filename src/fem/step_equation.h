@@ -62,6 +62,10 @@ class StepEquation {
   // The potential whose gradient is r, J: inertial terms plus the potentials of the effects. NaN if
   // an effect has no potential.
   double Potential(const Eigen::VectorXd& position) const;
+  // Adds ∂f/∂p of all effects of the model for a parameter p of one of them. Those of the
+  // elasticity law, which comes first, may enter other effects too.
+  void AddParameterForce(const EndOfStep& end, int effect, int parameter,
+                         Eigen::VectorXd* force) const;
   // The history after the step has ended at `position`; advances the internal variables.
   MotionHistory Advance(const Eigen::VectorXd& position) const;
 

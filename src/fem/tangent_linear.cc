@@ -98,8 +98,7 @@ struct TangentLinear::Implementation {
     if (perturbation.effect == nullptr) return force;
     const int j = IndexInModel(*perturbation.effect);
     if (j >= 0) {
-      perturbation.effect->AddParameterDerivative(equation.At(end, j), perturbation.parameter,
-                                                  &force);
+      equation.AddParameterForce(end, j, perturbation.parameter, &force);
     } else {
       perturbation.effect->AddParameterDerivative(AtOutside(equation, end, k),
                                                   perturbation.parameter, &force);
@@ -109,8 +108,8 @@ struct TangentLinear::Implementation {
 
   Kinematics AtOutside(const StepEquation& equation, const StepEquation::EndOfStep& end,
                        Eigen::Index k) const {
-    return {*model.body,         end.position,         end.velocity,    end.acceleration,
-            equation.end_time(), equation.time_step(), outside[k].value};
+    return {*model.body,         end.position,         end.velocity,     end.acceleration,
+            equation.end_time(), equation.time_step(), outside[k].value, ElasticityOf(model)};
   }
 
   // Σ ∂f/∂z ζ over the effects with memory.
@@ -137,7 +136,8 @@ struct TangentLinear::Implementation {
   }
 
   static Kinematics WithState(const Kinematics& at, const Eigen::VectorXd& state) {
-    return {at.body, at.position, at.velocity, at.acceleration, at.time, at.time_step, state};
+    return {at.body, at.position,  at.velocity, at.acceleration,
+            at.time, at.time_step, state,       at.elasticity};
   }
 
   // dz/dp at the end of the step, from the sensitivities there.
@@ -164,8 +164,9 @@ struct TangentLinear::Implementation {
           const Eigen::VectorXd z = at.state + shift * memory.sensitivity.col(k);
           Eigen::VectorXd result = z, shifted = parameters;
           if (own) shifted[perturbations[k].parameter] += shift;
-          memory.effect->AdvanceState({at.body, x, v, at.acceleration, at.time, at.time_step, z},
-                                      shifted, &result);
+          memory.effect->AdvanceState(
+              {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity}, shifted,
+              &result);
           return result;
         };
         memory.sensitivity.col(k) = (state_at(h) - now) / h;

@@ -35,9 +35,9 @@ class EffectMemory {
     for (size_t j = 0; j < state_.size(); ++j) {
       if (state_[j].size() == 0) continue;
       const Eigen::VectorXd before = state_[j];
-      model_.effects[j]->AdvanceState(
-          {*model_.body, at.position, at.velocity, no_acceleration, at.time, time_step, before},
-          model_.effects[j]->Parameters(), &state_[j]);
+      model_.effects[j]->AdvanceState({*model_.body, at.position, at.velocity, no_acceleration,
+                                       at.time, time_step, before, ElasticityOf(model_)},
+                                      model_.effects[j]->Parameters(), &state_[j]);
     }
     return state_;
   }

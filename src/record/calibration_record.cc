@@ -1,5 +1,7 @@
 #include "record/calibration_record.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,7 +17,7 @@ namespace {
 using nlohmann::json;
 using Verdict = ParameterEstimate::Verdict;
 
-constexpr int kSchemaVersion = 2;
+constexpr int kSchemaVersion = 3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
@@ -67,7 +69,14 @@ json ToJson(const CalibrationRecord& record) {
     parameters.back().update(EstimateToJson(parameter.estimate));
     if (parameter.with_finest_mesh)
       parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
+    if (const auto& near = parameter.near_bound)
+      parameters.back()["near_bound"] = {{"side", near->is_upper ? "upper" : "lower"},
+                                         {"bound", near->bound}};
   }
+  json held = json::array();
+  for (const HeldParameter& parameter : record.held)
+    held.push_back(
+        {{"name", parameter.name}, {"unit", parameter.unit}, {"values", parameter.values}});
   json recordings = json::array();
   for (const FittedRecording& recording : record.recordings) {
     json entry = {{"name", recording.name},
@@ -94,6 +103,7 @@ json ToJson(const CalibrationRecord& record) {
               {"rms_after", NumberOrNull(record.rms)},
               {"predictions", record.predictions},
               {"parameters", parameters},
+              {"held", held},
               {"recordings", recordings},
               {"prior_conflicts", conflicts}};
   if (record.scan_noise > 0) all["scan_noise_m"] = record.scan_noise;
@@ -119,8 +129,13 @@ CalibrationRecord FromJson(const json& value) {
     parameter.log_scale = entry.at("log_scale");
     parameter.estimate = EstimateFromJson(entry);
     if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
+    if (entry.contains("near_bound"))
+      parameter.near_bound = {entry["near_bound"].at("side") == "upper",
+                              entry["near_bound"].at("bound")};
     record.parameters.push_back(parameter);
   }
+  for (const json& entry : value.at("held"))
+    record.held.push_back({entry.at("name"), entry.at("unit"), entry.at("values")});
   record.scan_noise = value.value("scan_noise_m", 0.0);
   for (const json& entry : value.at("recordings")) {
     record.recordings.push_back({entry.at("name"), entry.at("fitted"), entry.at("noise_m"),
@@ -136,6 +151,28 @@ CalibrationRecord FromJson(const json& value) {
 }
 
 }  // namespace
+
+std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool log_scale,
+                                       double low, double high) {
+  constexpr double kNear = 0.01;  // of the distance between the bounds
+  const bool is_determined = std::isfinite(estimate.low) && std::isfinite(estimate.high);
+  if (!is_determined && estimate.verdict != Verdict::kAtBound) return std::nullopt;
+  const auto scaled = [log_scale](double value) {
+    return log_scale ? (value > 0 ? std::log(value) : -kInfinity) : value;
+  };
+  const double range = scaled(high) - scaled(low);
+  const double margin = std::isfinite(range) ? kNear * range : 0;
+  const double least =
+      std::isfinite(estimate.low) ? std::min(estimate.low, estimate.value) : estimate.value;
+  const double most =
+      std::isfinite(estimate.high) ? std::max(estimate.high, estimate.value) : estimate.value;
+  const bool near_low = std::isfinite(scaled(low)) && scaled(least) <= scaled(low) + margin;
+  const bool near_high = std::isfinite(scaled(high)) && scaled(most) >= scaled(high) - margin;
+  if (near_low && near_high) return std::nullopt;  // the data do not determine the parameter
+  if (near_high) return NearBound{true, high};
+  if (near_low) return NearBound{false, low};
+  return std::nullopt;
+}
 
 json EstimateToJson(const ParameterEstimate& estimate) {
   return {{"value", estimate.value},

@@ -18,6 +18,18 @@
 
 namespace lacuna {
 
+// A bound that the value or the 95 % interval of a parameter comes near: within 1 % of the distance
+// between its bounds, on the scale on which it is fitted, or where that is infinite, up to the
+// bound itself.
+struct NearBound {
+  bool is_upper = false;
+  double bound = 0;
+};
+// `low` and `high`: the bounds of a fit, SI. Nothing for a parameter that the data do not
+// determine.
+std::optional<NearBound> FindNearBound(const ParameterEstimate& estimate, bool log_scale,
+                                       double low, double high);
+
 struct FittedParameter {
   std::string name, unit;
   bool log_scale = false;  // estimated on a logarithmic scale
@@ -25,6 +37,13 @@ struct FittedParameter {
   // The value extrapolated to infinitely fine elements, which the interval includes as a model
   // error. Absent where the extrapolation was not possible.
   std::optional<double> with_finest_mesh;
+  std::optional<NearBound> near_bound = {};
+};
+
+// A parameter of the model that is not fitted: one value, or the components of a vector.
+struct HeldParameter {
+  std::string name, unit;
+  std::vector<double> values;
 };
 
 // Additional data of a recording of surface scans.
@@ -64,6 +83,9 @@ struct CalibrationRecord {
   double start_rms = 0, rms = 0;            // whitened residuals, before and after the fit
   int predictions = 0;                      // number of simulations of all recordings
   std::vector<FittedParameter> parameters;  // model's, then the recordings'
+  // Those of the model that are not fitted and are no settings: the density, then those of the
+  // elasticity law and of the effects.
+  std::vector<HeldParameter> held;
   std::vector<FittedRecording> recordings;
   std::vector<PriorConflict> prior_conflicts;
   // Known only after RunCalibration: they are not in the file.

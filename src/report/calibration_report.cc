@@ -34,6 +34,10 @@ std::string ParameterTable(const CalibrationRecord& record) {
           fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
       moved = true;
     }
+    if (const auto& near = parameter.near_bound;
+        near && estimate.verdict != ParameterEstimate::Verdict::kAtBound)
+      note += fmt::format("{}near its {} bound {:.4g}", note.empty() ? "" : "; ",
+                          near->is_upper ? "upper" : "lower", near->bound);
     text += fmt::format("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name,
                         estimate.value, estimate.low, estimate.high, parameter.unit, note);
   }
@@ -42,6 +46,18 @@ std::string ParameterTable(const CalibrationRecord& record) {
         "  The intervals include the change that finer elements would make; a smaller "
         "mesh.max_volume\n  makes them narrower.\n";
   return text;
+}
+
+std::string HeldText(const CalibrationRecord& record) {
+  if (record.held.empty()) return "";
+  std::vector<std::string> held;
+  for (const HeldParameter& parameter : record.held) {
+    std::string values = fmt::format("{:.6g}", fmt::join(parameter.values, ", "));
+    if (parameter.values.size() > 1) values = "[" + values + "]";
+    held.push_back(fmt::format("{} {}{}{}", parameter.name, values,
+                               parameter.unit.empty() ? "" : " ", parameter.unit));
+  }
+  return Wrapped(fmt::format("held fixed: {}", fmt::join(held, "; ")), "  ", "    ");
 }
 
 std::string Describe(const MisfitMeasure& measure) {
@@ -146,7 +162,8 @@ std::string DescribePriorConflict(const PriorConflict& conflict) {
 }
 
 std::string CalibrationReport(const CalibrationRecord& record) {
-  std::string text = ParameterTable(record) + NoiseText(record) + TimeStepText(record);
+  std::string text =
+      ParameterTable(record) + HeldText(record) + NoiseText(record) + TimeStepText(record);
   for (const FittedRecording& recording : record.recordings) text += RecordingText(recording);
   for (const PriorConflict& conflict : record.prior_conflicts)
     text += Wrapped("prior conflict: " + DescribePriorConflict(conflict), "  ", "    ");

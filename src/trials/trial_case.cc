@@ -74,6 +74,17 @@ void PlacePlane(const TrialCase& trial, double gap, std::map<std::string, double
   (*drawn)["offset"] = -half - gap;
 }
 
+// Throws InputError if the case was drawn for another card of the effect.
+void RequireCard(const HiddenEffect& hidden, const std::filesystem::path& file) {
+  const CatalogueEntry* entry = FindEntry(hidden.type);
+  for (const auto& [name, value] : hidden.parameters)
+    if (entry == nullptr || ParameterIndex(*entry->card, name) < 0)
+      throw InputError(fmt::format(
+          "{}: hides {} with the parameter {}, which it does not have in this version of Lacuna; "
+          "draw the suite again",
+          file.string(), hidden.type, name));
+}
+
 nlohmann::json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d VectorOf(const nlohmann::json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
@@ -228,9 +239,11 @@ TrialCase LoadCase(const std::filesystem::path& file) {
     trial.recordings = json.at("recordings");
     trial.is_scanned = json.value("is_scanned", false);
     trial.nuisance = json.at("nuisance");
-    for (const auto& effect : json.at("hidden"))
+    for (const auto& effect : json.at("hidden")) {
       trial.hidden.push_back({effect.at("type"), effect.at("parameters"), effect.at("amplitude"),
                               effect.at("factor")});
+      RequireCard(trial.hidden.back(), file);
+    }
     trial.young_modulus = json.at("young_modulus");
     trial.poisson_ratio = json.at("poisson_ratio");
     trial.damping = json.at("damping");

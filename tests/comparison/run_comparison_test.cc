@@ -51,7 +51,7 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                           {"held_out", Measure()}});
   }
   directory.Begin({{"recordings", entries}}, {}, 0);
-  const json calibration = {{"schema_version", 2},
+  const json calibration = {{"schema_version", 3},
                             {"experiment", "../experiment.yaml"},
                             {"usable", true},
                             {"message", ""},
@@ -62,6 +62,7 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                             {"rms_after", 1.0},
                             {"predictions", 3},
                             {"parameters", json::array()},
+                            {"held", json::array()},
                             {"recordings", recordings},
                             {"prior_conflicts", json::array()}};
   std::mt19937 random(7);

@@ -1,5 +1,6 @@
 #include "diagnosis/candidates.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,6 +61,63 @@ TEST(Candidates, HavePlacesAllOverWhatIsNoBar) {
     }
   }
   EXPECT_EQ(CandidatesOf(Angle(), "stiffness_gradient").size(), 2u);
+}
+
+std::vector<std::string> VariantsOf(const std::vector<CandidateEffect>& candidates) {
+  std::vector<std::string> variants;
+  for (const CandidateEffect& candidate : candidates) variants.push_back(candidate.variant);
+  return variants;
+}
+
+TEST(Candidates, TrySupportsOnEachSideThatIsNotGripped) {
+  const TetMesh bar = BoxMesh({0, -0.01, -0.01}, {0.09, 0.01, 0.01}, {9, 2, 2});
+  const Body body = MakeBody(bar, 1000);
+  const EffectList effects{
+      MakeEffect("neo_hookean", {{"young_modulus", 1e5}, {"poisson_ratio", 0.4}})};
+  std::vector<char> gripped(body.NodeCount(), 0);
+  for (int i = 0; i < body.NodeCount(); ++i) gripped[i] = bar.nodes(0, i) < 0.001;
+  std::vector<CandidateEffect> supports, slipping;
+  for (const CandidateEffect& candidate :
+       MakeCandidates({body, effects, 0.001, 1, {}, {}, gripped})) {
+    if (candidate.type == "elastic_support") supports.push_back(candidate);
+    if (candidate.type == "slipping_support") slipping.push_back(candidate);
+  }
+  // The girth; the free end; four long sides with three places each.
+  ASSERT_EQ(supports.size(), 4u + 1 + 4 * 4);
+  EXPECT_THAT(
+      VariantsOf(supports),
+      testing::IsSupersetOf({"of the whole surface", "at 50 % of the length", "on the +x side",
+                             "on the −z side", "on the −z side at x = 50 mm"}));
+  EXPECT_THAT(VariantsOf(supports), testing::Not(testing::Contains("on the −x side")));
+  EXPECT_EQ(slipping.size(), 2u * (4 + 5));
+
+  const auto at = [](const CandidateEffect& candidate, const std::string& name) {
+    return candidate.effect->Parameters()[ParameterIndex(candidate.effect->Card(), name)];
+  };
+  for (const CandidateEffect& support : supports) {
+    const auto range = [&](const std::string& name) { return support.known.at(name); };
+    if (support.variant == "on the −z side") {
+      EXPECT_EQ(at(support, "side_z"), -1);
+      for (const char* name : {"point_x", "point_y", "point_z", "radius"})
+        EXPECT_TRUE(range(name).IsHeld()) << name;
+    }
+    if (support.variant == "at 50 % of the length") {
+      EXPECT_EQ(at(support, "side_z"), 0);
+      EXPECT_FALSE(range("point_x").IsHeld());
+      EXPECT_TRUE(range("point_y").IsHeld());
+    }
+    if (support.variant != "on the −z side at x = 50 mm") continue;
+    // A third of the free length, from 10 to 90 mm, lies within a radius of the place.
+    EXPECT_NEAR(at(support, "point_x"), 0.05, 1e-12);
+    EXPECT_NEAR(at(support, "point_z"), -0.01, 1e-12);
+    EXPECT_NEAR(at(support, "radius"), 0.08 / 6, 1e-12);
+    EXPECT_NEAR(range("point_x").min, 0.01, 1e-12);
+    EXPECT_NEAR(range("point_x").max, 0.09, 1e-12);
+    EXPECT_TRUE(range("point_y").IsHeld()) << "across a strip";
+    EXPECT_TRUE(range("point_z").IsHeld());
+    EXPECT_EQ(range("point_z").min, at(support, "point_z"));
+    EXPECT_NEAR(range("radius").min, 0.08 / 24, 1e-12);
+  }
 }
 
 TEST(Candidates, HavePlacesAlongABar) {

@@ -83,7 +83,7 @@ class LoadedBar : public testing::Test {
   }
 
   PredictionStudy Record(const std::vector<std::shared_ptr<const Effect>>& hidden,
-                         const std::string& more = "") {
+                         const std::string& more = "", const std::string& effects = "") {
     WriteBarRecording(folder_.Path(), Film(hidden));
     std::ofstream load(folder_ / "load.csv");
     load << "t,x,y,z\n";
@@ -107,22 +107,23 @@ class LoadedBar : public testing::Test {
     for (int row = -1; std::getline(lines, line); ++row)
       csv << (row < 0 ? line : fmt::format("{}{}", row, line.substr(line.find(',')))) << '\n';
     csv.close();
-    return Experiment(more);
+    return Experiment(more, effects);
   }
 
-  PredictionStudy Experiment(const std::string& more) const {
+  // `effects`: of the model, besides gravity, each after a comma.
+  PredictionStudy Experiment(const std::string& more, const std::string& effects = "") const {
     return ReadPredictionStudy(
         Config::Parse(fmt::format(R"(schema_version: 1
 name: loaded bar
 mesh: {{max_volume: 1000 mm^3, order: 2}}
 material: {{law: neo_hookean, young_modulus: 0.15 MPa, poisson_ratio: 0.4}}
-effects: [{{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}}]
+effects: [{{type: gravity, acceleration: [0, 0, -9.80665 m/s^2]}}{}]
 motion: {{scheme: quasi_static}}
 noise: 0.02 mm
 place_deviation: 0.1 mm
 {}recordings: [{{recording: {}, fit_until: 11 s}}]
 )",
-                                  more, (folder_ / "recording.yaml").string()),
+                                  effects, more, (folder_ / "recording.yaml").string()),
                       (folder_ / "study.yaml").string()));
   }
 
@@ -140,6 +141,64 @@ TEST_F(LoadedBar, IsFittedInAStepAFrame) {
   EXPECT_NEAR(fit.calibration.parameters[0], kModulus, 0.02 * kModulus);
   EXPECT_NEAR(fit.calibration.parameters[1], kRatio, 0.05);
   EXPECT_LT(fit.calibration.rms, 1.2);
+}
+
+std::shared_ptr<const Effect> BedBelow() {
+  return MakeEffect("elastic_support", {{"modulus", 1.5e5},
+                                        {"side_z", -1},
+                                        {"point_x", 0.047},
+                                        {"point_z", -0.01},
+                                        {"radius", 0.009}});
+}
+
+// A bed under a part of the bar, whose modulus, place and size are fitted on another mesh.
+TEST_F(LoadedBar, RecoversAPartlySupportedSide) {
+  PredictionStudy study = Record(
+      {BedBelow()},
+      "fit: {parameters: [{name: young_modulus}, {name: elastic_support.modulus}, "
+      "{name: elastic_support.point_x, min: 0 m, max: 0.08 m}, {name: elastic_support.radius, "
+      "min: 3 mm, max: 40 mm}]}\n",
+      ", {type: elastic_support, modulus: 30 kPa/m, side: [0, 0, -1], point: [35 mm, 0 m, -10 mm], "
+      "radius: 15 mm}");
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
+  EXPECT_LT(fit.calibration.rms, 1.3);
+  const Eigen::VectorXd& found = fit.calibration.parameters;
+  EXPECT_NEAR(found[0], kModulus, 0.03 * kModulus);
+  // Modulus times the square of the radius is what a bed this short is known by.
+  EXPECT_NEAR(found[1] * found[3], 1.5e5 * 0.009, 0.1 * 1.5e5 * 0.009);
+  EXPECT_NEAR(found[2], 0.047, 0.002);
+}
+
+// First order alone finds the side and about the place.
+TEST_F(LoadedBar, TriesASupportOnEachSide) {
+  PredictionStudy study = Record({BedBelow()});
+  const TetMesh mesh = BarMesh({7, 2, 2}, 2);
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
+  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
+  const CalibrationProblem problem(study, mesh);
+  const EffectRanking ranking =
+      RankEffects(problem, fit.calibration.parameters, progress_.get(), {}, {});
+  const auto support = std::find_if(
+      ranking.effects.begin(), ranking.effects.end(),
+      [](const ScoredEffect& effect) { return effect.candidate.type == "elastic_support"; });
+  ASSERT_NE(support, ranking.effects.end());
+  EXPECT_THAT(support->candidate.variant, testing::StartsWith("on the −z side"));
+  EXPECT_GT(support->score.evidence, 20);
+}
+
+// A strain without stress, which the moduli of the model do not change: both are found.
+TEST_F(LoadedBar, RecoversASwellingAndPoissonsRatio) {
+  PredictionStudy study = Record({MakeEffect("swelling", {{"strain", 0.03}})},
+                                 "fit: {parameters: [{name: young_modulus}, {name: poisson_ratio}, "
+                                 "{name: swelling.strain}]}\n",
+                                 ", {type: swelling, strain: 0}");
+  const AdaptedFit fit = FitWithAdaptiveTimeStep(BarMesh({7, 2, 2}, 2), &study, progress_.get());
+  ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
+  EXPECT_LT(fit.calibration.rms, 1.3);
+  EXPECT_NEAR(fit.calibration.parameters[0], kModulus, 0.03 * kModulus);
+  EXPECT_NEAR(fit.calibration.parameters[1], kRatio, 0.03);
+  EXPECT_NEAR(fit.calibration.parameters[2], 0.03, 0.0005);
 }
 
 // Points of an image correlation are as good as markers.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "effects/catalogue.h"
 #include "support/held_bar.h"
@@ -49,6 +50,31 @@ TEST(WithEffect, LooksForAPlaceOnTheBody) {
     ++places;
   }
   EXPECT_EQ(places, 3);
+}
+
+// The place of a support moves along its side; across it, the place is held.
+TEST(WithEffect, MovesASupportAlongItsSide) {
+  const PredictionStudy study = ElasticBar();
+  ScoredEffect scored;
+  const Body body = MakeBody(BarMesh({4, 1, 1}, 1), 1000);
+  for (const CandidateEffect& candidate : MakeCandidates({body, study.effects, 0.001, 1}))
+    if (candidate.variant == "on the −z side at x = 40 mm") scored.candidate = candidate;
+  ASSERT_EQ(scored.candidate.type, "elastic_support");
+  scored.score.size = Eigen::VectorXd::Constant(1, 1e5);
+  std::map<std::string, CalibratedParameter> fitted;
+  for (const ModelParameter& parameter : WithEffect(study, scored).fitted)
+    fitted[parameter.prior.name] = parameter.prior;
+  ASSERT_EQ(fitted.size(), 3u);
+  const CalibratedParameter &along = fitted.at("elastic_support.point_x"),
+                            &radius = fitted.at("elastic_support.radius");
+  EXPECT_EQ(fitted.at("elastic_support.modulus").start, 1e5);
+  EXPECT_NEAR(along.start, 0.04, 1e-12);
+  EXPECT_NEAR(along.max, 0.08, 1e-12);
+  ASSERT_TRUE(radius.log_scale);
+  EXPECT_NEAR(radius.prior_mean, 0.08 / 6, 1e-12);
+  EXPECT_NEAR(radius.max / radius.min, 16, 1e-9);
+  // Of a uniform distribution of the logarithm.
+  EXPECT_NEAR(radius.prior_deviation, std::log(16.0) / std::sqrt(12.0), 1e-12);
 }
 
 // An angle may leave its plausible range, because the directions at both ends are neighbours; a

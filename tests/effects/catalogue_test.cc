@@ -64,6 +64,7 @@ TEST(Catalogue, SaysOfEachEffectWhereItIsTried) {
     }
     if (std::holds_alternative<TriedAsSupports>(card.tried_at)) {
       EXPECT_GE(ParameterIndex(card, "point_x"), 0) << card.type;
+      EXPECT_GE(ParameterIndex(card, "side_x"), 0) << card.type;
     }
   }
 }

@@ -12,7 +12,20 @@ namespace lacuna {
 namespace {
 
 TEST(ElasticSupport, PassesTheEffectChecks) {
-  CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5}}).get());
+  // A part that does not fade has no place.
+  CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5}}).get(),
+              {.without_influence = {"point_x", "point_y", "point_z", "radius"}});
+}
+
+TEST(ElasticSupport, PassesTheEffectChecksOnOneSide) {
+  CheckEffect(MakeEffect("elastic_support", {{"modulus", 1e5},
+                                             {"point_x", 0.02},
+                                             {"point_y", -0.01},
+                                             {"point_z", 0.03},
+                                             {"side_x", 0.3},
+                                             {"side_z", -1},
+                                             {"radius", 0.015}})
+                  .get());
 }
 
 TEST(ElasticSupport, PassesTheEffectChecksForAFadingPart) {
@@ -44,6 +57,44 @@ TEST(ElasticSupport, PullsBackInProportionToArea) {
       }
     }
   }
+}
+
+TEST(ElasticSupport, LiesAgainstOneSideOnly) {
+  // The forces on the lower face alone: the sides, at right angles to it, take no part, whatever
+  // the size of their triangles.
+  const auto support = MakeEffect("elastic_support", {{"modulus", 1e5}, {"side_z", -2}});
+  for (const int order : {1, 2}) {
+    const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}, order), 1000);
+    Eigen::VectorXd position = body.mesh.nodes.reshaped();
+    const Eigen::Vector3d shift(0.001, 0, -0.002);
+    position += shift.replicate(body.NodeCount(), 1);
+    const Eigen::Matrix3Xd force =
+        ForceAt(*support, body, position, 0 * position).reshaped(3, body.NodeCount());
+    EXPECT_LT((force.rowwise().sum() + 1e5 * 600e-6 * shift).norm(), 1e-13);
+    for (int i = 0; i < body.NodeCount(); ++i) {
+      if (body.mesh.nodes(2, i) > 1e-3) {
+        EXPECT_EQ(force.col(i).norm(), 0);
+      }
+    }
+  }
+}
+
+// A face that is turned by 20° belongs to the side, one that is turned by 70° to the next one;
+// where a face is turned by 45°, two sides at right angles share it.
+TEST(ElasticSupport, LiesAgainstTheSideThatFacesIt) {
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.04}, {3, 2, 4}), 1000);
+  const Eigen::VectorXd position = body.mesh.nodes.reshaped().array() + 0.001;
+  const auto total = [&](double degrees) {
+    const double angle = degrees * M_PI / 180;
+    const auto support =
+        MakeEffect("elastic_support",
+                   {{"modulus", 1e5}, {"side_x", std::sin(angle)}, {"side_z", std::cos(angle)}});
+    return -ForceAt(*support, body, position, 0 * position).sum() / (3 * 1e5 * 0.001);  // m²
+  };
+  constexpr double kTop = 600e-6, kEnd = 800e-6;  // m²
+  EXPECT_NEAR(total(20), kTop, 1e-12);
+  EXPECT_NEAR(total(70), kEnd, 1e-12);
+  EXPECT_NEAR(total(45), 0.5 * (kTop + kEnd), 1e-12);
 }
 
 TEST(ElasticSupport, FadesWithDistance) {
@@ -86,12 +137,12 @@ TEST(ElasticSupport, IsReadFromYamlAndRefusesAnEmptyPart) {
   const Config config = Config::Parse(
       "effects:\n"
       "  - {type: elastic_support, modulus: 2 MPa/m, point: [0, 0, 9 cm], normal: [0, 0, 1],\n"
-      "     radius: 1 cm}\n"
+      "     radius: 1 cm, side: [1, 0, 0]}\n"
       "  - {type: elastic_support, modulus: -2 MPa/m}\n",
       "a.yaml");
   const std::vector<Config> items = config.Items("effects");
-  Eigen::VectorXd expected(8);
-  expected << 2e6, 0, 0, 0.09, 0, 0, 1, 0.01;
+  Eigen::VectorXd expected(11);
+  expected << 2e6, 0, 0, 0.09, 0, 0, 1, 0.01, 1, 0, 0;
   const auto support = MakeEffect(items[0]);
   EXPECT_LT((support->Parameters() - expected).norm(), 1e-9);
   EXPECT_THROW(MakeEffect(items[1]), InputError);

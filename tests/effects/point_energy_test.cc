@@ -75,7 +75,6 @@ INSTANTIATE_TEST_SUITE_P(
               {"axis_z", 0.3},
               {"length", 0.05},
               {"poisson_ratio", 0.4}}},
-        Case{"swelling", {{"strain", 0.04}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}},
         Case{"active_contraction",
              {{"tension", 5e3}, {"axis_x", 1}, {"axis_y", -0.5}, {"axis_z", 0.3}}}),
     [](const auto& info) { return info.param.type; });

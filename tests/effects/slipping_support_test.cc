@@ -24,7 +24,16 @@ TEST(SlippingSupport, PassesTheEffectChecks) {
   // slide, then all slide.
   for (const double distance : {0.03, 0.002}) {
     CheckEffect(
-        MakeEffect("slipping_support", {{"modulus", 1e5}, {"slip_distance", distance}}).get());
+        MakeEffect("slipping_support", {{"modulus", 1e5}, {"slip_distance", distance}}).get(),
+        {.without_influence = {"point_x", "point_y", "point_z", "radius"}});
+    CheckEffect(MakeEffect("slipping_support", {{"modulus", 1e5},
+                                                {"slip_distance", distance},
+                                                {"point_x", 0.02},
+                                                {"point_y", -0.01},
+                                                {"point_z", 0.03},
+                                                {"side_x", 1},
+                                                {"radius", 0.02}})
+                    .get());
   }
 }
 

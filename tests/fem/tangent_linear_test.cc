@@ -142,11 +142,19 @@ TEST(TangentLinear, HoldsForTangentsThatAreNotSymmetric) {
   // cancel.
   Case motion;
   motion.spin = 100;
-  motion.effects.push_back(
-      MakeEffect("swelling", {{"strain", 0.01}, {"young_modulus", 5e4}, {"poisson_ratio", 0.4}}));
+  motion.effects.push_back(MakeEffect("swelling", {{"strain", 0.01}}));
   ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
   ExpectParameterDerivative(motion, motion.effects[0], 1, 1e-4, 1e-5);
   ExpectParameterDerivative(motion, motion.effects[kDamped], 0, 1e-6, 1e-5);
+  ExpectParameterDerivative(motion, motion.effects.back(), 0, 1e-4, 1e-5);
+}
+
+// The swelling strain refers to the elasticity law, whose parameters therefore act twice.
+TEST(TangentLinear, CountsWhatTheModuliChangeInAnotherEffect) {
+  Case motion;
+  motion.effects.push_back(MakeEffect("swelling", {{"strain", 0.05}}));
+  ExpectParameterDerivative(motion, motion.effects[0], 0, 50, 1e-5);
+  ExpectParameterDerivative(motion, motion.effects[0], 1, 1e-4, 1e-5);
   ExpectParameterDerivative(motion, motion.effects.back(), 0, 1e-4, 1e-5);
 }
 

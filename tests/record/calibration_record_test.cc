@@ -26,6 +26,8 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.estimate.value = 2;
   parameter.estimate.low = 1;
   parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
+  parameter.near_bound = {true, 2.5};
+  record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"a", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
   record.prior_conflicts = {NuisanceParameterConflict{"a.delay", 4},
                             MarkerConflict{"a", "tip", Eigen::Vector3d(1, 2, 3), 1e-4},
@@ -43,6 +45,13 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.parameters[0].estimate.low, 1);
   EXPECT_EQ(read.parameters[0].estimate.high, INFINITY);
   EXPECT_EQ(read.parameters[0].estimate.verdict, ParameterEstimate::Verdict::kTradedOff);
+  ASSERT_TRUE(read.parameters[0].near_bound);
+  EXPECT_TRUE(read.parameters[0].near_bound->is_upper);
+  EXPECT_EQ(read.parameters[0].near_bound->bound, 2.5);
+  ASSERT_EQ(read.held.size(), 2u);
+  EXPECT_EQ(read.held[1].name, "gravity.acceleration");
+  EXPECT_EQ(read.held[1].unit, "m/s^2");
+  EXPECT_EQ(read.held[1].values, (std::vector<double>{0, 0, -9.81}));
   ASSERT_EQ(read.recordings.size(), 1u);
   EXPECT_EQ(read.recordings[0].in_fit.rms_over_sigma, 1.5);
   ASSERT_EQ(read.prior_conflicts.size(), record.prior_conflicts.size());
@@ -57,6 +66,33 @@ TEST(CalibrationRecord, AnEarlierFormatIsRefusedWithTheCommandToRun) {
   std::ofstream(folder / "calibration.json") << R"({"schema_version": 1})";
   EXPECT_THAT([&] { ReadCalibrationFile(folder / "calibration.json"); },
               ThrowsMessage<InputError>(HasSubstr("run `lacuna fit` again")));
+}
+
+TEST(CalibrationRecord, FindsTheBoundThatAnIntervalComesNear) {
+  const auto near = [](double low, double value, double high, bool log_scale, double min,
+                       double max) {
+    ParameterEstimate estimate;
+    estimate.value = value;
+    estimate.low = low;
+    estimate.high = high;
+    const auto found = FindNearBound(estimate, log_scale, min, max);
+    return !found ? 0 : found->is_upper ? 1 : -1;
+  };
+  // Poisson's ratio: 1 % of its range is 0.015.
+  EXPECT_EQ(near(0.47, 0.48, 0.484, false, -1, 0.5), 0);
+  EXPECT_EQ(near(0.47, 0.48, 0.486, false, -1, 0.5), 1);
+  EXPECT_EQ(near(0.4996, 0.4997, 0.4998, false, -1, 0.5), 1);
+  EXPECT_EQ(near(-0.99, 0.2, 0.3, false, -1, 0.5), -1);
+  // On a logarithmic scale from 1 to 1000, 1 % of the range is a factor of 1.07.
+  EXPECT_EQ(near(1.06, 5, 9, true, 1, 1000), -1);
+  EXPECT_EQ(near(1.08, 5, 9, true, 1, 1000), 0);
+  // Without an upper bound, or with a lower bound of 0 on a logarithmic scale.
+  EXPECT_EQ(near(1e-9, 1, 2, false, 0, INFINITY), 0);
+  EXPECT_EQ(near(-0.1, 1, 2, false, 0, INFINITY), -1);
+  EXPECT_EQ(near(1e-9, 1, 2, true, 0, INFINITY), 0);
+  // What the data do not determine.
+  EXPECT_EQ(near(-INFINITY, 1, INFINITY, false, 0, 2), 0);
+  EXPECT_EQ(near(-3, 1, 4, false, 0, 2), 0);
 }
 
 TEST(CalibrationRecord, AnotherFileIsRefused) {

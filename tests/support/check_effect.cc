@@ -84,6 +84,7 @@ class Checker {
     CheckTangentsAdd();
     CheckStandIn();
     CheckParameters();
+    CheckElasticityDerivatives();
     CheckInvariances();
     CheckThreads();
   }
@@ -91,7 +92,7 @@ class Checker {
  private:
   Kinematics At(const Motion& motion) const {
     return {moving_.body,  motion.position,    motion.velocity, motion.acceleration,
-            options_.time, options_.time_step, moving_.state};
+            options_.time, options_.time_step, moving_.state,   options_.elasticity};
   }
 
   Eigen::VectorXd Force(const Motion& motion) const {
@@ -228,6 +229,10 @@ class Checker {
       if (parameter.setting) continue;
       Eigen::VectorXd derivative = Eigen::VectorXd::Zero(size_);
       effect_.AddParameterDerivative(At(moving_.motion), static_cast<int>(k), &derivative);
+      if (options_.without_influence.contains(parameter.name)) {
+        EXPECT_EQ(derivative.norm(), 0) << "∂f/∂" << parameter.name << " was said to be zero";
+        continue;
+      }
       ASSERT_GT(derivative.norm(), 0) << "∂f/∂" << parameter.name << " is zero";
       const auto value = [&](double h) {
         return ForceWith(values + h * Eigen::VectorXd::Unit(values.size(), k));
@@ -247,6 +252,28 @@ class Checker {
               << "the null value of " << parameter.name << " weakens the effect";
         }
       }
+    }
+  }
+
+  // Derivatives by the parameters of the law that the effect refers to, at its own fixed force.
+  void CheckElasticityDerivatives() const {
+    if (options_.elasticity == nullptr) return;
+    const Eigen::VectorXd values = options_.elasticity->Parameters();
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      Eigen::VectorXd derivative = Eigen::VectorXd::Zero(size_);
+      effect_.AddElasticityDerivative(At(moving_.motion), static_cast<int>(k), &derivative);
+      ASSERT_GT(derivative.norm(), 0) << "the force does not depend on the law";
+      const auto value = [&](double h) {
+        const auto law = options_.elasticity->WithParameters(
+            values + h * Eigen::VectorXd::Unit(values.size(), k));
+        Kinematics at = At(moving_.motion);
+        at.elasticity = law.get();
+        Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
+        effect_.AddForce(at, &force);
+        return force;
+      };
+      EXPECT_LT(BestError(value, derivative, 0.1 * values[k]), options_.tolerance)
+          << "by parameter " << k << " of the elasticity law";
     }
   }
 
@@ -302,7 +329,7 @@ class Checker {
     const MovingBody large = MakeMovingBody(effect_, order_, {7, 6, 5}, options_);
     const Motion& motion = large.motion;
     const Kinematics at{large.body,    motion.position,    motion.velocity, motion.acceleration,
-                        options_.time, options_.time_step, large.state};
+                        options_.time, options_.time_step, large.state,     options_.elasticity};
     const int threads = ThreadCount();
     Eigen::VectorXd force[2];
     BlockMatrix tangent[2] = {BlockMatrix(large.body.pattern), BlockMatrix(large.body.pattern)};

@@ -3,6 +3,8 @@
 #define LACUNA_SUPPORT_CHECK_EFFECT_H_
 
 #include <Eigen/Core>
+#include <set>
+#include <string>
 
 #include "fem/effect.h"
 
@@ -19,6 +21,11 @@ struct CheckEffectOptions {
   bool depends_on_velocity = false;
   bool depends_on_acceleration = false;
   unsigned seed = 7;
+  // The elasticity law of the body, for an effect that is defined relative to it. Its derivatives
+  // by the parameters of the law are then checked too.
+  const Effect* elasticity = nullptr;
+  // Parameters that have no influence at the values of the effect: the derivative must be 0.
+  std::set<std::string> without_influence = {};
 };
 
 // The nodal forces of an effect without memory on a body that moves without acceleration, at time

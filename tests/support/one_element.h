@@ -15,6 +15,7 @@ struct OneElement {
        .tets = Eigen::Vector4i(0, 1, 2, 3)},
       1000);
   double time = 0;
+  const Effect* elasticity = nullptr;  // of the body, for effects that refer to it
   Eigen::VectorXd velocity = Eigen::VectorXd::Zero(12), state;
 
   Eigen::VectorXd Position(const Eigen::Matrix3d& F) const {
@@ -23,12 +24,12 @@ struct OneElement {
   Eigen::VectorXd Force(const Effect& effect, const Eigen::Matrix3d& F) const {
     const Eigen::VectorXd position = Position(F);
     Eigen::VectorXd force = Eigen::VectorXd::Zero(12);
-    effect.AddForce({body, position, velocity, velocity, time, 0, state}, &force);
+    effect.AddForce({body, position, velocity, velocity, time, 0, state, elasticity}, &force);
     return force;
   }
   double Energy(const Effect& effect, const Eigen::Matrix3d& F) const {
     const Eigen::VectorXd position = Position(F);
-    return *effect.Energy({body, position, velocity, velocity, time, 0, state});
+    return *effect.Energy({body, position, velocity, velocity, time, 0, state, elasticity});
   }
   // P from nodal forces: with f_a = −V P g_a and Σ_a g_a X_aᵀ = I, P = −Σ f_a X_aᵀ / V.
   Eigen::Matrix3d Stress(const Effect& effect, const Eigen::Matrix3d& F) const {
