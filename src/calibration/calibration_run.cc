@@ -24,22 +24,27 @@ namespace {
 constexpr int kMeshVersion = 1;
 constexpr int kCalibrationVersion = 16;
 
-// What the model has besides the fitted parameters.
+// What the model has besides the fitted parameters. A vector none of whose components is fitted is
+// one entry.
 std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
   std::vector<HeldParameter> held{{"density", "kg/m^3", {study.density}}};
-  const auto is_fitted = [&](const ModelParameter& parameter) {
+  std::vector<ModelParameter> others = ModelParameters(study.effects);
+  std::erase_if(others, [&](const ModelParameter& parameter) {
     return std::any_of(study.fitted.begin(), study.fitted.end(), [&](const ModelParameter& fitted) {
       return fitted.prior.name == parameter.prior.name;
     });
-  };
-  for (const ModelParameter& parameter : ModelParameters(study.effects)) {
-    if (is_fitted(parameter)) continue;
-    std::string name = parameter.prior.name;
-    const bool is_component = name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z");
-    if (is_component) name.resize(name.size() - 2);
-    const bool continues = is_component && held.back().name == name;
-    if (!continues) held.push_back({name, parameter.unit, {}});
-    held.back().values.push_back(parameter.prior.start);
+  });
+  for (size_t k = 0; k < others.size(); ++k) {
+    const std::string& name = others[k].prior.name;
+    HeldParameter& entry =
+        held.emplace_back(HeldParameter{name, others[k].unit, {others[k].prior.start}});
+    if (!name.ends_with("_x") || k + 2 >= others.size()) continue;
+    const std::string stem = name.substr(0, name.size() - 2);
+    if (others[k + 1].prior.name != stem + "_y" || others[k + 2].prior.name != stem + "_z")
+      continue;
+    entry.name = stem;
+    for (int component = 1; component < 3; ++component)
+      entry.values.push_back(others[++k].prior.start);
   }
   return held;
 }

@@ -297,6 +297,9 @@ ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
   return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_)};
 }
 
+// Other variants from which a refit may start. A support alone has several on each side of the body.
+constexpr size_t kMostElsewhere = 4;
+
 std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
   std::vector<ScoredEffect> effects;
   for (const Entry& entry : entries_) {
@@ -318,6 +321,7 @@ std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {
                      [](const ScoredVariant& a, const ScoredVariant& b) {
                        return a.score.evidence > b.score.evidence;
                      });
+    if (scored.elsewhere.size() > kMostElsewhere) scored.elsewhere.resize(kMostElsewhere);
   }
   return effects;
 }

@@ -40,6 +40,9 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   const std::filesystem::path run = FitBar(folder.Path());
   FittedRun fitted = OpenRun(run);
   EXPECT_EQ(fitted.study.effects.front()->Parameters()[0], fitted.values[0]) << "as it was fitted";
+  std::vector<std::string> held;
+  for (const HeldParameter& parameter : fitted.record.held) held.push_back(parameter.name);
+  EXPECT_THAT(held, ::testing::ElementsAre("density", "poisson_ratio", "gravity.acceleration"));
   CalibratedParameter& modulus = fitted.study.fitted[0].prior;  // as another measurement has it
   ASSERT_TRUE(modulus.log_scale);
   modulus.prior_mean = 1.4e5;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <utility>
 
 #include "calibration/adaptive_time_step.h"
 #include "calibration/calibration_fits.h"
@@ -167,13 +168,19 @@ TEST_F(LoadedBar, RecoversAPartlySupportedSide) {
   EXPECT_NEAR(found[0], kModulus, 0.03 * kModulus);
   // Modulus times the square of the radius is what a bed this short is known by.
   EXPECT_NEAR(found[1] * found[3], 1.5e5 * 0.009, 0.1 * 1.5e5 * 0.009);
-  EXPECT_NEAR(found[2], 0.047, 0.002);
+  // The place and the radius trade off (the correlation is 0.97): the interval of the place is 28
+  // mm wide.
+  EXPECT_NEAR(found[2], 0.047, 0.006);
+  for (const auto& [k, truth] : {std::pair(2, 0.047), std::pair(3, 0.009)}) {
+    EXPECT_LT(fit.calibration.estimates[k].low, truth) << k;
+    EXPECT_GT(fit.calibration.estimates[k].high, truth) << k;
+  }
 }
 
 // First order alone finds the side and about the place.
 TEST_F(LoadedBar, TriesASupportOnEachSide) {
   PredictionStudy study = Record({BedBelow()});
-  const TetMesh mesh = BarMesh({7, 2, 2}, 2);
+  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
   const AdaptedFit fit = FitWithAdaptiveTimeStep(mesh, &study, progress_.get());
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   const CalibrationProblem problem(study, mesh);
@@ -197,8 +204,12 @@ TEST_F(LoadedBar, RecoversASwellingAndPoissonsRatio) {
   ASSERT_TRUE(fit.calibration.usable) << fit.calibration.message;
   EXPECT_LT(fit.calibration.rms, 1.3);
   EXPECT_NEAR(fit.calibration.parameters[0], kModulus, 0.03 * kModulus);
-  EXPECT_NEAR(fit.calibration.parameters[1], kRatio, 0.03);
+  // Bending shows Poisson's ratio no better without the swelling (IsFittedInAStepAFrame).
+  EXPECT_NEAR(fit.calibration.parameters[1], kRatio, 0.05);
   EXPECT_NEAR(fit.calibration.parameters[2], 0.03, 0.0005);
+  const ParameterEstimate& strain = fit.calibration.estimates[2];
+  EXPECT_LT(std::abs(strain.correlation), 0.5) << "independent of the moduli";
+  EXPECT_LT(strain.high - strain.low, 0.004);
 }
 
 // Points of an image correlation are as good as markers.
