@@ -1,0 +1,23 @@
+// The first screen: what was found, how the error fell, how sure that is, and the motion.
+import { h } from './dom.js';
+import { waterfall } from './waterfall.js';
+import { verdictBox } from './verdict.js';
+
+function verdicts(choices) {
+  const diagnosed = choices.filter((choice) => choice.model.diagnosis?.verdict);
+  return diagnosed.map((choice) => verdictBox(choice.model.diagnosis, diagnosed.length > 1 ? choice.label : null));
+}
+
+export function overview({ data, choices, motion }, problem) {
+  const boxes = verdicts(choices).filter(Boolean);
+  const story = h('div', { class: 'story' },
+    h('h1', { class: 'clip' }, data.title ?? 'Report'),
+    (data.sentences ?? []).length > 0 ? h('div', { class: 'sentences' }, data.sentences.map((sentence) => h('p', {}, sentence))) : null,
+    waterfall(choices, data.runs ?? []),
+    boxes.length > 0 ? h('section', { class: 'verdicts', 'aria-labelledby': 'verdict-title' }, h('h2', { id: 'verdict-title' }, 'What is missing'), boxes) : null);
+  const view = motion ? h('section', { class: 'stage', 'aria-labelledby': 'motion-title' },
+    h('div', { class: 'stage-head' }, h('h2', { id: 'motion-title' }, 'The motion'),
+      h('p', { class: 'explain' }, 'Filled dots are measured, rings and the surface are predicted. Drag to turn; click a dot to plot it below.')),
+    motion.root, motion.worst) : null;
+  return h('div', { class: view ? 'overview' : 'overview narrow', id: 'overview' }, story, view, problem ? h('p', { class: 'notice' }, problem) : null);
+}

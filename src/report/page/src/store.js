@@ -1,0 +1,16 @@
+// What the reader has chosen: recording, time, models, colouring. Parts of the page subscribe to it.
+
+export function createStore(initial) {
+  const state = { ...initial };
+  const listeners = [];
+  return {
+    get: () => state,
+    set(changes) {
+      const changed = Object.keys(changes).filter((key) => state[key] !== changes[key]);
+      if (changed.length === 0) return;
+      Object.assign(state, changes);
+      for (const { keys, listener } of listeners) if (keys.some((key) => changed.includes(key))) listener(state, changed);
+    },
+    on(keys, listener) { listeners.push({ keys, listener }); },
+  };
+}
