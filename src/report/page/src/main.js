@@ -4,7 +4,7 @@ import { createStore } from './store.js';
 import { choicesOf, Motion } from './motion.js';
 import { modelLabel } from './text.js';
 import { overview } from './overview.js';
-import { sections } from './sections.js';
+import { sections, lateSections } from './sections.js';
 
 function readData() {
   return JSON.parse(document.getElementById('report-data').textContent);
@@ -45,16 +45,34 @@ async function build(data) {
     h('header', { class: 'top' }, h('div', { class: 'inner' },
       h('p', { class: 'brand' }, data.program ?? 'Lacuna'),
       h('nav', { 'aria-label': 'Sections' }, h('ul', {}, [['overview', 'Overview'], ...parts.map((part) => [part.id, part.short])]
-        .map(([id, title]) => h('li', {}, h('a', { href: `#${id}` }, title))))))),
+        .map(([id, title]) => navigationItem(id, title)))))),
     h('main', { id: 'main', tabindex: -1 }, overview(context, problem), parts.map((part) => part.root)),
     h('footer', {}, h('p', {}, `Written by ${data.program ?? 'Lacuna'}. This file needs no network and nothing beside it.`)));
   if (motion) await motion.reload();
   window.lacunaReport = { store, motion };
-  requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = String(Math.round(performance.now())); }));
+  await nextFrame();
+  document.documentElement.dataset.ready = String(Math.round(performance.now()));
+  await addLateSections(context);
+  document.documentElement.dataset.complete = String(Math.round(performance.now()));
 }
 
-try {
-  build(readData());
-} catch (error) {
-  document.getElementById('page').append(h('p', { class: 'notice' }, `The data of this report cannot be read: ${error.message}`));
+const navigationItem = (id, title) => h('li', {}, h('a', { href: `#${id}` }, title));
+const nextFrame = () => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); });
+
+// Sections whose arrays take time to unpack come when the page can be used already.
+async function addLateSections(context) {
+  for (const { before, part } of await lateSections(context)) {
+    const next = document.getElementById(before);
+    if (next) next.before(part.root);
+    else document.getElementById('main').append(part.root);
+    const link = document.querySelector(`nav a[href="#${before}"]`)?.closest('li');
+    const item = navigationItem(part.id, part.short);
+    if (link) link.before(item);
+    else document.querySelector('nav ul').append(item);
+  }
 }
+
+Promise.resolve().then(() => build(readData())).catch((error) => {
+  console.error(error);
+  document.getElementById('page').append(h('p', { class: 'notice' }, `This report cannot be shown: ${error.message}`));
+});

@@ -5,7 +5,7 @@ import { verdictBox } from './verdict.js';
 
 function verdicts(choices) {
   const diagnosed = choices.filter((choice) => choice.model.diagnosis?.verdict);
-  return diagnosed.map((choice) => verdictBox(choice.model.diagnosis, diagnosed.length > 1 ? choice.label : null));
+  return diagnosed.map((choice, k) => verdictBox(choice.model.diagnosis, diagnosed.length > 1 ? choice.label : null, k === 0));
 }
 
 export function overview({ data, choices, motion }, problem) {

@@ -41,7 +41,8 @@ export const POINTS = {
     varying float vValue;
     void main() {
       vValue = value;
-      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+      // A little nearer to the camera, so that the surface below does not cut the disc.
+      gl_Position = projectionMatrix * vec4((modelViewMatrix * vec4(position, 1.0)).xyz * 0.97, 1.0);
       gl_PointSize = size;
     }`,
   fragmentShader: /* glsl */ `

@@ -9,8 +9,13 @@ export function createStore(initial) {
       const changed = Object.keys(changes).filter((key) => state[key] !== changes[key]);
       if (changed.length === 0) return;
       Object.assign(state, changes);
-      for (const { keys, listener } of listeners) if (keys.some((key) => changed.includes(key))) listener(state, changed);
+      for (const { keys, listener } of [...listeners]) if (keys.some((key) => changed.includes(key))) listener(state, changed);
     },
-    on(keys, listener) { listeners.push({ keys, listener }); },
+    // Returns a function that ends the subscription.
+    on(keys, listener) {
+      const entry = { keys, listener };
+      listeners.push(entry);
+      return () => { listeners.splice(listeners.indexOf(entry), 1); };
+    },
   };
 }

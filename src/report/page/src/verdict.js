@@ -41,11 +41,20 @@ function adequacyText(decision) {
     : `Something unknown is left: ${subject.toLowerCase()} leaves more than noise (${size}).`;
 }
 
-export function verdictBox(diagnosis, subject) {
+// One line: the verdict on a model that came later, and its most probable hypotheses.
+function shortVerdict(diagnosis, subject, title, groups) {
+  return h('div', { class: `verdict short verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
+    h('p', { class: 'verdict-head' }, h('span', { class: 'muted' }, `${subject.slice(0, 200)}: `), h('span', { class: 'verdict-name' }, title), ' ',
+      (diagnosis.effects ?? []).map((effect) => [h('code', { class: 'clip' }, effect), ' ']),
+      h('span', { class: 'muted' }, groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${percent(group.probability)}`).join(', '))));
+}
+
+export function verdictBox(diagnosis, subject, isFirst) {
   if (!diagnosis?.verdict) return null;
   const [title, meaning] = VERDICTS[diagnosis.verdict] ?? [diagnosis.verdict, ''];
   const effects = diagnosis.effects ?? [];
   const groups = probabilityGroups(diagnosis.decision).filter((group) => group.probability >= WORTH_NAMING).slice(0, 5);
+  if (!isFirst) return shortVerdict(diagnosis, subject, title, groups);
   return h('div', { class: `verdict verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
     h('p', { class: 'verdict-head' },
       subject ? h('span', { class: 'muted' }, `${subject}: `) : null,
