@@ -26,7 +26,7 @@ addEventListener('beforeprint', () => {
   for (const chart of live) chart.resize();
 });
 onThemeChange(() => {
-  for (const chart of live) chart.plot.redraw(false, true);
+  for (const chart of live) chart.recolour();
 });
 
 const FONT = '12px system-ui, sans-serif';
@@ -108,13 +108,13 @@ function drawAreas(options) {
   };
 }
 
-function rangeOf(fixed, includesZero) {
+function rangeOf(fixed, includesZero, marginShare = 0.06) {
   return (_, low, high) => {
     if (low === null || high === null) return [0, 1];
     const a = fixed?.[0] ?? (includesZero ? Math.min(low, 0) : low);
     const b = fixed?.[1] ?? (includesZero ? Math.max(high, 0) : high);
     if (!(b > a)) return [a - (Math.abs(a) || 1) * 0.5, b + (Math.abs(b) || 1) * 0.5];
-    const margin = (b - a) * 0.06;
+    const margin = (b - a) * marginShare;
     return [fixed?.[0] !== undefined || (includesZero && low >= 0) ? a : a - margin, fixed?.[1] ?? b + margin];
   };
 }
@@ -126,14 +126,14 @@ class Chart {
     const draw = [underlay(options), drawAreas(options)];
     this.plot = new uPlot({
       width: Math.max(200, host.clientWidth), height: options.height ?? 240, scales: {
-        x: { time: false, range: rangeOf(options.xRange, false) },
+        x: { time: false, range: rangeOf(options.xRange, false, options.series.every((one) => one.style === undefined) ? 0.004 : 0.025) },
         y: { range: rangeOf(options.yRange, options.includesZero ?? true) },
       },
       axes: [axis(options.x, false), axis(options.y, true, options.axisSize ?? 52)],
       series: [{ label: options.x, value: (_, value) => (value === null ? '–' : number(value)) }, ...options.series.map(seriesOptions)],
       hooks: { drawClear: draw, ready: [(plot) => this.addMarker(plot)], setSize: [() => this.showTime()] },
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
-      legend: { show: true, live: true },
+      legend: { show: true, live: true, markers: { width: 0, fill: (_, k) => themeColour(options.series[k - 1]?.colour ?? 'muted') } },
     }, data, host);
     new ResizeObserver(() => this.resize()).observe(host);
     live.add(this);
@@ -161,6 +161,14 @@ class Chart {
     const { time } = this.options.store.get();
     this.marker.hidden = time === null;
     if (time !== null) this.marker.style.setProperty('transform', `translateX(${this.plot.valToPos(time, 'x')}px)`);
+  }
+
+  recolour() {
+    this.plot.redraw(false, true);
+    this.host.querySelectorAll('.u-legend .u-series').forEach((row, k) => {
+      const marker = row.querySelector('.u-marker');
+      if (marker && k > 0) marker.style.background = themeColour(this.options.series[k - 1].colour);
+    });
   }
 
   // A chart whose figure was taken off the page.

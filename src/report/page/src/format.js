@@ -37,7 +37,7 @@ export function percent(share) {
 
 export function probabilityText(p) {
   if (!isNumber(p)) return NONE;
-  return p < 0.001 ? 'p < 0.001' : `p = ${number(p, 2)}`;
+  return p < 0.001 ? 'p < 0.001' : `p = ${number(p, p < 0.01 ? 1 : 2)}`;
 }
 
 // The unit and factor in which values of an SI unit up to this size are shown.

@@ -50,7 +50,7 @@ export class Motion {
       this.firstLabel = first.root.querySelector('label');
       this.secondControl = second.root;
     }
-    this.chooser = h('div', { class: 'controls', role: 'group', 'aria-label': 'What is compared' }, top);
+    this.chooser = h('div', { class: 'controls chooser', role: 'group', 'aria-label': 'What is compared' }, top);
     this.chooser.hidden = top.length === 0;
     this.mode = segmented('Show', [['both', 'both'], ['measured', 'measured'], ['model', 'model'], ['difference', 'difference']], state.mode, (mode) => store.set({ mode }));
     this.colour = labelledSelect('Colour', [['none', 'nothing']], 'none', (colouring) => store.set({ colouring }));
@@ -198,8 +198,8 @@ export class Motion {
       h('ul', { class: 'worst-list' }, items.map((item) => h('li', {},
         h('button', { type: 'button', class: 'worst-item', onclick: () => this.goTo(item) },
           h('span', { class: 'worst-title' }, item.title.slice(0, 120)),
-          item.part ? h('span', { class: `part part-${item.part.replace(' ', '-')}` }, item.part) : null,
-          h('span', { class: 'muted' }, item.detail || NONE))))));
+          h('span', { class: 'worst-detail muted' }, item.detail || NONE),
+          item.part ? h('span', { class: `part part-${item.part.replace(' ', '-')}` }, item.part) : null)))));
     return items;
   }
 

@@ -44,7 +44,7 @@ export class OrbitCamera {
 
   fitting(radius) {
     const half = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * Math.min(1, this.camera.aspect);
-    return (0.8 * radius) / Math.sin(Math.atan(half));
+    return (0.86 * radius) / Math.sin(Math.atan(half));
   }
 
   setAspect(aspect) {

@@ -4,27 +4,26 @@ import { displayUnit, fixed, isNumber, NONE, number, quantity } from './format.j
 import { name, section, table } from './section.js';
 import { PARAMETER_VERDICTS } from './text.js';
 
-const [WIDTH, MARGIN] = [240, 8];
+const [WIDTH, HEIGHT, MARGIN] = [240, 18, 8];
 
-// The intervals of one parameter in all models, on one axis that spans them.
-function whiskers(entries) {
+// The axis that spans the intervals of one parameter in all models.
+function axisOf(entries) {
   const values = entries.flatMap(({ parameter }) => [parameter.value, parameter.low_95, parameter.high_95]).filter(isNumber);
   let low = Math.min(...values), high = Math.max(...values);
   if (!(high > low)) [low, high] = [low - Math.abs(low || 1) * 0.1, high + Math.abs(high || 1) * 0.1];
-  const x = (value) => MARGIN + ((WIDTH - 2 * MARGIN) * (value - low)) / (high - low);
-  const height = 14 * entries.length + 4;
-  const parts = [];
-  if (low < 0 && high > 0) parts.push(svg('line', { x1: x(0), x2: x(0), y1: 0, y2: height, class: 'zero' }));
-  entries.forEach(({ parameter, choice }, k) => {
-    const y = 9 + 14 * k;
-    const style = { stroke: `var(--${choice.colour})`, fill: `var(--${choice.colour})` };
-    const from = isNumber(parameter.low_95) ? x(parameter.low_95) : 0, to = isNumber(parameter.high_95) ? x(parameter.high_95) : WIDTH;
-    parts.push(svg('line', { x1: from, x2: to, y1: y, y2: y, style, class: 'whisker' }));
-    if (isNumber(parameter.low_95)) parts.push(svg('line', { x1: from, x2: from, y1: y - 4, y2: y + 4, style }));
-    if (isNumber(parameter.high_95)) parts.push(svg('line', { x1: to, x2: to, y1: y - 4, y2: y + 4, style }));
-    parts.push(svg('circle', { cx: x(parameter.value), cy: y, r: 3.6, style }));
-  });
-  return svg('svg', { class: 'whiskers', width: WIDTH, height, viewBox: `0 0 ${WIDTH} ${height}`, 'aria-hidden': 'true' }, parts);
+  return { low, high, x: (value) => MARGIN + ((WIDTH - 2 * MARGIN) * (value - low)) / (high - low) };
+}
+
+// A dot for the value, and a whisker for the interval. A side without a bound has no end mark.
+function whisker({ parameter, choice }, { low, high, x }) {
+  const style = { stroke: `var(--${choice.colour})`, fill: `var(--${choice.colour})` };
+  const [from, to] = [isNumber(parameter.low_95) ? x(parameter.low_95) : 0, isNumber(parameter.high_95) ? x(parameter.high_95) : WIDTH];
+  const end = (at) => svg('line', { x1: at, x2: at, y1: HEIGHT / 2 - 4, y2: HEIGHT / 2 + 4, style });
+  return svg('svg', { class: 'whiskers', width: WIDTH, height: HEIGHT, viewBox: `0 0 ${WIDTH} ${HEIGHT}`, 'aria-hidden': 'true' },
+    low < 0 && high > 0 ? svg('line', { x1: x(0), x2: x(0), y1: -6, y2: HEIGHT + 6, class: 'zero' }) : null,
+    svg('line', { x1: from, x2: to, y1: HEIGHT / 2, y2: HEIGHT / 2, style, class: 'whisker' }),
+    isNumber(parameter.low_95) ? end(from) : null, isNumber(parameter.high_95) ? end(to) : null,
+    svg('circle', { cx: x(parameter.value), cy: HEIGHT / 2, r: 3.6, style }));
 }
 
 function verdictText(parameter) {
@@ -39,13 +38,14 @@ export function parameterSection({ choices }) {
   const rows = [], starts = [];
   for (const one of names) {
     const entries = fitted.map((choice) => ({ choice, parameter: choice.model.calibration.parameters.find((parameter) => parameter.name === one) })).filter(({ parameter }) => parameter);
+    const axis = axisOf(entries);
     entries.forEach(({ choice, parameter }, k) => {
       const { unit, factor } = displayUnit(parameter.unit, Math.max(Math.abs(parameter.value), Math.abs(parameter.high_95 ?? 0)));
       const side = (value, infinite) => (isNumber(value) ? number(value * factor) : infinite);
       starts.push(k === 0);
       rows.push([k === 0 ? name(one) : '', h('span', { class: 'model-name' }, h('i', { class: 'swatch', style: { background: `var(--${choice.colour})` } }), name(choice.label)),
         number(parameter.value * factor), `${side(parameter.low_95, '−∞')} … ${side(parameter.high_95, '∞')}`, name(unit),
-        k === 0 ? whiskers(entries) : '', h('span', { class: `pin pin-${(parameter.verdict ?? '').replaceAll(' ', '-')}`, title: PARAMETER_VERDICTS[parameter.verdict] }, verdictText(parameter).slice(0, 200))]);
+        whisker(entries[k], axis), h('span', { class: `pin pin-${(parameter.verdict ?? '').replaceAll(' ', '-')}`, title: PARAMETER_VERDICTS[parameter.verdict] }, verdictText(parameter).slice(0, 200))]);
     });
   }
   const conflicts = fitted.reduce((sum, choice) => sum + (choice.model.calibration.prior_conflicts?.length ?? 0), 0);

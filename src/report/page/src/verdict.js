@@ -25,7 +25,7 @@ export function probabilityGroups(decision) {
 
 function probabilityRow(name, probability, isMember) {
   return h('div', { class: `probability${isMember ? ' member' : ''}`, role: 'listitem' },
-    h('span', { class: 'clip', title: name.slice(0, 300) }, name),
+    h('span', { class: 'probability-name', title: name.slice(0, 300) }, name.slice(0, 120)),
     h('div', { class: 'probability-track' }, h('div', { class: 'probability-fill', style: { width: `${100 * probability}%` } })),
     h('span', { class: 'probability-value' }, percent(probability)));
 }

@@ -31,7 +31,7 @@ export function waterfall(choices, runs) {
         hasNoise ? ' A model whose bar ends at the dashed line is as good as the measurement allows.' : '')),
     groups.map(({ run, bars, noise }) => h('div', { class: 'bars', role: 'list', 'aria-label': `Held-out errors of ${run.name ?? 'the run'}` },
       bars.map((bar) => h('div', { class: `bar-row${bar.isTried ? ' tried' : ''}`, role: 'listitem' },
-        h('span', { class: 'bar-label clip', title: bar.label.slice(0, 300) }, bar.label),
+        h('span', { class: 'bar-label', title: bar.label.slice(0, 300) }, bar.label),
         h('div', { class: 'bar-track' },
           isNumber(bar.before) && bar.before > bar.error ? h('div', { class: 'bar-fall', style: { left: share(bar.error), width: share(bar.before - bar.error) } }) : null,
           h('div', { class: 'bar-fill', style: { width: share(bar.error), background: bar.isTried ? null : `var(--${bar.colour})` } }),
