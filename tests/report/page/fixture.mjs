@@ -205,7 +205,7 @@ function calibration(isSecond) {
            step_error_over_sigma: 0.15, rms_before: 9.1, rms_after: isSecond ? 1.03 : 4.4, predictions: 31, parameters, recordings: [], prior_conflicts: [] };
 }
 
-function comparison(scenes) {
+function comparison(scenes, isSecond) {
   return {
     schema_version: 2, noise_m: NOISE, pairs: [], notes: ['The unexplained force of recording 2 was not computed.'], text: [],
     recordings: scenes.map((scene) => {
@@ -220,7 +220,7 @@ function comparison(scenes) {
           if (value > largest.value) largest = { value, point: p, frame: f };
         }
         const trend = (quantity, low, high, rank) => ({ quantity, rank_correlation: rank, bins: [0, 1, 2, 3].map((k) => ({
-          low: low + ((high - low) * k) / 4, high: low + ((high - low) * (k + 1)) / 4, mean: low + ((high - low) * (k + 0.5)) / 4, count: 11, rms_m: 2e-4 + (rank > 0 ? 2e-4 * k : 1e-4 * (3 - k)) })) });
+          low: low + ((high - low) * k) / 4, high: low + ((high - low) * (k + 1)) / 4, mean: low + ((high - low) * (k + 0.5)) / 4, count: 11, rms_m: isSecond ? 1.75e-4 + 1e-5 * ((7 * k) % 3) : (wanted ? 1 : 1.3) * (2e-4 + (rank > 0 ? 2e-4 * k : 1e-4 * (3 - k))) })) });
         return {
           part: wanted ? 'fitted' : 'held out', frames: frames.length, from_s: times[frames[0]], to_s: times[frames.at(-1)], point_rms_m: pointRms,
           worst_point: pointRms.indexOf(Math.max(...pointRms)), rms_m: rms(frames.map((f) => lengths[f])), rms_over_sigma: rms(frames.map((f) => lengths[f])) / NOISE / Math.sqrt(3),
@@ -290,7 +290,7 @@ function makeModel(name, motion, isSecond, options) {
   const scenes = (options.recordings ?? ['recording 1', 'recording 2']).map((recording, k) => makeScene(recording, { ...motion, frequency: motion.frequency + 0.05 * k }, { ...options, seed: k + 1 }));
   const errors = errorsOf(scenes);
   return { name, added: isSecond ? 'viscoelastic_branch' : '', label: isSecond ? 'with viscoelastic_branch' : 'the model as it is', errors,
-           calibration: calibration(isSecond), comparison: comparison(scenes), diagnosis: diagnosis(isSecond, errors), scenes };
+           calibration: calibration(isSecond), comparison: comparison(scenes, isSecond), diagnosis: diagnosis(isSecond, errors), scenes };
 }
 
 function withoutMeasures(data) {

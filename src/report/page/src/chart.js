@@ -133,7 +133,7 @@ class Chart {
       series: [{ label: options.x, value: (_, value) => (value === null ? '–' : number(value)) }, ...options.series.map(seriesOptions)],
       hooks: { drawClear: draw, ready: [(plot) => this.addMarker(plot)], setSize: [() => this.showTime()] },
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
-      legend: { show: true, live: true, markers: { width: 0, fill: (_, k) => themeColour(options.series[k - 1]?.colour ?? 'muted') } },
+      legend: { show: options.legend ?? true, live: true, markers: { width: 0, fill: (_, k) => themeColour(options.series[k - 1]?.colour ?? 'muted') } },
     }, data, host);
     new ResizeObserver(() => this.resize()).observe(host);
     live.add(this);
@@ -207,6 +207,12 @@ function numbersTable(options, data) {
     h('thead', {}, h('tr', {}, [options.x, ...options.series.map((one) => one.label)].map((label) => h('th', { scope: 'col' }, label)))),
     h('tbody', {}, rows.map((k) => h('tr', {}, data.map((column, c) => h(c === 0 ? 'th' : 'td', c === 0 ? { scope: 'row' } : {}, number(column[k] ?? NaN, 4))))))),
   every > 1 ? h('p', { class: 'explain' }, `Every ${every}th row.`) : null);
+}
+
+// One legend for several charts with the same series.
+export function sharedLegend(series) {
+  return h('p', { class: 'key', 'aria-hidden': 'true' }, series.map((one) => h('span', { class: 'key-item' },
+    h('i', { class: `key-line${one.dash ? ' dashed' : ''}${one.style === 'dots' ? ' dots' : ''}`, style: { 'border-color': `var(--${one.colour})` } }), one.label.slice(0, 120))));
 }
 
 // A figure with a chart. `options.series` are {label, x, y, colour, style, dash}; an empty chart is null.

@@ -1,5 +1,5 @@
 // Where and when the models err: over time, at one point, and against other quantities.
-import { chart } from './chart.js';
+import { chart, sharedLegend } from './chart.js';
 import { unpack } from './decode.js';
 import { h, labelledSelect } from './dom.js';
 import { fixed, isNumber, millimetres, number, sigmas } from './format.js';
@@ -49,14 +49,16 @@ async function pointPlots({ choices, store }, state) {
   const chooser = labelledSelect(isScan(tracks[0].scene) ? 'Patch' : 'Marker', options, String(point), (value) => store.set({ point: Number(value) }));
   const spans = heldOutSpans(tracks[0].times, tracks[0].fitted);
   const charts = [0, 1, 2].map((axis) => chart({
-    title: 'xyz'[axis], store, height: 200, x: 'time, s', y: `${'xyz'[axis]}, mm`, spans, includesZero: false, axisSize: 58,
+    title: 'xyz'[axis], store, legend: false, height: 200, x: 'time, s', y: `${'xyz'[axis]}, mm`, spans, includesZero: false, axisSize: 58,
     series: [
       tracks[0].measured ? { label: 'measured', x: tracks[0].times, y: values(tracks[0], tracks[0].measured, axis), colour: 'measured', style: 'dots', size: 4 } : null,
       ...tracks.map((track) => (track.model ? { label: track.choice.label, x: track.times, y: values(track, track.model, axis), colour: track.choice.colour } : null)),
     ].filter(Boolean),
   }));
   return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, `Position of ${label}`), chooser.root,
-    h('p', { class: 'explain' }, 'Dots are measured, lines are predicted. Choose a point here or by a click in the 3D view.')), h('div', { class: 'grid thirds' }, charts));
+    h('p', { class: 'explain' }, 'Dots are measured, lines are predicted. Choose a point here or by a click in the 3D view.')),
+  sharedLegend([...(tracks[0].measured ? [{ label: 'measured', colour: 'measured', style: 'dots' }] : []), ...tracks.filter((track) => track.model).map((track) => ({ label: track.choice.label, colour: track.choice.colour }))]),
+  h('div', { class: 'grid thirds' }, charts));
 }
 
 function worstPoint(track, count) {
@@ -80,6 +82,7 @@ const comparedRecording = (choice, recording) => choice.model.comparison?.record
 function trends({ choices }, state) {
   const compared = choices.map((choice) => ({ choice, recording: comparedRecording(choice, state.recording) })).filter(({ recording }) => recording);
   const quantities = [...new Set(compared.flatMap(({ recording }) => recording.parts.flatMap((part) => part.trends.map((trend) => trend.quantity))))];
+  const shown = [];
   const charts = quantities.map((key) => {
     const [title, unit, factor] = QUANTITIES[key] ?? [key, '', 1];
     const series = [];
@@ -93,12 +96,13 @@ function trends({ choices }, state) {
         if (choice === compared[0].choice && isNumber(trend.rank_correlation)) ranks.push(`${part.part} ${fixed(trend.rank_correlation, 2)}`);
       }
     }
-    return chart({ title: `Against ${title}`, explain: ranks.length > 0 ? `Rank correlation of the ${compared.length > 1 ? 'first model' : 'model'}: ${ranks.join(', ')}.` : null,
+    for (const one of series) if (!shown.some((other) => other.label === one.label)) shown.push(one);
+    return chart({ legend: false, title: `Against ${title}`, explain: ranks.length > 0 ? `Rank correlation of the ${compared.length > 1 ? 'first model' : 'model'}: ${ranks.join(', ')}.` : null,
       x: unit ? `${title}, ${unit}` : title, y: 'rms residual, mm', height: 190, series });
   }).filter(Boolean);
   if (charts.length === 0) return null;
   return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, 'What the error depends on'),
-    h('p', { class: 'explain' }, 'Frames (for the distance from the grip: points) in bins of about equal size. An error that grows with speed suggests a missing loss; with strain, a wrong elasticity law. Dashed: held out.')), grid(charts));
+    h('p', { class: 'explain' }, 'Frames (for the distance from the grip: points) in bins of about equal size. An error that grows with speed suggests a missing loss; with strain, a wrong elasticity law.')), sharedLegend(shown), grid(charts));
 }
 
 function load({ choices }, state) {

@@ -43,7 +43,7 @@ async function build(data) {
   const parts = sections(context);
   page.append(
     h('header', { class: 'top' }, h('div', { class: 'inner' },
-      h('p', { class: 'brand' }, data.program ?? 'Lacuna'),
+      h('p', { class: 'brand clip' }, data.program ?? 'Lacuna'),
       h('nav', { 'aria-label': 'Sections' }, h('ul', {}, [['overview', 'Overview'], ...parts.map((part) => [part.id, part.short])]
         .map(([id, title]) => navigationItem(id, title)))))),
     h('main', { id: 'main', tabindex: -1 }, overview(context, problem), parts.map((part) => part.root)),

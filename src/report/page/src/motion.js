@@ -8,6 +8,7 @@ import { View3d } from './view3d.js';
 import { worstPlaces } from './worst.js';
 import { KEYBOARD_HELP } from './text.js';
 
+const ARROW_SCALES = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
 const LARGEST_WITH_EDGES = 6000;  // triangles whose edges are shown without being asked for
 
 export const sceneOf = (choice, recording) => choice?.model.scenes?.find((scene) => scene.recording === recording) ?? null;
@@ -25,7 +26,8 @@ export class Motion {
     this.worst = h('div', { class: 'worst' });
     this.controls = this.makeControls(recordings);
     this.notice = h('p', { class: 'notice', role: 'status', hidden: true });
-    this.root = h('div', { class: 'motion' }, this.chooser, this.view.root, this.notice, this.scale, this.timeline.root, this.controls);
+    this.note = h('p', { class: 'explain', hidden: true });
+    this.root = h('div', { class: 'motion' }, this.chooser, this.view.root, this.notice, this.note, this.scale, this.timeline.root, this.controls);
     store.on(['recording', 'first', 'second', 'isCompared'], () => this.reload());
     store.on(['mode', 'colouring'], () => this.restyle());
     store.on(['time'], () => this.showTime());
@@ -54,7 +56,7 @@ export class Motion {
     this.chooser.hidden = top.length === 0;
     this.mode = segmented('Show', [['both', 'both'], ['measured', 'measured'], ['model', 'model'], ['difference', 'difference']], state.mode, (mode) => store.set({ mode }));
     this.colour = labelledSelect('Colour', [['none', 'nothing']], 'none', (colouring) => store.set({ colouring }));
-    this.arrows = labelledSelect('Arrows', [1, 2, 5, 10, 20, 50, 100].map((factor) => [String(factor), `${factor} ×`]), '1', (value) => {
+    this.arrows = labelledSelect('Arrows', ARROW_SCALES.map((factor) => [String(factor), `${factor} ×`]), '1', (value) => {
       this.arrowScale = Number(value);
       this.restyle();
     });
@@ -65,6 +67,13 @@ export class Motion {
     this.all = h('button', { type: 'button', class: 'toggle', title: KEYBOARD_HELP, onclick: () => this.view.orbit.showAll() }, 'Show all');
     return h('div', { class: 'controls', role: 'group', 'aria-label': 'Display' },
       this.mode.root, this.colour.root, this.arrows.root, this.edgesButton, this.all);
+  }
+
+  // The largest factor with which no arrow is longer than about a quarter of the object.
+  chooseArrowScale(scenes, radius) {
+    const largest = Math.max(...scenes.map((data) => (data?.pointCount > 0 ? data.residualScale() : 0)));
+    this.arrowScale = ARROW_SCALES.findLast((factor) => factor * largest <= radius / 2) ?? 1;
+    this.arrows.select.value = String(this.arrowScale);
   }
 
   shownChoices() {
@@ -87,9 +96,13 @@ export class Motion {
       if (main && (this.homeOf !== main.scene.recording)) {
         this.homeOf = main.scene.recording;
         this.view.orbit.setHome(main.bounds(), main.up);
+        this.chooseArrowScale(data, main.bounds().radius);
         this.edges = main.triangleCount > 0 && main.triangleCount <= LARGEST_WITH_EDGES;
       }
       this.edgesButton.hidden = !main?.triangleCount;
+      const notes = [...new Set(scenes.map((scene) => scene?.note).filter(Boolean))];
+      this.note.hidden = notes.length === 0;
+      this.note.textContent = notes.join(' ').slice(0, 600);
       const withPoints = data.some((one) => one?.pointCount > 0);
       this.mode.root.hidden = !withPoints;
       this.hasArrows = data.some((one) => one?.measured && one?.model);
@@ -192,6 +205,7 @@ export class Motion {
   // Buttons that set time and camera. Of several models, the worst places are those of the left one.
   listWorst(shown, scenes, data) {
     const items = worstPlaces(shown[0].model, scenes[0], data[0]);
+    this.view.marked = [...new Set(items.map((item) => item.point).filter((point) => point !== undefined))];
     this.worst.hidden = items.length === 0;
     this.worst.replaceChildren(
       h('h3', {}, `Where ${shown.length > 1 ? 'the left model' : 'the model'} is worst`),

@@ -1,6 +1,6 @@
 // Which effects were tried, how probable each is, and which of them these recordings can separate.
 import { cellColour } from './colours.js';
-import { h, segmented } from './dom.js';
+import { h, labelledSelect } from './dom.js';
 import { fixed, isNumber, millimetres, NONE, number, percent, quantity, sigmas } from './format.js';
 import { name, section, table } from './section.js';
 import { namesOf } from './text.js';
@@ -111,6 +111,6 @@ export function physicsSection({ choices }) {
     body.replaceChildren(...[candidates(diagnosis), separability(diagnosis.decision), power(diagnosis.decision), nuisances(diagnosis)].filter(Boolean));
   };
   show(0);
-  const chooser = diagnosed.length > 1 ? segmented('Diagnosis of', diagnosed.map((choice, k) => [String(k), choice.label.slice(0, 60)]), '0', (value) => show(Number(value))).root : null;
+  const chooser = diagnosed.length > 1 ? labelledSelect('Diagnosis of', diagnosed.map((choice, k) => [String(k), choice.label.slice(0, 80)]), '0', (value) => show(Number(value))).root : null;
   return section('physics', 'Missing physics', 'Which physics the model lacks', 'Every effect of the catalogue was added to the model in turn.', chooser, body);
 }

@@ -6,7 +6,8 @@ import { fixed, isNumber, millimetres, NONE, number, quantity, sigmas } from './
 import { grid, name, section, table } from './section.js';
 import { traceCharts } from './reconstruction.js';
 
-const range = (value, text) => (isNumber(value?.median) ? `${text(value.median)} (${text(value.least)} … ${text(value.largest)})` : NONE);
+const range = (value, text) => (isNumber(value?.median)
+  ? h('span', {}, text(value.median), h('span', { class: 'extremes' }, `${text(value.least)} … ${text(value.largest)}`)) : NONE);
 const share = (value) => (isNumber(value) ? `${fixed(100 * value, 0)} %` : NONE);
 
 // Median and extremes of a share as a dot and a whisker from 0 to 1, with the paper's value as a diamond.
@@ -38,7 +39,7 @@ export function ablationSection({ data }) {
   return section('ablation', 'Ablation', 'Ablation of the search', 'The search, repeated with one thing changed at a time. Each row is compared with the row that it names.',
     runs.map(({ ablation }) => [
       table(null, [['row'], ['varies'], ['against'], ['reduction', true], ['from 0 to 100 %'], ['best, per point', true], ['modulus / truth', true], ['Poisson’s ratio − truth', true], ['evaluations', true], ['what it shows']],
-        ablation.rows.map((row) => [name(row.name), name(row.varies), name(row.against), range(row.drop, share), rangeBar(row.drop), range(row.best_per_point_m, millimetres), range(row.young_modulus_over_truth, (value) => number(value)), range(row.poisson_ratio_less_truth, (value) => number(value, 2)), range(row.evaluations, (value) => number(value)), name(row.shows)])),
+        ablation.rows.map((row) => [name(row.name), name(row.varies), name(row.against), range(row.drop, share), rangeBar(row.drop), range(row.best_per_point_m, millimetres), range(row.young_modulus_over_truth, (value) => number(value)), range(row.poisson_ratio_less_truth, (value) => number(value, 2)), range(row.evaluations, (value) => number(value)), h('div', { class: 'prose' }, name(row.shows))])),
       isNumber(ablation.mesh_noise) ? h('p', { class: 'explain' }, `Mesh noise: ${number(100 * ablation.mesh_noise, 2)} % of the residual per point; smaller differences mean nothing.`) : null]));
 }
 

@@ -25,6 +25,7 @@ export class View3d {
     this.view = null;
     this.frames = [0, 0];
     this.selected = null;
+    this.marked = [];
     this.renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: false, preserveDrawingBuffer: true });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.autoClear = false;
@@ -129,7 +130,7 @@ export class View3d {
     return { x: box.x + ((at.x + 1) / 2) * box.width, y: box.y + ((1 - at.y) / 2) * box.height, depth: at.z };
   }
 
-  // The axes, a scale bar and the selected point.
+  // The axes, a scale bar, the worst points and the selected one.
   drawOverlay() {
     const { camera, distance } = this.orbit;
     const box = this.boxes[0];
@@ -147,13 +148,20 @@ export class View3d {
     const [right, bottom] = [box.x + box.width - 16, box.y + box.height - 16];
     parts.push(svg('path', { d: `M${right - length / perPixel} ${bottom - 4}V${bottom}H${right}V${bottom - 4}`, class: 'scale-bar' }),
       svg('text', { x: right - length / perPixel / 2, y: bottom - 6, 'text-anchor': 'middle' }, `${number(1e3 * length, 1)} mm`));
+    for (const point of this.marked) {
+      const place = point === this.selected ? null : this.placeOfPoint(0, point);
+      if (!place) continue;
+      const at = this.project(place, this.boxes[0]);
+      parts.push(svg('circle', { cx: at.x, cy: at.y, r: 11, class: 'worst-mark' }));
+    }
     if (this.selected !== null) {
       for (let k = 0; k < this.visiblePanes; ++k) {
         const place = this.placeOfPoint(k, this.selected);
         if (!place) continue;
         const at = this.project(place, this.boxes[k]);
-        parts.push(svg('circle', { cx: at.x, cy: at.y, r: 11, class: 'selected-point' }));
-        parts.push(svg('text', { x: at.x + 15, y: at.y - 9, class: 'selected-name' }, this.panes[k].data.pointName(this.selected).slice(0, 24)));
+        const isRight = at.x > this.boxes[k].x + this.boxes[k].width - 70;
+        parts.push(svg('circle', { cx: at.x, cy: at.y, r: 11, class: 'selected-point' }),
+          svg('text', { x: at.x + (isRight ? -15 : 15), y: at.y - 9, 'text-anchor': isRight ? 'end' : 'start', class: 'selected-name' }, this.panes[k].data.pointName(this.selected).slice(0, 24)));
       }
     }
     this.overlay.replaceChildren(...parts);
@@ -186,12 +194,15 @@ export class View3d {
     const data = pane >= 0 ? this.panes[pane].data : null;
     if (!data || data.pointCount === 0) return null;
     let best = null, least = 16;
-    for (let k = 0; k < data.pointCount; ++k) {
-      const place = this.placeOfPoint(pane, k);
-      if (!place) continue;
-      const at = this.project(place, this.boxes[pane]);
-      const gap = Math.hypot(at.x - x, at.y - y);
-      if (gap < least) [best, least] = [k, gap];
+    for (const array of [data.measured, data.model]) {
+      if (!array) continue;
+      const places = array.frame(Math.min(this.frames[pane] ?? 0, array.frames - 1));
+      for (let k = 0; k < data.pointCount; ++k) {
+        if (Number.isNaN(places[3 * k])) continue;
+        const at = this.project(places.subarray(3 * k, 3 * k + 3), this.boxes[pane]);
+        const gap = Math.hypot(at.x - x, at.y - y);
+        if (gap < least) [best, least] = [k, gap];
+      }
     }
     return best;
   }
