@@ -130,7 +130,7 @@ const rms = (values) => {
   return Math.sqrt(known.reduce((sum, value) => sum + value * value, 0) / (known.length || 1));
 };
 
-function makeScene(recording, motion, { vertices = 400, frames = 60, seed = 1, withForce = true } = {}) {
+function makeScene(recording, motion, { vertices = 400, frames = 60, seed = 1, withForce = true, packPoints = packFloats, isScan = false } = {}) {
   const times = frameTimes(frames), allTimes = frameTimes(60);
   const surface = barSurface(vertices);
   const V = surface.vertices.length, T = surface.triangles.length;
@@ -170,12 +170,14 @@ function makeScene(recording, motion, { vertices = 400, frames = 60, seed = 1, w
         { name: 'unexplained_force_x', label: 'unexplained force along x', unit: 'N/m^3', on: 'triangles', diverging: true, ...range(force), values: packQuantised([frames, T], force) },
       ],
     },
-    points: { names: MARKER_NAMES, is_scan: false, sigma: NOISE, measured: packFloats([frames, P, 3], shown.measured),
-              model: packFloats([frames, P, 3], shown.model), residual: packFloats([frames, P, 3], shown.residual) },
-    series: { time_s: allTimes, fitted: allFitted, rms_m: lengths, sigma_m: NOISE },
-    points_series: { time_s: allTimes, names: MARKER_NAMES, measured: packFloats([allTimes.length, P, 3], all.measured), model: packFloats([allTimes.length, P, 3], all.model) },
-    force: withForce ? { time_s: allTimes, force_N: [swing(0, 0.01), swing(1, 0.024), swing(2, 0.05)], torque_N_m: [swing(0, 4e-4), swing(1, 9e-4), swing(2, 2e-4)], power_W: swing(0.5, 0.004) } : null,
+    points: { names: MARKER_NAMES, is_scan: isScan, sigma: NOISE, measured: packPoints([frames, P, 3], shown.measured),
+              model: packPoints([frames, P, 3], shown.model), residual: packPoints([frames, P, 3], shown.residual) },
+    series: { time_s: allTimes, fitted: allFitted, rms_m: lengths.map((value, f) => (f === 5 ? null : value)), sigma_m: NOISE },
+    points_series: { time_s: allTimes, names: MARKER_NAMES, measured: packPoints([allTimes.length, P, 3], all.measured), model: packPoints([allTimes.length, P, 3], all.model) },
+    force: withForce ? { time_s: allTimes, force_N: [swing(0, 0.01), swing(1, 0.024), swing(2, 0.05)], force_deviation_N: [2e-3, 3e-3, 4e-3].map((value) => allTimes.map((_, k) => (k === 2 ? null : value))),
+      torque_N_m: [swing(0, 4e-4), swing(1, 9e-4), swing(2, 2e-4)], power_W: swing(0.5, 0.004) } : null,
     load: withForce ? { displacement_m: allTimes.map((t) => 0.02 * t), force_N: allTimes.map((t) => 0.4 * t ** 0.8), model_force_N: allTimes.map((t) => 0.36 * t) } : null,
+    notes: vertices > 5000 ? ['The surface has fewer vertices than that of the model.'] : [],
     // For the records below.
     measures: { times: allTimes, fitted: allFitted, residual: all.residual, lengths },
   };
@@ -371,6 +373,30 @@ export function largeReport(vertices, frames) {
   return data;
 }
 
+// A motion as a reconstruction keeps it: a surface, and scans whose points have no names and no counterparts.
+function scannedScene() {
+  const scene = makeScene('bend', FIRST, { withForce: false });
+  return { ...scene, fitted: scene.times.map(() => true), series: null, points_series: null, load: null,
+           points: { names: [], is_scan: true, measured: scene.points.measured, model: null, residual: null, sigma: null } };
+}
+
+// Scans instead of markers, with positions as 16-bit numbers, and nothing held out.
+export function scansReport() {
+  const data = fullReport({ packPoints: packQuantised, isScan: true });
+  const run = data.runs[0];
+  run.noise = null;
+  run.ledger = null;
+  run.models.pop();
+  const [model] = run.models;
+  model.diagnosis = null;
+  model.errors.has_held_out = false;
+  for (const scene of model.scenes) {
+    scene.surface = null;
+    scene.force = scene.load = null;
+  }
+  return data;
+}
+
 export function studyReport() {
   const times = Array.from({ length: 20 }, (_, k) => 0.05 * k);
   const range = (median, half) => ({ median, least: median - half, largest: median + half });
@@ -378,7 +404,7 @@ export function studyReport() {
   return {
     schema: 1, program: 'Lacuna 0.1.0', title: 'bend', sentences: ['The model follows the scan to 0.31 mm.'],
     runs: [{
-      name: 'bend', kind: 'reconstruction', models: [{ name: 'bend', added: '', label: '', errors: null, scenes: [{ ...makeScene('bend', FIRST, { withForce: false }), points_series: null, load: null }] }], noise: null,
+      name: 'bend', kind: 'reconstruction', models: [{ name: 'bend', added: '', label: '', errors: null, scenes: [scannedScene()] }], noise: null, notes: ['The trace of the search was not kept.'],
       reconstruction: {
         record: { recording: 'bend', object_size_m: 0.0714, animation_residual_m: 0.31, relative_animation_residual: 0.004, mesh: { node_count: 812, tet_count: 402, order: 2, volume_m3: 2.7e-5, smallest_angle_rad: 0.3, largest_radius_edge_ratio: 1.4 }, stages: { registration: { usable: true, status: 'converged', message: '', iterations: 40 } }, measures: { force_rms_N: 0.2 }, warnings: ['Frame 3 did not converge.'] },
         frames: { frame: times.map((_, k) => k), time_s: times, residual_mean_m: times.map((t) => 3e-4 + 1e-4 * Math.sin(8 * t)), surface_distance_mean_m: times.map((t) => 2e-4 + 5e-5 * t), surface_distance_max_m: times.map((t) => 9e-4 + 5e-5 * t), force_x_N: times.map((t) => 0.1 * t), force_y_N: times.map(() => 0), force_z_N: times.map((t) => 0.3 * t) },
@@ -398,7 +424,7 @@ export function studyReport() {
 }
 
 export const kinds = {
-  full: fullReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
+  full: fullReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
   '10k': () => largeReport(10000, 30), '100k': () => largeReport(100000, 100),
 };
 

@@ -11,6 +11,7 @@ import { after, before, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
 import { HOSTILE, kinds, writeReport } from './fixture.mjs';
+import { METRIC_OF_NOISE, validationMetric } from '../../../src/report/page/src/validation_metric.js';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const pageFolder = join(here, '../../../src/report/page');
@@ -96,7 +97,22 @@ test('the bundle belongs to its sources', () => {
   assert.ok(template.includes('three.js authors') && template.includes('Leon Sorokin'), 'the licences of the libraries');
 });
 
-for (const [label, makeFile] of [['full', () => fixture('full')], ['study', () => fixture('study')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
+test('the validation metric of known errors', () => {
+  // Errors 1, 1 and 6 with U = 2: the two small ones weigh 2 of 8.
+  const small = validationMetric([[1, 1], [6]], 100, 1);
+  assert.equal(small.metric, 0.25);
+  assert.equal(small.withinShare, 2 / 3);
+  assert.equal(small.thresholdShare, 0.02);
+  assert.ok(small.low <= small.metric && small.metric <= small.high);
+  // Normally distributed errors of the assumed size, from the quantiles of the distribution by Box and Muller.
+  const frames = Array.from({ length: 100 }, (_, a) => Array.from({ length: 100 }, (_, b) => Math.abs(Math.sqrt(-2 * Math.log(1 - (a + 0.5) / 100)) * Math.cos((2 * Math.PI * (b + 0.5)) / 100))));
+  const noise = validationMetric(frames, 1, 1);
+  assert.ok(Math.abs(noise.metric - METRIC_OF_NOISE) < 0.01, String(noise.metric));
+  assert.ok(Math.abs(noise.withinShare - 0.9545) < 0.01);
+  assert.equal(validationMetric([[]], 1, 1), null);
+});
+
+for (const [label, makeFile] of [['full', () => fixture('full')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
                                 ...givenFiles.map((file) => [basename(file), () => file])]) {
   test(`${label}: opens without an error or a request, and without empty boxes`, async () => {
     const { page, problems, close } = await open(makeFile());

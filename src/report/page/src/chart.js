@@ -96,7 +96,11 @@ function drawAreas(options) {
   return (plot) => {
     const { ctx } = plot;
     for (const area of options.areas ?? []) {
+      if (area.x.length < 2) continue;
       ctx.save();
+      ctx.beginPath();
+      ctx.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
+      ctx.clip();
       ctx.globalAlpha = 0.18;
       ctx.fillStyle = themeColour(area.colour);
       ctx.beginPath();

@@ -36,7 +36,7 @@ async function pointPlots({ choices, store }, state) {
   const tracks = [];
   for (const { choice, scene } of all) {
     const source = scene.points_series ?? (scene.points ? { ...scene.points, time_s: scene.times } : null);
-    if (!source?.model && !source?.measured) continue;
+    if (!source?.model) continue;
     const [measured, model] = await Promise.all([unpack(source.measured), unpack(source.model)]);
     tracks.push({ choice, scene, times: source.time_s, names: source.names ?? [], measured, model, fitted: scene.points_series ? scene.series?.fitted : scene.fitted });
   }
@@ -146,7 +146,7 @@ export function errorSection(context) {
   return section('errors', 'Errors', 'Where and when the models err',
     'Residual is predicted minus measured. 1 σ means as good as the measurement allows.',
     scenes.some((scene) => scene.series?.rms_m?.length > 0) && following(store, ['recording'], (state) => errorOverTime(context, state)),
-    hasScenes && scenes.some((scene) => scene.points_series || scene.points) && following(store, ['recording', 'point'], (state) => pointPlots(context, state)),
+    hasScenes && scenes.some((scene) => scene.points_series?.model || scene.points?.model) && following(store, ['recording', 'point'], (state) => pointPlots(context, state)),
     scenes.some((scene) => scene.load?.displacement_m?.length > 0) && following(store, ['recording'], (state) => load(context, state)),
     hasTrends && following(store, ['recording'], (state) => trends(context, state)),
     rows, notes.length > 0 && h('ul', { class: 'notes' }, notes.map((note) => h('li', {}, note))));

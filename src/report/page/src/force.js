@@ -8,18 +8,25 @@ import { heldOutSpans } from './timeline.js';
 
 const AXIS_COLOURS = ['series-first', 'series-last', 'series-2'];
 
+// The band of one standard deviation about a curve, where both are known.
+function areaAround(times, values, deviations, factor, colour) {
+  const known = times.map((_, k) => k).filter((k) => isNumber(values?.[k]) && isNumber(deviations?.[k]));
+  return { colour, x: known.map((k) => times[k]), low: known.map((k) => factor * (values[k] - deviations[k])), high: known.map((k) => factor * (values[k] + deviations[k])) };
+}
+
 function charts(scene, store) {
   const { force } = scene;
   if (!force) return null;
   const spans = heldOutSpans(scene.series?.time_s ?? [], scene.series?.fitted);
-  const build = (title, unit, lists, labels) => {
+  const build = (title, unit, lists, labels, deviations) => {
     const all = lists.flatMap((list) => list ?? []).filter(isNumber);
     if (all.length === 0) return null;
     const shown = displayUnit(unit, all.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0));
-    return chart({ title, store, spans, x: 'time, s', y: `${title.toLowerCase()}, ${shown.unit}`, height: 220, lines: [{ y: 0, colour: 'rule' }],
+    return chart({ title, store, spans, x: 'time, s', y: `${title.toLowerCase()}, ${shown.unit}`, height: 220, lines: [{ y: 0, colour: 'rule' }], explain: deviations ? 'The tint is one standard deviation.' : null,
+      areas: (deviations ?? []).map((deviation, k) => areaAround(force.time_s, lists[k], deviation, shown.factor, AXIS_COLOURS[k])),
       series: lists.map((list, k) => ({ label: labels[k], x: force.time_s, y: Array.from(list ?? [], (value) => (isNumber(value) ? value * shown.factor : NaN)), colour: AXIS_COLOURS[k] })) });
   };
-  return grid(build('Force', 'N', force.force_N ?? [], ['x', 'y', 'z']), build('Torque', 'N m', force.torque_N_m ?? [], ['x', 'y', 'z']),
+  return grid(build('Force', 'N', force.force_N ?? [], ['x', 'y', 'z'], force.force_deviation_N), build('Torque', 'N m', force.torque_N_m ?? [], ['x', 'y', 'z']),
     build('Power', 'W', force.power_W ? [force.power_W] : [], ['power']));
 }
 

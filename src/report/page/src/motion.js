@@ -100,12 +100,18 @@ export class Motion {
         this.edges = main.triangleCount > 0 && main.triangleCount <= LARGEST_WITH_EDGES;
       }
       this.edgesButton.hidden = !main?.triangleCount;
-      const notes = [...new Set(scenes.map((scene) => scene?.note).filter(Boolean))];
+      const notes = [...new Set(scenes.flatMap((scene) => scene?.notes ?? []))];
       this.note.hidden = notes.length === 0;
       this.note.textContent = notes.join(' ').slice(0, 600);
       const withPoints = data.some((one) => one?.pointCount > 0);
       this.mode.root.hidden = !withPoints;
       this.hasArrows = data.some((one) => one?.measured && one?.model);
+      const hasModel = data.some((one) => one?.model || one?.positions);
+      for (const button of this.mode.root.children) {
+        const { value } = button.dataset;
+        button.hidden = (value === 'difference' && !this.hasArrows) || (['both', 'model'].includes(value) && !hasModel);
+      }
+      if (!this.hasArrows && state.mode === 'difference') this.store.set({ mode: 'both' });
       if (this.compare) {
         this.compare.setAttribute('aria-pressed', String(state.isCompared));
         this.secondControl.hidden = !state.isCompared;

@@ -11,13 +11,15 @@ function verdicts(choices) {
 export function overview({ data, choices, motion }, problem) {
   const boxes = verdicts(choices).filter(Boolean);
   const errors = waterfall(choices, data.runs ?? []);
+  const notes = [...new Set((data.runs ?? []).flatMap((run) => run.notes ?? []))];
   const isShort = !errors && boxes.length === 0;
   const story = h('div', { class: 'story' },
     h('h1', { class: 'clip' }, data.title ?? 'Report'),
     (data.sentences ?? []).length > 0 ? h('div', { class: 'sentences' }, data.sentences.map((sentence) => h('p', {}, sentence))) : null,
     errors,
     boxes.length > 0 ? h('section', { class: 'verdicts', 'aria-labelledby': 'verdict-title' }, h('h2', { id: 'verdict-title' }, 'What is missing'), boxes) : null,
-    isShort ? motion?.worst : null);
+    isShort ? motion?.worst : null,
+    notes.length > 0 ? h('ul', { class: 'notes' }, notes.map((note) => h('li', {}, note))) : null);
   const view = motion ? h('section', { class: 'stage', 'aria-labelledby': 'motion-title' },
     h('div', { class: 'stage-head' }, h('h2', { id: 'motion-title' }, 'The motion'),
       h('p', { class: 'explain' }, 'Filled dots are measured, rings and the surface are predicted. Drag to turn; click a dot to plot it below.')),

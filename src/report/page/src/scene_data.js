@@ -97,7 +97,7 @@ export class SceneData {
 // a label, a unit and a factor from the stored to the shown value.
 export function colourings(scenes) {
   const list = [];
-  const points = scenes.some((scene) => scene?.points);
+  const points = scenes.some((scene) => scene?.points && (scene.points.residual || (scene.points.measured && scene.points.model)));
   if (points) {
     list.push({ key: 'residual', label: 'residual', unit: 'mm', factor: 1e3, diverging: false, ofPoints: true });
     if (scenes.some((scene) => rmsOfNoise(scene?.points?.sigma, scene?.points?.is_scan))) {

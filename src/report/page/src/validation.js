@@ -6,37 +6,34 @@ import { isNumber, millimetres, number, percent } from './format.js';
 import { following, name, section, table } from './section.js';
 import { COVERAGE, METRIC_OF_NOISE, SHARE_OF_NOISE, validationMetric } from './validation_metric.js';
 
-// Errors of numbers per held-out frame. For points they are displacement components; for scans the
-// distances along the normal.
+const LARGEST_ROUNDING = 0.3;  // of the stored positions, in σ
+
+// The errors of all numbers in each held-out frame. For points they are displacement components; for
+// scans the distances of the patches, which lie along the normal.
 async function heldOutErrors(scene) {
   const source = scene.points_series ?? (scene.points ? { ...scene.points, time_s: scene.times } : null);
   const fitted = scene.points_series ? scene.series?.fitted : scene.fitted;
-  if (!source || !fitted?.includes(false)) return null;
   const sigma = scene.points?.sigma ?? scene.series?.sigma_m;
-  const [measured, model, residual] = await Promise.all([unpack(source.measured), unpack(source.model), unpack(source.residual)]);
+  if (!source?.measured || !source.model || !fitted?.includes(false) || !(sigma > 0)) return null;
+  const [measured, model] = await Promise.all([unpack(source.measured), unpack(source.model)]);
   const isScan = Boolean(scene.points?.is_scan);
+  const first = measured.frame(0);
   const frames = [];
-  let largest = 0, coarse = 0;
-  const first = measured ? measured.frame(0) : null;
-  for (let f = 0; f < fitted.length; ++f) {
+  let largest = 0;
+  for (let f = 0; f < Math.min(fitted.length, measured.frames, model.frames); ++f) {
     if (fitted[f] !== false) continue;
+    const [seen, predicted] = [measured.frame(f), model.frame(f)];
     const errors = [];
-    const at = measured && f < measured.frames ? measured.frame(f) : null;
-    if (at) for (let k = 0; k < at.length; ++k) { const moved = Math.abs(at[k] - first[k]); if (moved > largest) largest = moved; }
-    if (isScan && residual && residual.stride === residual.shape[1] && f < residual.frames) {
-      for (const value of residual.frame(f)) if (!Number.isNaN(value)) errors.push(Math.abs(value));
-      coarse = residual.step;
-    } else if (!isScan && at && model && f < model.frames) {
-      const predicted = model.frame(f);
-      for (let k = 0; k < at.length; ++k) {
-        const error = Math.abs(predicted[k] - at[k]);
-        if (!Number.isNaN(error)) errors.push(error);
-      }
-      coarse = Math.max(measured.step, model.step);
+    for (let k = 0; k < seen.length; ++k) {
+      largest = Math.max(largest, Math.abs(seen[k] - first[k]) || 0);
+      if (isScan && k % 3 > 0) continue;
+      const error = isScan ? Math.hypot(predicted[k] - seen[k], predicted[k + 1] - seen[k + 1], predicted[k + 2] - seen[k + 2]) : Math.abs(predicted[k] - seen[k]);
+      if (!Number.isNaN(error)) errors.push(error);
     }
     frames.push(errors);
   }
-  return { frames, largest, sigma, isCoarse: coarse > 0.3 * sigma };
+  const rounding = Math.max(measured.step, model.step);
+  return { frames, largest, sigma, rounding, isCoarse: rounding > LARGEST_ROUNDING * sigma };
 }
 
 async function assess(choices, recording) {
@@ -45,8 +42,9 @@ async function assess(choices, recording) {
     const scenes = (choice.model.scenes ?? []).filter((scene) => scene.recording === recording);
     for (const scene of scenes) {
       const data = await heldOutErrors(scene);
+      if (data?.isCoarse) results.push({ choice, data });
       const result = data && !data.isCoarse ? validationMetric(data.frames, data.largest, data.sigma) : null;
-      if (result) results.push({ choice, result });
+      if (result) results.push({ choice, data, result });
     }
   }
   return results;
@@ -82,12 +80,21 @@ function method() {
 
 export async function validationSection({ choices, store, recordings }) {
   const able = [];
-  for (const recording of recordings) if ((await assess(choices.slice(0, 1), recording)).length + (await assess(choices.slice(1, 2), recording)).length > 0) able.push(recording);
+  for (const recording of recordings) {
+    for (const choice of choices) {
+      if ((await assess([choice], recording)).length === 0) continue;
+      able.push(recording);
+      break;
+    }
+  }
   if (able.length === 0) return null;
   return section('validation', 'Validation', 'Does the prediction represent the measurement?',
     'A validation metric on frames that were not fitted, against the uncertainty of the measurement.',
     following(store, ['recording'], async (state) => {
       const results = await assess(choices, state.recording);
-      return results.length > 0 ? [summary(results), figure(results)] : h('p', { class: 'explain' }, `${String(state.recording).slice(0, 80)} has no held-out frames.`);
+      const judged = results.filter(({ result }) => result);
+      if (judged.length > 0) return [summary(judged), figure(judged)];
+      if (results.length > 0) return h('p', { class: 'explain' }, `The positions in this file are rounded to ${millimetres(results[0].data.rounding)}, too coarse for a noise of ${millimetres(results[0].data.sigma)}: no metric is computed.`);
+      return h('p', { class: 'explain' }, `${String(state.recording).slice(0, 80)} has no held-out frames.`);
     }), method());
 }

@@ -2,6 +2,14 @@
 import { h } from './dom.js';
 import { isNumber, millimetres, percent, sigmas } from './format.js';
 
+const ENDINGS = {
+  verdict: 'The search ended: the last verdict names no effect to add.',
+  undecided: 'The search ended: the last verdict is ambiguous, and no effect is added by guess.',
+  most_effects: 'The search ended: as many effects were added as allowed.',
+  not_fitted: 'The search ended: the model with the last effect could not be fitted.',
+  little_gain: 'The search ended: the last effect reduced the error too little.',
+};
+
 // One bar for each model, and a pale one for each effect that was tried with it but not added.
 function barsOf(choices, run) {
   const bars = [];
@@ -24,12 +32,14 @@ export function waterfall(choices, runs) {
   if (groups.length === 0) return null;
   const largest = Math.max(...groups.flatMap((group) => [...group.bars.map((bar) => bar.error), group.noise ?? 0])) || 1;
   const share = (length) => `${(100 * length) / largest}%`;
+  const isHeldOut = groups.some(({ run }) => run.models.some((model) => model.errors && model.errors.has_held_out !== false));
   const hasNoise = groups.some((group) => isNumber(group.noise) && group.noise > 0);
   return h('figure', { class: 'waterfall' },
-    h('figcaption', {}, h('h2', {}, 'Error of each model on held-out frames'),
-      h('p', { class: 'explain' }, 'The rms distance of prediction and measurement in frames that no parameter was fitted to.',
+    h('figcaption', {}, h('h2', {}, `Error of each model on ${isHeldOut ? 'held-out' : 'fitted'} frames`),
+      h('p', { class: 'explain' }, isHeldOut ? 'The rms distance of prediction and measurement in frames that no parameter was fitted to.'
+        : 'The rms distance of prediction and measurement. Nothing was held out, so that a new recording would show a larger error.',
         hasNoise ? ' A model whose bar ends at the dashed line is as good as the measurement allows.' : '')),
-    groups.map(({ run, bars, noise }) => h('div', { class: 'bars', role: 'list', 'aria-label': `Held-out errors of ${run.name ?? 'the run'}` },
+    groups.map(({ run, bars, noise }) => h('div', { class: 'bars', role: 'list', 'aria-label': `Errors of ${run.name ?? 'the run'}` },
       bars.map((bar) => h('div', { class: `bar-row${bar.isTried ? ' tried' : ''}`, role: 'listitem' },
         h('span', { class: 'bar-label', title: bar.label.slice(0, 300) }, bar.label),
         h('div', { class: 'bar-track' },
@@ -40,5 +50,6 @@ export function waterfall(choices, runs) {
           isNumber(bar.ratio) && bar.ratio > 0 ? h('span', { class: 'muted' }, ` ${sigmas(bar.ratio)}`) : null,
           isNumber(bar.before) && bar.before > 0 ? h('span', { class: 'fall' }, ` ${bar.error < bar.before ? '−' : '+'}${percent(Math.abs(1 - bar.error / bar.before))}`) : null)))),
     ),
-    hasNoise ? h('p', { class: 'key' }, h('span', { class: 'key-noise', 'aria-hidden': 'true' }), `noise of the measurement, ${millimetres(groups.find((group) => group.noise).noise)}`) : null);
+    hasNoise ? h('p', { class: 'key' }, h('span', { class: 'key-noise', 'aria-hidden': 'true' }), `noise of the measurement, ${millimetres(groups.find((group) => group.noise).noise)}`) : null,
+    groups.map(({ run }) => ENDINGS[run.ledger?.ending?.reason]).filter(Boolean).map((sentence) => h('p', { class: 'explain' }, sentence)));
 }
