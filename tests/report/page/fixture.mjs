@@ -423,9 +423,17 @@ export function studyReport() {
   };
 }
 
+// A study without models, as the program writes it for Table 1.
+export function table1Report() {
+  const data = withoutMeasures(studyReport());
+  Object.assign(data.runs[0], { kind: 'table1', models: [], reconstruction: null, trials: null, provenance: { program: 'Lacuna 0.1.0', commands: [] } });
+  data.runs[0].table1.traces = { geometry: { evaluation: [1, 2, 3], residual_per_point_m: [4e-4, 3e-4, 3.5e-4], nodes: [800, 820, 810] } };
+  return data;
+}
+
 export const kinds = {
   full: fullReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
-  '10k': () => largeReport(10000, 30), '100k': () => largeReport(100000, 100),
+  table1: table1Report, '10k': () => largeReport(10000, 30), '100k': () => largeReport(100000, 100),
 };
 
 // The page with the data in it, as the program writes it.

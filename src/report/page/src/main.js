@@ -3,7 +3,7 @@ import { h } from './dom.js';
 import { createStore } from './store.js';
 import { choicesOf, Motion } from './motion.js';
 import { modelLabel } from './text.js';
-import { overview } from './overview.js';
+import { hasShortStory, overview } from './overview.js';
 import { sections, lateSections } from './sections.js';
 
 function readData() {
@@ -40,6 +40,7 @@ async function build(data) {
     }
   }
   const context = { data, choices, recordings, store, motion };
+  context.isShort = hasShortStory(context);
   const parts = sections(context);
   page.append(
     h('header', { class: 'top' }, h('div', { class: 'inner' },

@@ -13,6 +13,16 @@ const LARGEST_WITH_EDGES = 6000;  // triangles whose edges are shown without bei
 
 export const sceneOf = (choice, recording) => choice?.model.scenes?.find((scene) => scene.recording === recording) ?? null;
 
+function explain(scenes) {
+  const has = (key) => scenes.some((data) => data?.[key]);
+  const parts = [];
+  if (has('measured') && has('model')) parts.push(`Filled dots are measured, rings${has('positions') ? ' and the surface' : ''} are predicted.`);
+  else if (has('measured') && has('positions')) parts.push('Dots are the scan, the surface is the model.');
+  else if (has('positions')) parts.push('The surface is the model.');
+  parts.push('Drag to turn', has('model') && has('measured') ? '; click a dot to plot it below.' : '.');
+  return parts.join(' ').replace(' ;', ';').replace(' .', '.');
+}
+
 export class Motion {
   // `choices` are the models of all runs, with labels; `recordings` the names that they have.
   constructor(store, choices, recordings) {
@@ -24,6 +34,7 @@ export class Motion {
     this.timeline = new Timeline(store, (time) => store.set({ time }));
     this.scale = h('div', { class: 'scale', role: 'img' });
     this.worst = h('div', { class: 'worst' });
+    this.explanation = h('p', { class: 'explain' });
     this.controls = this.makeControls(recordings);
     this.notice = h('p', { class: 'notice', role: 'status', hidden: true });
     this.note = h('p', { class: 'explain', hidden: true });
@@ -106,6 +117,7 @@ export class Motion {
       const withPoints = data.some((one) => one?.pointCount > 0);
       this.mode.root.hidden = !withPoints;
       this.hasArrows = data.some((one) => one?.measured && one?.model);
+      this.explanation.textContent = explain(data);
       const hasModel = data.some((one) => one?.model || one?.positions);
       for (const button of this.mode.root.children) {
         const { value } = button.dataset;

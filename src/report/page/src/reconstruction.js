@@ -11,17 +11,26 @@ function best(values) {
   return values.map((value) => (least = Number.isFinite(value) ? Math.min(least, value) : least));
 }
 
-function frameCharts(frames, store) {
-  if (!frames) return null;
-  const time = frames.time_s ?? frames.frame;
-  const x = frames.time_s ? 'time, s' : 'frame';
-  if (!time) return null;
-  const lengths = [['residual_mean_m', 'mean residual |D| per point', 'series-last'], ['surface_distance_mean_m', 'mean distance of the scan', 'series-2'], ['surface_distance_max_m', 'largest distance of the scan', 'series-first']];
-  return grid(
-    chart({ title: 'Residual of each frame', explain: 'D is the displacement from the simulated surface to the recorded one. Fitted forces can make a wrong model follow: a small residual does not prove the physics.', store: frames.time_s ? store : null, x, y: 'mm',
-      series: lengths.filter(([key]) => frames[key]).map(([key, label, colour]) => ({ label, x: time, y: scaled(frames[key], 1e3), colour })) }),
-    chart({ title: 'Resultant of the fitted forces', store: frames.time_s ? store : null, x, y: 'force, N',
-      series: ['x', 'y', 'z'].filter((axis) => frames[`force_${axis}_N`]).map((axis, k) => ({ label: axis, x: time, y: scaled(frames[`force_${axis}_N`], 1), colour: ['series-first', 'series-last', 'series-2'][k] })) }));
+const LENGTHS = [['residual_mean_m', 'mean residual |D| per point', 'series-last'], ['surface_distance_mean_m', 'mean distance of the scan', 'series-2'], ['surface_distance_max_m', 'largest distance of the scan', 'series-first']];
+
+// The axis of the frames: their times, or else their numbers.
+function axisOf(frames, store) {
+  return frames?.time_s ? { store, x: 'time, s', values: frames.time_s } : { store: null, x: 'frame', values: frames?.frame ?? [] };
+}
+
+export function residualChart(frames, store) {
+  const { values, ...axis } = axisOf(frames, store);
+  if (values.length < 2) return null;
+  return chart({ ...axis, title: 'Residual of each frame', y: 'mm',
+    explain: 'D is the displacement from the simulated surface to the recorded one. Fitted forces can make a wrong model follow: a small residual does not prove the physics.',
+    series: LENGTHS.filter(([key]) => frames[key]).map(([key, label, colour]) => ({ label, x: values, y: scaled(frames[key], 1e3), colour })) });
+}
+
+function forceChart(frames, store) {
+  const { values, ...axis } = axisOf(frames, store);
+  if (values.length < 2) return null;
+  return chart({ ...axis, title: 'Resultant of the fitted forces', y: 'force, N',
+    series: ['x', 'y', 'z'].filter((one) => frames[`force_${one}_N`]).map((one, k) => ({ label: one, x: values, y: scaled(frames[`force_${one}_N`], 1), colour: ['series-first', 'series-last', 'series-2'][k] })) });
 }
 
 export function traceCharts(trace) {
@@ -59,10 +68,11 @@ function facts(record) {
   return h('dl', { class: 'facts' }, entries.filter(([, value]) => value !== null && value !== undefined && value !== '').map(([key, value]) => h('div', {}, h('dt', {}, String(key).slice(0, 200)), h('dd', {}, String(value).slice(0, 400)))));
 }
 
-export function reconstructionSection({ data, store }) {
+// The residual of the frames stands on the first screen where there is room for it.
+export function reconstructionSection({ data, store, isShort }) {
   const parts = (data.runs ?? []).filter((run) => run.reconstruction).map(({ reconstruction, name }) => [
     data.runs.length > 1 ? h('h3', {}, String(name).slice(0, 200)) : null,
-    frameCharts(reconstruction.frames, store), traceCharts(reconstruction.trace), facts(reconstruction.record),
+    grid(isShort ? null : residualChart(reconstruction.frames, store), forceChart(reconstruction.frames, store)), traceCharts(reconstruction.trace), facts(reconstruction.record),
     reconstruction.record?.warnings?.length ? h('ul', { class: 'notes' }, reconstruction.record.warnings.map((warning) => h('li', {}, warning.slice(0, 500)))) : null]);
   return section('reconstruction', 'Reconstruction', 'Reconstruction', 'The model was made to follow the scan with fitted forces, frame by frame.', parts);
 }

@@ -68,6 +68,7 @@ export class Timeline {
       const line = rms.map((value, k) => (Number.isFinite(value) ? `${x(series.time_s[k]).toFixed(1)},${(26 - (24 * value) / largest).toFixed(1)}` : null)).filter(Boolean);
       parts.push(svg('polyline', { points: line.join(' '), class: 'strip-line' }));
     }
+    this.strip.toggleAttribute('hidden', parts.length === 0);
     this.strip.setAttribute('viewBox', '0 0 1000 30');
     this.strip.replaceChildren(...parts);
   }
@@ -86,7 +87,7 @@ export class Timeline {
     if (this.times.length < 2) return;
     const frame = this.nearest(time);
     this.slider.value = String(time);
-    const part = this.fitted[frame] === false ? 'held out' : this.fitted.length > 0 ? 'fitted' : '';
+    const part = !this.fitted.includes(false) ? '' : this.fitted[frame] === false ? 'held out' : 'fitted';
     this.slider.setAttribute('aria-valuetext', `${seconds(this.times[frame])}, frame ${frame + 1} of ${this.times.length}${part ? `, ${part}` : ''}`);
     this.readout.replaceChildren(h('strong', {}, seconds(this.times[frame])),
       h('span', { class: 'muted' }, ` ${frame + 1}/${this.times.length}`), part ? h('span', { class: `part part-${part.replace(' ', '-')}` }, part) : '');
