@@ -11,6 +11,12 @@ if ! command -v dpkg-query apt-get >/dev/null; then
   exit 1
 fi
 mapfile -t wanted < third_party_notes/debian-packages.txt
+# Everything, tests included: these open a page in a browser. Node need not be Debian's.
+if (($# == 0)); then
+  while read -r package; do
+    command -v "${package/nodejs/node}" >/dev/null || wanted+=("$package")
+  done < third_party_notes/debian-test-packages.txt
+fi
 installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null |
             sed -n 's/^installed //p') || true
 mapfile -t missing < <(printf '%s\n' "${wanted[@]}" | grep -vxF -f <(printf '%s\n' "$installed"))

@@ -55,12 +55,12 @@ const ScoredEffect& FindScored(const EffectRanking& ranking, const std::string& 
   Refuse(type, "none of its parameters has a value at which it vanishes");
 }
 
-int RunAdd(const std::filesystem::path& run, const std::string& type) {
+int RunAdd(const std::filesystem::path& run, const std::string& type, const OutputOptions& output) {
   const FittedRun fitted = OpenRun(run);
   RequireAddable(type, fitted.study);
   // A folder that cannot be written to is reported before the computation, too.
   MakeFolder(std::filesystem::absolute(run / "..").lexically_normal());
-  Progress progress;
+  Progress progress(output.ForProgress());
   std::optional<ScoredEffect> diagnosed = FindDiagnosed(fitted, run, type);
   if (!diagnosed) {
     const CalibrationProblem problem(fitted.study, fitted.mesh);
@@ -75,17 +75,22 @@ int RunAdd(const std::filesystem::path& run, const std::string& type) {
   const std::filesystem::path file = WriteExtendedExperiment(fitted, run, effect);
   const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
   const CalibrationRecord record = RunCalibration(study, &progress);
-  fmt::print("\nbefore\n{}", CalibrationReport(fitted.record));
-  fmt::print("\nwith {}\n{}", type, CalibrationReport(record));
-  if (!record.usable) fmt::print("\nThe fit did not converge: {}\n", record.message);
-  fmt::print("\nThe experiment was written to {}\nThe run was written to {}\n", file.string(),
-             study.output.string());
+  if (output.json) PrintRecord(study.output / "calibration/calibration.json");
+  if (output.PrintsText()) {
+    const auto text = output.verbose ? CalibrationReport : CalibrationSummary;
+    if (output.verbose) fmt::print("\nbefore\n{}", text(fitted.record));
+    fmt::print("\nwith {}\n{}", type, text(record));
+    if (!record.message.empty()) fmt::print("\nThe fit did not converge: {}\n", record.message);
+    fmt::print("\nThe experiment was written to {}\nThe run was written to {}\n", file.string(),
+               study.output.string());
+  }
+  WriteFitReport(output, study.output, &progress);
   return record.usable ? 0 : 1;
 }
 
 }  // namespace
 
-void AddAdd(CLI::App* app, std::function<int()>* command) {
+void AddAdd(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* add = app->add_subcommand("add", "Add one effect to a fitted model and fit it again");
   add->footer(
       "Writes the experiment NAME+EFFECT.yaml beside RUN, whose experiment is called NAME, and "
@@ -99,8 +104,8 @@ void AddAdd(CLI::App* app, std::function<int()>* command) {
   add->add_option("effect", *effect,
                   "Name of the effect; `lacuna effects` lists those of the catalogue")
       ->required();
-  add->callback(
-      [command, run, effect] { *command = [run, effect] { return RunAdd(*run, *effect); }; });
+  AddOutputOptions(add, output);
+  add->callback([=] { *command = [=] { return RunAdd(*run, *effect, *output); }; });
 }
 
 }  // namespace lacuna

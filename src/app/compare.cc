@@ -14,6 +14,8 @@
 #include "core/progress.h"
 #include "core/text_layout.h"
 #include "report/comparison_report.h"
+#include "report/headline.h"
+#include "report/reported_run.h"
 
 namespace lacuna {
 namespace {
@@ -23,8 +25,9 @@ struct CompareArguments {
   bool files_only = false, stored = false;
 };
 
-void PrintReport(const ComparisonRecord& record) {
+void PrintReport(const ComparisonRecord& record, bool all) {
   fmt::print("\n{}", ComparisonTable(record));
+  if (!all) return;
   for (const std::string& paragraph : DescribeComparison(record))
     fmt::print("\n{}", Wrapped(paragraph, "", ""));
   for (const std::string& note : record.notes) fmt::print("\n{}", Wrapped(note, "", ""));
@@ -49,27 +52,34 @@ void PrintFiles(const ComparisonRecord& record, const std::string& run) {
   }
 }
 
-int Compare(const CompareArguments& arguments) {
+int Compare(const CompareArguments& arguments, const OutputOptions& output) {
   const std::filesystem::path folder = std::filesystem::path(arguments.run) / "comparison";
   if (arguments.stored) {
-    PrintReport(ReadComparisonFile(folder / "comparison.json"));
+    const ComparisonRecord stored = ReadComparisonFile(folder / "comparison.json");
+    if (output.json) PrintRecord(folder / "comparison.json");
+    if (output.PrintsText()) PrintReport(stored, output.verbose);
     return 0;
   }
   Comparison comparison = CompareRun(arguments.run);
   // Fields that an earlier comparison wrote may belong to another fit.
   for (size_t r = 0; r < comparison.residuals.size(); ++r)
     std::filesystem::remove_all(folder / std::to_string(r));
-  Progress progress;
+  Progress progress(output.ForProgress());
   if (!arguments.files_only) CompareMotion(arguments.run, &progress, &comparison);
   SaveComparison(comparison, arguments.run);
-  PrintReport(comparison.record);
-  PrintFiles(comparison.record, arguments.run);
+  if (output.json) PrintRecord(folder / "comparison.json");
+  if (output.PrintsText()) {
+    PrintReport(comparison.record, output.verbose);
+    if (output.verbose) PrintFiles(comparison.record, arguments.run);
+  }
+  PrintSentences(output, Headline(OpenReportedRun(arguments.run).models));
+  WriteRunReport(output, arguments.run);
   return 0;
 }
 
 }  // namespace
 
-void AddCompare(CLI::App* app, std::function<int()>* command) {
+void AddCompare(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* compare = app->add_subcommand(
       "compare", "Show where, when and by how much a fitted model fails to predict its recordings");
   compare->footer(
@@ -86,8 +96,8 @@ void AddCompare(CLI::App* app, std::function<int()>* command) {
       ->add_flag("--stored", arguments->stored,
                  "Print the comparison that RUN already holds, without computing anything")
       ->excludes(files_only);
-  compare->callback(
-      [command, arguments] { *command = [arguments] { return Compare(*arguments); }; });
+  AddOutputOptions(compare, output);
+  compare->callback([=] { *command = [=] { return Compare(*arguments, *output); }; });
 }
 
 }  // namespace lacuna

@@ -57,38 +57,52 @@ LedgerPicture MakeLedgerPicture(const Ledger& ledger) {
   return picture;
 }
 
-int RunUntilDone(const DiagnoseArguments& arguments) {
+int RunUntilDone(const DiagnoseArguments& arguments, const OutputOptions& output) {
   ExtensionOptions options;
   options.diagnosis.refits = arguments.refits;
   options.follow_best = arguments.follow_best;
   options.most_effects = arguments.most_effects;
-  Progress progress;
-  const Ledger ledger = ExtendUntilDone(arguments.run, options, &progress, PrintStep);
-  fmt::print("\n{}\nThis report was written to {}, and all numbers to ledger.json\n",
-             LedgerReport(ledger), (std::filesystem::path(arguments.run) / "ledger.txt").string());
+  Progress progress(output.ForProgress());
+  const Ledger ledger =
+      ExtendUntilDone(arguments.run, options, &progress, [&](const Ledger& changed) {
+        if (output.PrintsText()) PrintStep(changed);
+      });
+  if (output.json) PrintRecord(std::filesystem::path(arguments.run) / "ledger.json");
+  if (output.PrintsText() && !output.verbose) fmt::print("\n{}", LedgerSummary(ledger));
+  if (output.PrintsText() && output.verbose)
+    fmt::print("\n{}\nThis report was written to {}, and all numbers to ledger.json\n",
+               LedgerReport(ledger),
+               (std::filesystem::path(arguments.run) / "ledger.txt").string());
   const std::filesystem::path picture = std::filesystem::path(arguments.run) / "ledger.png";
   const PictureResult drawn = RenderLedgerPng(picture, MakeLedgerPicture(ledger));
-  fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows these errors as a picture"
-                                      : drawn.message);
+  if (output.PrintsText() && (output.verbose || !drawn.IsUsable()))
+    fmt::print("{}\n", drawn.IsUsable() ? picture.string() + " shows these errors as a picture"
+                                        : drawn.message);
+  WriteFitReport(output, arguments.run, &progress);
   return ledger.IsUsable() ? 0 : 1;
 }
 
-int RunDiagnose(const DiagnoseArguments& arguments) {
-  if (arguments.until_done) return RunUntilDone(arguments);
+int RunDiagnose(const DiagnoseArguments& arguments, const OutputOptions& output) {
+  if (arguments.until_done) return RunUntilDone(arguments, output);
   const FittedRun fitted = OpenRun(arguments.run);
   const std::string warning = RestWarning(fitted.study);
-  if (!warning.empty()) fmt::print(stderr, "warning: {}\n", warning);
+  if (!warning.empty()) PrintWarnings(output, {warning});
   DiagnosisOptions options;
   options.refits = arguments.refits;
-  Progress progress;
+  Progress progress(output.ForProgress());
   const DiagnosisRecord diagnosis = RunDiagnosis(fitted, arguments.run, options, &progress);
-  fmt::print("{}", DiagnosisReport(diagnosis, arguments.run));
+  const std::filesystem::path run = arguments.run;
+  if (output.json) PrintRecord(run / "diagnosis/diagnosis.json");
+  if (output.PrintsText())
+    fmt::print("{}", output.verbose ? DiagnosisReport(diagnosis, run)
+                                    : VerdictWithNames(diagnosis) + "\n");
+  WriteFitReport(output, run, &progress);
   return 0;
 }
 
 }  // namespace
 
-void AddDiagnose(CLI::App* app, std::function<int()>* command) {
+void AddDiagnose(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* diagnose =
       app->add_subcommand("diagnose", "Find the physical effect that a fitted model lacks");
   diagnose->footer(
@@ -112,8 +126,8 @@ void AddDiagnose(CLI::App* app, std::function<int()>* command) {
   diagnose->add_option("--most", arguments->most_effects, "Largest number of effects to add")
       ->check(CLI::Range(0, 50))
       ->needs(until_done);
-  diagnose->callback(
-      [command, arguments] { *command = [arguments] { return RunDiagnose(*arguments); }; });
+  AddOutputOptions(diagnose, output);
+  diagnose->callback([=] { *command = [=] { return RunDiagnose(*arguments, *output); }; });
 }
 
 }  // namespace lacuna

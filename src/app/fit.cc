@@ -14,28 +14,32 @@
 namespace lacuna {
 namespace {
 
-int Fit(const std::string& file) {
-  const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
-  for (const std::string& warning : StudyWarnings(study))
-    fmt::print(stderr, "warning: {}\n", warning);
-  Progress progress;
-  const CalibrationRecord record = RunCalibration(study, &progress);
-  fmt::print("{}", CalibrationReport(record));
+void PrintFit(const CalibrationRecord& record, const std::filesystem::path& run, bool all) {
+  fmt::print("{}", all ? CalibrationReport(record) : CalibrationSummary(record));
   if (!record.message.empty()) fmt::print("\nThe fit did not converge: {}\n", record.message);
-  fmt::print(
-      "\nThe run was written to {}\n"
-      "  calibration/calibration.json   parameters with intervals, and errors\n",
-      study.output.string());
-  if (std::filesystem::exists(study.output / "calibration/misfit.csv"))
+  fmt::print("\nThe run was written to {}\n", run.string());
+  if (!all) return;
+  fmt::print("  calibration/calibration.json   parameters with intervals, and errors\n");
+  if (std::filesystem::exists(run / "calibration/misfit.csv"))
     fmt::print(
         "  calibration/misfit.csv         residual of each marker, or surface patch, in each "
         "frame\n");
+}
+
+int Fit(const std::string& file, const OutputOptions& output) {
+  const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
+  PrintWarnings(output, StudyWarnings(study));
+  Progress progress(output.ForProgress());
+  const CalibrationRecord record = RunCalibration(study, &progress);
+  if (output.json) PrintRecord(study.output / "calibration/calibration.json");
+  if (output.PrintsText()) PrintFit(record, study.output, output.verbose);
+  WriteFitReport(output, study.output, &progress);
   return record.usable ? 0 : 1;
 }
 
 }  // namespace
 
-void AddFit(CLI::App* app, std::function<int()>* command) {
+void AddFit(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* fit = app->add_subcommand(
       "fit", "Fit the parameters of a predictive model to recordings, with intervals");
   fit->footer(
@@ -44,7 +48,8 @@ void AddFit(CLI::App* app, std::function<int()>* command) {
       "and compared, never fitted. The same command resumes an interrupted run at its stage.");
   auto file = std::make_shared<std::string>();
   fit->add_option("experiment", *file, "The experiment's YAML file")->required();
-  fit->callback([command, file] { *command = [file] { return Fit(*file); }; });
+  AddOutputOptions(fit, output);
+  fit->callback([=] { *command = [=] { return Fit(*file, *output); }; });
 }
 
 }  // namespace lacuna

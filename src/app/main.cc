@@ -27,6 +27,7 @@ constexpr char kFooter[] = R"(Start here:
   lacuna fit experiments/hidden_effect.yaml    predict, and fit the model's parameters
   lacuna compare results/hidden_effect         where and when that model fails
   lacuna diagnose results/hidden_effect        which physical effect it lacks
+  lacuna report results/hidden_effect          all of this as a page for the browser
   lacuna sweep plan experiments/sweeps/bend_grid.yaml FOLDER   many experiments at once
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
@@ -59,18 +60,19 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", lacuna::ProgramVersion());
   app.allow_extras();  // reported below, with a suggestion
   int threads = 0;
-  bool verbose = false;
+  lacuna::OutputOptions output;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
-  app.add_flag("-v,--verbose", verbose, "Log the progress of the stages in detail");
+  app.add_flag("-v,--verbose", output.verbose, "Log the progress of the stages in detail");
 
   std::function<int()> command;
-  lacuna::AddReconstruct(&app, &command);
-  lacuna::AddFit(&app, &command);
-  lacuna::AddCompare(&app, &command);
-  lacuna::AddDiagnose(&app, &command);
-  lacuna::AddAdd(&app, &command);
-  lacuna::AddTable1(&app, &command);
+  lacuna::AddReconstruct(&app, &output, &command);
+  lacuna::AddFit(&app, &output, &command);
+  lacuna::AddCompare(&app, &output, &command);
+  lacuna::AddDiagnose(&app, &output, &command);
+  lacuna::AddAdd(&app, &output, &command);
+  lacuna::AddReport(&app, &output, &command);
+  lacuna::AddTable1(&app, &output, &command);
   lacuna::AddSweep(&app, &command);
   lacuna::AddAblation(&app, &command);
   lacuna::AddFigures(&app, &command);
@@ -98,7 +100,7 @@ int main(int argc, char** argv) {
     return kUnusableInput;
   }
   if (threads > 0) lacuna::SetThreadCount(threads);
-  if (verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);
+  if (output.verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);
 
   try {
     return command();

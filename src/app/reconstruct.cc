@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "reconstruction/reconstruction.h"
 #include "reconstruction/reconstruction_study.h"
+#include "report/headline.h"
 
 namespace lacuna {
 namespace {
@@ -48,20 +49,33 @@ void PrintSummary(const RunRecord& record, const std::filesystem::path& output) 
       output.string());
 }
 
-int Reconstruct(const std::string& file) {
+void PrintShortSummary(const RunRecord& record, const std::filesystem::path& output) {
+  fmt::print("\n|D_anim| (Eq. 2)  {:.4g} m, {:.3f} % of the object's size; {} frames\n",
+             record.animation_residual, 100 * record.relative_animation_residual,
+             record.frames.size());
+  for (const std::string& warning : record.warnings) fmt::print("warning: {}\n", warning);
+  fmt::print("The run was written to {}\n", output.string());
+}
+
+int Reconstruct(const std::string& file, const OutputOptions& output) {
   const ReconstructionStudy study = ReadReconstruction(Config::Load(file));
-  for (const std::string& warning : study.recording.warnings)
-    fmt::print(stderr, "warning: {}\n", warning);
-  Progress progress;
+  PrintWarnings(output, study.recording.warnings);
+  Progress progress(output.ForProgress());
   const RunRecord record = RunReconstruction(study, &progress);
-  PrintFrames(record);
-  PrintSummary(record, study.output);
+  if (output.json) PrintRecord(study.output / "results/record.json");
+  if (output.PrintsText() && output.verbose) {
+    PrintFrames(record);
+    PrintSummary(record, study.output);
+  }
+  if (output.PrintsText() && !output.verbose) PrintShortSummary(record, study.output);
+  PrintSentences(output, ReconstructionHeadline(record));
+  WriteRunReport(output, study.output);
   return record.IsUsable() ? 0 : 1;
 }
 
 }  // namespace
 
-void AddReconstruct(CLI::App* app, std::function<int()>* command) {
+void AddReconstruct(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* reconstruct = app->add_subcommand(
       "reconstruct", "Reconstruct a moving model with per-step forces from a recording");
   reconstruct->footer(
@@ -71,7 +85,8 @@ void AddReconstruct(CLI::App* app, std::function<int()>* command) {
       "on a terminal, JSON lines elsewhere.");
   auto file = std::make_shared<std::string>();
   reconstruct->add_option("experiment", *file, "The experiment's YAML file")->required();
-  reconstruct->callback([command, file] { *command = [file] { return Reconstruct(*file); }; });
+  AddOutputOptions(reconstruct, output);
+  reconstruct->callback([=] { *command = [=] { return Reconstruct(*file, *output); }; });
 }
 
 }  // namespace lacuna

@@ -11,21 +11,26 @@
 namespace lacuna {
 namespace {
 
-int RunTable(const Table1Arguments& arguments) {
+int RunTable(const Table1Arguments& arguments, const OutputOptions& output) {
   const Table1Study study = ReadTable1(arguments.folder);
   const Table1Options& options = arguments.options;
-  Progress progress;
+  Progress progress(output.ForProgress());
   const Table1Result result = RunTable1(study, options, &progress);
   WriteTable1(study, result, options.output);
-  fmt::print(
-      "{}\nThe table was written to {}: table1.txt, table1.json, traces.svg, one .csv per search\n",
-      Table1Text(study, result), options.output.string());
+  if (output.json) PrintRecord(options.output / "table1.json");
+  if (output.PrintsText())
+    fmt::print(
+        "{}\nThe table was written to {}: table1.txt, table1.json, traces.svg, one .csv per "
+        "search\n",
+        output.verbose ? Table1Text(study, result) : Table1ClaimsText(study, result),
+        options.output.string());
+  WriteRunReport(output, options.output);
   return ExitCode(result);
 }
 
 }  // namespace
 
-void AddTable1(CLI::App* app, std::function<int()>* command) {
+void AddTable1(CLI::App* app, OutputOptions* output, std::function<int()>* command) {
   CLI::App* table = app->add_subcommand(
       "table1",
       "Repeat the paper's Table 1: search (q, v), (y, p) and all four, and check its claims");
@@ -36,8 +41,8 @@ void AddTable1(CLI::App* app, std::function<int()>* command) {
   auto arguments = std::make_shared<Table1Arguments>();
   arguments->folder = "experiments/table1";
   AddTable1Arguments(table, arguments.get());
-  table->callback(
-      [command, arguments] { *command = [arguments] { return RunTable(*arguments); }; });
+  AddOutputOptions(table, output);
+  table->callback([=] { *command = [=] { return RunTable(*arguments, *output); }; });
 }
 
 }  // namespace lacuna

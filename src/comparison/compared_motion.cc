@@ -11,8 +11,10 @@
 #include "comparison/comparison_fields.h"
 #include "comparison/force_estimate.h"
 #include "comparison/part_comparison.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "prediction/predicted_states.h"
 #include "prediction/replayed_motion.h"
 
 namespace lacuna {
@@ -59,6 +61,17 @@ void AddMotionTrends(const ReplayedMotion& motion, const RecordedResiduals& resi
       TrendWith("height_m", in_range(motion.height).colwise().mean().transpose(), error));
 }
 
+// Keeps the motion for the report, with the unexplained force where it could be computed.
+void KeepMotionWithForce(const RecordingModel& model, const Eigen::VectorXd& nuisance,
+                         const UnexplainedForce& force, const std::string& fit,
+                         const std::filesystem::path& file) {
+  MotionRecord motion = ShownMotion(model, PredictStates(model, nuisance),
+                                    force.record.usable ? &force.field : nullptr);
+  motion.fit = fit;
+  MakeFolder(file.parent_path());
+  WriteMotionFile(motion, file);
+}
+
 }  // namespace
 
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison) {
@@ -85,7 +98,8 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
       note_omission("this is not implemented for scans, such as those of " + recording.name);
       continue;
     }
-    const ReplayedMotion motion = Replay(model, problem.NuisanceOf(r, fitted.values));
+    const Eigen::VectorXd nuisance = problem.NuisanceOf(r, fitted.values);
+    const ReplayedMotion motion = Replay(model, nuisance);
     if (!motion.summary.IsUsable()) {
       note_omission("the prediction of " + recording.name +
                     " stops before its end: " + motion.summary.message);
@@ -104,6 +118,8 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     recording.field_frames =
         WriteComparisonFields(model, residuals, motion, *comparison->forces[r],
                               comparison->record.noise, run / "comparison" / std::to_string(r));
+    KeepMotionWithForce(model, nuisance, *comparison->forces[r], comparison->record.fit,
+                        MotionFile(run, r));
     progress->Report(static_cast<int64_t>(r) + 1);
   }
   progress->End();

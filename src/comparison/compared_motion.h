@@ -10,9 +10,10 @@
 namespace lacuna {
 
 // Adds the trends of the error with strain, strain rate and height, and the unexplained force, and
-// writes fields for ParaView to <run>/comparison/<number of the recording>. Where the experiment or
-// a recording has changed since the fit, or a recording consists of scans, a note is added instead.
-// Throws InputError when files cannot be written, and Interrupted.
+// writes fields for ParaView to <run>/comparison/<number of the recording> and the motion with the
+// force for a report (MotionFile). Where the experiment or a recording has changed since the fit,
+// or a recording consists of scans, a note is added instead. Throws InputError when files cannot be
+// written, and Interrupted.
 void CompareMotion(const std::filesystem::path& run, Progress* progress, Comparison* comparison);
 
 }  // namespace lacuna

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "comparison/recorded_residuals.h"
 #include "comparison/unexplained_force.h"
 #include "record/comparison_record.h"
+#include "record/recorded_residuals.h"
 
 namespace lacuna {
 

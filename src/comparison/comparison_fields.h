@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "comparison/recorded_residuals.h"
 #include "comparison/unexplained_force.h"
 #include "prediction/replayed_motion.h"
+#include "record/recorded_residuals.h"
 
 namespace lacuna {
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "analysis/residual_statistics.h"
+#include "comparison/part_comparison.h"
 #include "core/atomic_file.h"
 #include "report/comparison_report.h"
 
@@ -53,7 +54,7 @@ std::string ErrorsByMarker(const Comparison& comparison) {
     const RecordedResiduals& residuals = comparison.residuals[r];
     const ComparedRecording& recording = comparison.record.recordings[r];
     const Eigen::MatrixXd lengths = PointLengths(residuals.difference);
-    const Eigen::Matrix3Xd places = residuals.MeanPlaces();
+    const Eigen::Matrix3Xd places = MeanPlaces(residuals);
     const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
     for (size_t p = 0; p < ranges.size(); ++p) {
       const FrameRange& range = ranges[p];

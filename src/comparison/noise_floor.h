@@ -2,8 +2,8 @@
 #ifndef LACUNA_COMPARISON_NOISE_FLOOR_H_
 #define LACUNA_COMPARISON_NOISE_FLOOR_H_
 
-#include "comparison/recorded_residuals.h"
 #include "record/comparison_record.h"
+#include "record/recorded_residuals.h"
 
 namespace lacuna {
 

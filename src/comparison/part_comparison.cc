@@ -105,6 +105,14 @@ std::vector<ErrorTrend> Trends(const RecordedResiduals& residuals, const FrameRa
 
 }  // namespace
 
+Eigen::Matrix3Xd MeanPlaces(const RecordedResiduals& residuals) {
+  const int last = static_cast<int>(residuals.measured.cols()) - 1;
+  Eigen::Matrix3Xd places(3, residuals.PointCount());
+  for (Eigen::Index m = 0; m < places.cols(); ++m)
+    places.col(m) = MeanOver(residuals.measured.middleRows<3>(3 * m), 0, last).mean;
+  return places;
+}
+
 ErrorTrend TrendWith(const std::string& quantity, const Eigen::VectorXd& values,
                      const Eigen::VectorXd& error) {
   ErrorTrend trend{quantity, RankCorrelation(values, error), {}};
@@ -131,7 +139,7 @@ ComparedPart ComparePart(const RecordedResiduals& residuals, const FrameRange& r
       part.worst_point = m;
   part.in_time = CorrelationInTime(difference, times);
   // A scan has too many pairs of patches to be listed.
-  part.in_space = CorrelationInSpace(difference, residuals.MeanPlaces(), !recording.is_scan);
+  part.in_space = CorrelationInSpace(difference, MeanPlaces(residuals), !recording.is_scan);
   const double threshold =
       std::max(part.error.rms, kBeyondNoise * recording.RmsOfNoise(recording.noise));
   part.worst_period = FindWorstPeriod(difference, lengths, threshold, residuals, range.first);

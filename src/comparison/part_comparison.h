@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "comparison/recorded_residuals.h"
 #include "record/comparison_record.h"
+#include "record/recorded_residuals.h"
 
 namespace lacuna {
 
@@ -16,6 +16,9 @@ namespace lacuna {
 // analysis/residual_statistics.h and analysis/whiteness.h.
 ComparedPart ComparePart(const RecordedResiduals& residuals, const FrameRange& range,
                          const ComparedRecording& recording);
+
+// 3 × m: the mean of each point's measured places over all frames.
+Eigen::Matrix3Xd MeanPlaces(const RecordedResiduals& residuals);
 
 // The error, m, as a function of a quantity: one entry for each frame, or for each point.
 // `quantity` names it with its unit.

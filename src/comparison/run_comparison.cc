@@ -11,6 +11,7 @@
 #include "comparison/part_comparison.h"
 #include "comparison/recording_details.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "record/csv_table.h"
 #include "record/run_directory.h"
 
@@ -98,6 +99,7 @@ Comparison CompareRun(const std::filesystem::path& run) {
   }
   const CsvTable table = LoadCsv(file);
   Comparison comparison;
+  comparison.record.fit = HashFile(stage / "calibration.json");
   comparison.record.noise = record.noise;
   for (size_t r = 0; r < record.recordings.size(); ++r) {
     RecordedResiduals residuals = ReadResiduals(table, static_cast<int>(r), file);

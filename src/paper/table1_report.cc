@@ -305,6 +305,12 @@ Table1Summary Summarise(const Table1Study& study, const Table1Result& result) {
   return summary;
 }
 
+std::string Table1ClaimsText(const Table1Study& study, const Table1Result& result) {
+  std::string text;
+  AppendClaims(study, Summarise(study, result), &text);
+  return text;
+}
+
 std::string Table1Text(const Table1Study& study, const Table1Result& result) {
   const Table1Summary summary = Summarise(study, result);
   std::string text;

@@ -42,6 +42,8 @@ struct Table1Summary {
 };
 Table1Summary Summarise(const Table1Study& study, const Table1Result& result);
 
+// The claims of the paper and whether they hold: the end of the whole text.
+std::string Table1ClaimsText(const Table1Study& study, const Table1Result& result);
 std::string Table1Text(const Table1Study& study, const Table1Result& result);
 // Writes table1.txt, table1.json and, for the searches of the first seed, NAME.csv and traces.svg.
 void WriteTable1(const Table1Study& study, const Table1Result& result,

@@ -13,6 +13,7 @@
 #include "reconstruction/follow.h"
 #include "reconstruction/reconstruction_measures.h"
 #include "reconstruction/recorded_states.h"
+#include "reconstruction/shown_reconstruction.h"
 #include "record/run_directory.h"
 #include "record/run_stage.h"
 
@@ -23,7 +24,7 @@ namespace {
 constexpr int kStatesVersion = 1;
 constexpr int kReferenceVersion = 1;
 constexpr int kMotionVersion = 2;
-constexpr int kResultsVersion = 2;
+constexpr int kResultsVersion = 3;
 
 // Hashes of the recording's files, by file name, so that changes of the input are noticed.
 std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
@@ -87,6 +88,9 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
       [&](const RunRecord& value, const std::filesystem::path& folder) {
         SaveRunRecord(value, folder);
         WriteFields(study, states, motion, value, folder);
+        if (std::any_of(motion.frames.begin(), motion.frames.end(),
+                        [](const FollowedFrame& frame) { return frame.solver.usable; }))
+          WriteMotionFile(ShownReconstruction(study, states, motion), folder / "shown_motion.json");
       },
       LoadRunRecord);
   run.Finish();

@@ -220,6 +220,7 @@ ComparedRecording RecordingFromJson(const json& object) {
 ComparisonRecord RecordFromJson(const json& document) {
   RequireSchemaVersion(document, kSchemaVersion, "lacuna compare");
   ComparisonRecord record;
+  record.fit = document.value("fit", "");
   record.noise = document.at("noise_m");
   for (const json& recording : document.at("recordings"))
     record.recordings.push_back(RecordingFromJson(recording));
@@ -248,6 +249,7 @@ void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::
                      {"delay_s", NumberOrNull(pair.delay)},
                      {"distance_m", NumberOrNull(pair.distance)}});
   const json document{{"schema_version", kSchemaVersion},
+                      {"fit", record.fit},
                       {"noise_m", record.noise},
                       {"recordings", recordings},
                       {"pairs", pairs},

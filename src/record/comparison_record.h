@@ -148,6 +148,7 @@ struct ComparedPair {
 };
 
 struct ComparisonRecord {
+  std::string fit;   // hash of the fit's calibration.json; empty: written by an earlier version
   double noise = 0;  // m, σ of a marker's coordinate assumed by the fit; 0: no markers
   std::vector<ComparedRecording> recordings;
   std::vector<ComparedPair> pairs;

@@ -17,35 +17,51 @@ namespace {
 // note.
 constexpr double kMoved = 1;
 
-std::string ParameterTable(const CalibrationRecord& record) {
-  bool moved = false;
-  std::string text =
-      fmt::format("\n  {:34} {:>12} {:>25}  {}\n", "parameter", "value", "95 % interval", "");
-  for (const FittedParameter& parameter : record.parameters) {
-    const ParameterEstimate& estimate = parameter.estimate;
-    std::string note = VerdictName(estimate.verdict);
-    if (estimate.verdict == ParameterEstimate::Verdict::kPinnedDown) note.clear();
-    if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
-      note +=
-          fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
-    const double with_finest_mesh = parameter.with_finest_mesh.value_or(estimate.value);
-    if (std::abs(DeviationsTo(with_finest_mesh, estimate, parameter.log_scale)) > kMoved) {
-      note +=
-          fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
-      moved = true;
-    }
-    if (const auto& near = parameter.near_bound;
-        near && estimate.verdict != ParameterEstimate::Verdict::kAtBound)
-      note += fmt::format("{}near its {} bound {:.4g}", note.empty() ? "" : "; ",
-                          near->is_upper ? "upper" : "lower", near->bound);
-    text += fmt::format("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name,
-                        estimate.value, estimate.low, estimate.high, parameter.unit, note);
+struct TableText {
+  std::string text;
+  bool moved = false;  // whether finer elements would move a parameter
+};
+
+std::string TableHeader() {
+  return fmt::format("\n  {:34} {:>12} {:>25}  {}\n", "parameter", "value", "95 % interval", "");
+}
+
+void AppendParameter(const FittedParameter& parameter, TableText* table) {
+  const ParameterEstimate& estimate = parameter.estimate;
+  std::string note = VerdictName(estimate.verdict);
+  if (estimate.verdict == ParameterEstimate::Verdict::kPinnedDown) note.clear();
+  if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
+    note +=
+        fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
+  const double with_finest_mesh = parameter.with_finest_mesh.value_or(estimate.value);
+  if (std::abs(DeviationsTo(with_finest_mesh, estimate, parameter.log_scale)) > kMoved) {
+    note += fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
+    table->moved = true;
   }
-  if (moved)
-    text +=
+  if (const auto& near = parameter.near_bound;
+      near && estimate.verdict != ParameterEstimate::Verdict::kAtBound)
+    note += fmt::format("{}near its {} bound {:.4g}", note.empty() ? "" : "; ",
+                        near->is_upper ? "upper" : "lower", near->bound);
+  table->text += fmt::format("  {:34} {:>12.4g} {:>12.4g} … {:<10.4g}  {:6} {}\n", parameter.name,
+                             estimate.value, estimate.low, estimate.high, parameter.unit, note);
+}
+
+std::string ParameterTable(const CalibrationRecord& record) {
+  TableText table{TableHeader()};
+  for (const FittedParameter& parameter : record.parameters) AppendParameter(parameter, &table);
+  if (table.moved)
+    table.text +=
         "  The intervals include the change that finer elements would make; a smaller "
         "mesh.max_volume\n  makes them narrower.\n";
-  return text;
+  return table.text;
+}
+
+// Whether the parameter is one of a recording: "recording 1.clock".
+bool IsNuisanceParameter(const FittedParameter& parameter, const CalibrationRecord& record) {
+  return std::any_of(record.recordings.begin(), record.recordings.end(),
+                     [&](const FittedRecording& recording) {
+                       return parameter.name.starts_with(recording.name + ".");
+                     });
 }
 
 std::string HeldText(const CalibrationRecord& record) {
@@ -159,6 +175,29 @@ struct ConflictSentence {
 
 std::string DescribePriorConflict(const PriorConflict& conflict) {
   return std::visit(ConflictSentence{}, conflict);
+}
+
+std::string CalibrationSummary(const CalibrationRecord& record) {
+  constexpr int kMostParameters = 6;
+  TableText table{TableHeader()};
+  int shown = 0;
+  for (const FittedParameter& parameter : record.parameters)
+    if (!IsNuisanceParameter(parameter, record) && shown < kMostParameters) {
+      AppendParameter(parameter, &table);
+      ++shown;
+    }
+  std::string text = table.text + "\n";
+  for (const FittedRecording& recording : record.recordings) {
+    text += fmt::format("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
+    text += fmt::format("  {:14} held out  {}\n", "", Describe(recording.held_out));
+  }
+  std::vector<std::string> more;
+  if (const size_t others = record.parameters.size() - static_cast<size_t>(shown); others > 0)
+    more.push_back(fmt::format("{} further parameters", others));
+  if (!record.prior_conflicts.empty())
+    more.push_back(fmt::format("{} conflicts with priors", record.prior_conflicts.size()));
+  if (!more.empty()) text += fmt::format("  {}: --verbose lists them\n", fmt::join(more, " and "));
+  return text;
 }
 
 std::string CalibrationReport(const CalibrationRecord& record) {

@@ -173,14 +173,10 @@ std::string DescribeEnding(const Ledger& ledger) {
   return "";
 }
 
-std::string LedgerReport(const Ledger& ledger) {
+std::string LedgerSummary(const Ledger& ledger) {
   const LedgerModel& first = ledger.models.front();
   const LedgerModel& best = ledger.Best();
-  const char* which = first.errors.has_held_out ? "held out" : "fitted";
-  std::string text = PaddedRight(first.name, 35) +
-                     Error(first.errors.held_out_rms, first.errors.rms_over_sigma) + "   " + which +
-                     "\n" + Branch(ledger, 0, "");
-  text += "\n";
+  std::string text;
   if (ledger.HasEnded()) text += Wrapped(DescribeEnding(ledger), "", "") + "\n";
   const auto row = [&](const char* name, const std::string& value) {
     text += PaddedRight(name, 24) + value + "\n";
@@ -189,6 +185,14 @@ std::string LedgerReport(const Ledger& ledger) {
   row("what was missing", AddedUpTo(ledger, best));
   row(first.errors.has_held_out ? "held-out error after" : "error after", Total(best));
   return text;
+}
+
+std::string LedgerReport(const Ledger& ledger) {
+  const LedgerModel& first = ledger.models.front();
+  const char* which = first.errors.has_held_out ? "held out" : "fitted";
+  return PaddedRight(first.name, 35) +
+         Error(first.errors.held_out_rms, first.errors.rms_over_sigma) + "   " + which + "\n" +
+         Branch(ledger, 0, "") + "\n" + LedgerSummary(ledger);
 }
 
 }  // namespace lacuna

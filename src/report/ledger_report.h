@@ -12,6 +12,10 @@ namespace lacuna {
 // the error before and after, for 100 columns. At least one model is needed (CHECK).
 std::string LedgerReport(const Ledger& ledger);
 
+// Why the search ended, and the error before and after: the last lines of the report. At least one
+// model is needed (CHECK).
+std::string LedgerSummary(const Ledger& ledger);
+
 // Why no further effect was added, in one or two sentences. Empty while the search continues.
 std::string DescribeEnding(const Ledger& ledger);
 

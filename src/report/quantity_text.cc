@@ -18,6 +18,12 @@ std::string ProbabilityText(double p_value) {
   return p_value <= 0.001 ? "p ≤ 0.001" : fmt::format("p = {:.2g}", p_value);
 }
 
+std::string PercentText(double probability) {
+  if (probability > 0.995) return "> 99 %";
+  if (probability < 0.005) return "< 1 %";
+  return fmt::format("{:.0f} %", 100 * probability);
+}
+
 std::string DirectionText(const Eigen::Vector3d& vector) {
   constexpr double kCosineOf30Degrees = 0.866;
   const Eigen::Vector3d unit = vector.normalized();

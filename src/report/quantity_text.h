@@ -14,6 +14,9 @@ std::string Millimetres(double length);
 // "p = 0.03", or "p ≤ 0.001".
 std::string ProbabilityText(double p_value);
 
+// A probability from 0 to 1 as "78 %", "< 1 %" or "> 99 %".
+std::string PercentText(double probability);
+
 // The axis nearest to a direction, as "+x". If the angle between them exceeds 30 degrees, the
 // second axis too: "−z and +x", the larger component first.
 std::string DirectionText(const Eigen::Vector3d& vector);

@@ -9,10 +9,10 @@
 #include <variant>
 #include <vector>
 
+#include "report/quantity_text.h"
+
 namespace lacuna {
 namespace {
-
-double Millimetres(double metres) { return 1e3 * metres; }
 
 const char* JudgedFrames(bool held_out) { return held_out ? "held-out" : "fitted"; }
 
@@ -21,14 +21,6 @@ const RecordedEffect* FindEffect(const DiagnosisRecord& diagnosis, const std::st
     for (const RecordedEffect& effect : *effects)
       if (effect.type == type) return &effect;
   return nullptr;
-}
-
-// The title of an effect, what a nuisance is, or the name itself where the record has neither.
-std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name) {
-  if (const RecordedEffect* effect = FindEffect(diagnosis, name)) return effect->title;
-  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
-    if (nuisance.name == name) return nuisance.what;
-  return name;
 }
 
 const RecordedNuisance& NuisanceAt(const DiagnosisRecord& diagnosis, int index) {
@@ -54,13 +46,13 @@ struct ReasonSentence {
     return fmt::format(
         "The error, {:.3f} mm or {:.1f} σ, is that of the noise, and no effect has sufficient "
         "evidence.",
-        Millimetres(reason.rms), reason.rms_over_sigma);
+        1e3 * reason.rms, reason.rms_over_sigma);
   }
   std::string operator()(const ErrorUnexplained& reason) const {
     return fmt::format(
         "The residual, {:.3f} mm or {:.1f} σ, exceeds the noise, and no effect of the catalogue "
         "explains it (best evidence {:.1f}).",
-        Millimetres(reason.rms), reason.rms_over_sigma, reason.best_evidence);
+        1e3 * reason.rms, reason.rms_over_sigma, reason.best_evidence);
   }
   std::string operator()(const NuisanceExplains& reason) const {
     const RecordedNuisance& nuisance = NuisanceAt(diagnosis, reason.nuisance);
@@ -92,12 +84,6 @@ struct ReasonSentence {
   }
 };
 
-std::string Percent(double probability) {
-  if (probability > 0.995) return "> 99 %";
-  if (probability < 0.005) return "< 1 %";
-  return fmt::format("{:.0f} %", 100 * probability);
-}
-
 std::string NamesOf(const std::vector<std::string>& names) {
   return names.empty() ? "nothing" : fmt::format("{}", fmt::join(names, " with "));
 }
@@ -111,7 +97,7 @@ std::string ProbabilitySentence(const DecisionRecord& decision) {
   for (const HypothesisProbability& one : decision.probabilities) {
     if (one.probability < kWorthNaming) break;
     if (one.kind != Kind::kEffect || one.family == EffectFamily::kOther) {
-      groups.push_back(NamesOf(one.names) + " " + Percent(one.probability));
+      groups.push_back(NamesOf(one.names) + " " + PercentText(one.probability));
       continue;
     }
     if (std::count(done.begin(), done.end(), one.family) > 0) continue;
@@ -120,9 +106,9 @@ std::string ProbabilitySentence(const DecisionRecord& decision) {
     for (const HypothesisProbability& member : decision.probabilities)
       if (member.kind == Kind::kEffect && member.family == one.family &&
           member.probability >= kWorthNaming)
-        members.push_back(NamesOf(member.names) + " " + Percent(member.probability));
+        members.push_back(NamesOf(member.names) + " " + PercentText(member.probability));
     groups.push_back(fmt::format("{} {} ({})", FamilyTitle(one.family),
-                                 Percent(decision.FamilyProbability(one.family)),
+                                 PercentText(decision.FamilyProbability(one.family)),
                                  fmt::join(members, ", ")));
   }
   return fmt::format("Probability of what is missing, among all hypotheses that were tried: {}.",
@@ -195,6 +181,13 @@ std::vector<std::string> NamingSentences(const DiagnosisRecord& diagnosis) {
 }
 
 }  // namespace
+
+std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name) {
+  if (const RecordedEffect* effect = FindEffect(diagnosis, name)) return effect->title;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
+    if (nuisance.name == name) return nuisance.what;
+  return name;
+}
 
 std::string VerdictWithNames(const Conclusion& conclusion) {
   if (conclusion.effects.empty()) return VerdictName(conclusion.verdict);

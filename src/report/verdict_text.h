@@ -11,6 +11,9 @@ namespace lacuna {
 // The verdict with the names it gives, e.g. "ambiguous {drag, mass_damping}".
 std::string VerdictWithNames(const Conclusion& conclusion);
 
+// The title of an effect, what a nuisance is, or the name itself where the record has neither.
+std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
+
 // Why the verdict was reached, in whole sentences on one line.
 std::string ExplainVerdict(const DiagnosisRecord& diagnosis);
 

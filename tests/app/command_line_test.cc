@@ -197,7 +197,7 @@ TEST(CommandLine, DiagnosesTheBundledRecordingAndKeepsALedger) {
   const Ending fit = Lacuna("fit " + (folder / "coarse.yaml").string());
   ASSERT_EQ(fit.status, 0) << fit.said;
   const std::string command =
-      "diagnose " + (folder / "run").string() + " --refits 1 --until-done --most 0";
+      "diagnose " + (folder / "run").string() + " --refits 1 --until-done --most 0 --verbose";
   const Ending first = Lacuna(command);
   ASSERT_EQ(first.status, 0) << first.said;
   EXPECT_THAT(first.said, HasSubstr("held-out error before"));
@@ -221,7 +221,7 @@ TEST(CommandLine, FitTellsWhatFinerElementsWouldBeFittedWith) {
          "poisson_ratio: 0.411}\n"
       << "fit: {parameters: [{name: young_modulus}, {name: poisson_ratio}, "
          "{name: viscoelastic_branch.modulus}, {name: viscoelastic_branch.relaxation_time}]}\n";
-  const Ending fit = Lacuna("fit " + (folder / "near.yaml").string());
+  const Ending fit = Lacuna("fit --verbose " + (folder / "near.yaml").string());
   ASSERT_EQ(fit.status, 0) << fit.said;
   EXPECT_THAT(fit.said, HasSubstr("with finer elements"));
 }

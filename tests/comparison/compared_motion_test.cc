@@ -11,6 +11,7 @@
 #include "comparison/run_comparison.h"
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
+#include "record/motion_record.h"
 #include "report/comparison_report.h"
 #include "support/held_bar.h"
 #include "support/temporary_folder.h"
@@ -72,6 +73,13 @@ TEST(ComparedMotion, AddsStrainAndHeightAndWritesFieldsAndTheForce) {
   for (const char* file :
        {"body.pvd", "markers.pvd", "fields/body_00004.vtu", "fields/body_00025.vtu"})
     EXPECT_TRUE(std::filesystem::exists(run / "comparison/0" / file)) << file;
+
+  // The motion for the report has the force.
+  const StoredMotion motion = ReadMotionFile(MotionFile(run, 0));
+  EXPECT_EQ(motion.fit, comparison.record.fit);
+  EXPECT_EQ(motion.times.size(), 26u);
+  EXPECT_EQ(motion.surface.at("fields").back().at("name"), "unexplained_force");
+  EXPECT_GT(motion.surface.at("fields").back().at("high").get<double>(), 0);
 
   // With a changed experiment the model is no longer the one that was fitted.
   std::ofstream(experiment) << text << "density: 900 kg/m^3\n";

@@ -1,6 +1,6 @@
 // Measured and predicted places of one recording's points, as a fit wrote them to misfit.csv.
-#ifndef LACUNA_COMPARISON_RECORDED_RESIDUALS_H_
-#define LACUNA_COMPARISON_RECORDED_RESIDUALS_H_
+#ifndef LACUNA_RECORD_RECORDED_RESIDUALS_H_
+#define LACUNA_RECORD_RECORDED_RESIDUALS_H_
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -20,8 +20,6 @@ struct RecordedResiduals {
   Eigen::MatrixXd difference;  // predicted − measured; for a patch along its normal
 
   int PointCount() const { return static_cast<int>(measured.rows() / 3); }
-  // 3 × m: the mean of each point's measured places over all frames.
-  Eigen::Matrix3Xd MeanPlaces() const;
 };
 
 // Reads the rows of recording number `recording`. Throws InputError naming `file` when a column is
@@ -43,4 +41,4 @@ std::vector<FrameRange> FittedAndHeldOutRanges(const RecordedResiduals& residual
 
 }  // namespace lacuna
 
-#endif  // LACUNA_COMPARISON_RECORDED_RESIDUALS_H_
+#endif  // LACUNA_RECORD_RECORDED_RESIDUALS_H_

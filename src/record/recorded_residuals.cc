@@ -1,4 +1,4 @@
-#include "comparison/recorded_residuals.h"
+#include "record/recorded_residuals.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <map>
 #include <string>
 
-#include "analysis/residual_statistics.h"
 #include "core/error.h"
+#include "record/run_record.h"
 
 namespace lacuna {
 namespace {
@@ -20,14 +20,6 @@ const Eigen::VectorXd& Column(const CsvTable& table, const std::string& name,
 }
 
 }  // namespace
-
-Eigen::Matrix3Xd RecordedResiduals::MeanPlaces() const {
-  Eigen::Matrix3Xd places(3, PointCount());
-  for (Eigen::Index m = 0; m < places.cols(); ++m)
-    places.col(m) =
-        MeanOver(measured.middleRows<3>(3 * m), 0, static_cast<int>(measured.cols()) - 1).mean;
-  return places;
-}
 
 RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
                                 const std::filesystem::path& file) {
@@ -55,7 +47,7 @@ RecordedResiduals ReadResiduals(const CsvTable& table, int recording,
   }
   const Eigen::Index frames = static_cast<Eigen::Index>(times.size());
   result.times = Eigen::Map<const Eigen::VectorXd>(times.data(), frames);
-  result.measured = Eigen::MatrixXd::Constant(3 * points, frames, kUnknown);
+  result.measured = Eigen::MatrixXd::Constant(3 * points, frames, kNotMeasured);
   result.difference = result.measured;
   for (int axis = 0; axis < 3; ++axis) {
     const auto coordinate = [&](const std::string& name) -> const Eigen::VectorXd& {

@@ -1,0 +1,67 @@
+#include "reconstruction/shown_reconstruction.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include "effects/gravity.h"
+#include "geometry/thinned_surface.h"
+
+namespace lacuna {
+namespace {
+
+std::vector<size_t> UsableFrames(const FollowedMotion& motion) {
+  std::vector<size_t> usable;
+  for (size_t k = 0; k < motion.frames.size(); ++k)
+    if (motion.frames[k].solver.usable) usable.push_back(k);
+  return usable;
+}
+
+}  // namespace
+
+MotionRecord ShownReconstruction(const ReconstructionStudy& study,
+                                 const std::vector<FrameState>& states,
+                                 const FollowedMotion& motion) {
+  const Body& body = *motion.body;
+  const std::vector<size_t> usable = UsableFrames(motion);
+  CHECK(!usable.empty());
+  MotionRecord shown;
+  shown.recording = study.recording.name;
+  if (const auto gravity = GravityOf(study.effects); gravity && gravity->norm() > 0)
+    shown.up = -gravity->normalized();
+  const ThinnedSurface thinned = ThinSurface(body.boundary.surface, kMostShownVertices);
+  shown.triangles = thinned.triangles;
+  std::vector<int> nodes;
+  for (const int vertex : thinned.kept) nodes.push_back(body.boundary.node[vertex]);
+
+  const std::vector<int> chosen = EvenlySpread(static_cast<int>(usable.size()), kMostShownFrames);
+  const auto vertices = static_cast<Eigen::Index>(nodes.size());
+  const auto count = static_cast<Eigen::Index>(chosen.size());
+  shown.times.resize(count);
+  shown.positions.resize(3 * vertices, count);
+  shown.fields = {
+      {"residual", "distance from the registered scan", "m", Eigen::MatrixXd(vertices, count)},
+      {"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
+      {"force", "fitted force at a node", "N", Eigen::MatrixXd(vertices, count)}};
+  for (Eigen::Index f = 0; f < count; ++f) {
+    const size_t k = usable[static_cast<size_t>(chosen[static_cast<size_t>(f)])];
+    const FollowedFrame& frame = motion.frames[k];
+    const auto lengths = [](const Eigen::Matrix3Xd& vectors, const std::vector<int>& at) {
+      return Eigen::VectorXd(vectors(Eigen::all, at).colwise().norm().transpose());
+    };
+    shown.times[f] = frame.time;
+    shown.positions.col(f) = Eigen::Matrix3Xd(frame.position(Eigen::all, nodes)).reshaped();
+    shown.fields[0].values.col(f) = lengths(frame.residual, thinned.kept);
+    shown.fields[1].values.col(f) = lengths(frame.position - body.mesh.nodes, nodes);
+    shown.fields[2].values.col(f) = lengths(frame.force, nodes);
+    shown.scans.push_back(states[k].cloud.points);
+  }
+  if (vertices < body.boundary.surface.vertices.cols())
+    shown.notes.push_back(fmt::format("The surface is drawn with {} of its {} vertices.", vertices,
+                                      body.boundary.surface.vertices.cols()));
+  if (chosen.size() < motion.frames.size())
+    shown.notes.push_back(
+        fmt::format("{} of {} frames are drawn.", chosen.size(), motion.frames.size()));
+  return shown;
+}
+
+}  // namespace lacuna

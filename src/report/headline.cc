@@ -1,0 +1,205 @@
+#include "report/headline.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "report/quantity_text.h"
+#include "report/verdict_text.h"
+
+namespace lacuna {
+namespace {
+
+// "Viscoelastic branch (Maxwell element of a Prony series)" as "viscoelastic branch".
+std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name) {
+  std::string title = TitleOf(diagnosis, name);
+  if (const size_t at = title.find(" ("); at != std::string::npos) title.erase(at);
+  const bool is_abbreviation = title.substr(0, title.find(' ')).ends_with('.');
+  if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
+    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
+std::string Lengths(const ModelErrors& errors) {
+  return fmt::format("{}, {:.1f} times the noise", Millimetres(errors.held_out_rms),
+                     errors.rms_over_sigma);
+}
+
+std::string Observed(const CalibrationRecord& record) {
+  bool markers = false, scans = false;
+  for (const FittedRecording& recording : record.recordings)
+    (recording.scan ? scans : markers) = true;
+  return markers && scans ? "markers and scans" : scans ? "scans" : "markers";
+}
+
+// The compared part with the largest error: held-out frames, or fitted ones where nothing was held
+// out.
+struct WorstPart {
+  const ComparedRecording* recording = nullptr;
+  const ComparedPart* part = nullptr;
+};
+WorstPart FindWorst(const ComparisonRecord& comparison, bool held_out) {
+  WorstPart worst;
+  for (const ComparedRecording& recording : comparison.recordings)
+    for (const ComparedPart& part : recording.parts)
+      if (part.fitted != held_out && part.worst_point >= 0 &&
+          (worst.part == nullptr || part.error.rms > worst.part->error.rms))
+        worst = {&recording, &part};
+  return worst;
+}
+
+// Where and when the error is largest, after a semicolon; empty where it was not compared.
+std::string WhereAndWhen(const ReportedModel& model) {
+  if (!model.comparison || model.errors.rms_over_sigma < kBeyondNoise) return "";
+  const WorstPart worst = FindWorst(*model.comparison, model.errors.has_held_out);
+  if (worst.part == nullptr) return "";
+  const auto point = static_cast<size_t>(worst.part->worst_point);
+  std::string text =
+      fmt::format("; the error is largest at {} {}", worst.recording->is_scan ? "patch" : "marker",
+                  point < worst.recording->point_names.size() ? worst.recording->point_names[point]
+                                                              : std::to_string(point));
+  if (const auto& period = worst.part->worst_period)
+    text += fmt::format(" and from {:.3g} s to {:.3g} s", period->from, period->to);
+  if (model.comparison->recordings.size() > 1) text += " of " + worst.recording->name;
+  return text;
+}
+
+std::string FirstErrorSentence(const ReportedModel& model) {
+  const bool misses = model.errors.rms_over_sigma >= kBeyondNoise;
+  return fmt::format("The model {} the {} {} {} in frames that it was {}fitted to{}.",
+                     misses ? "misses" : "meets", Observed(model.calibration),
+                     misses ? "by" : "to within", Lengths(model.errors) + ",",
+                     model.errors.has_held_out ? "not " : "", WhereAndWhen(model));
+}
+
+std::string NextStep(const DiagnosisRecord& diagnosis) {
+  const std::string steps = DescribeNextSteps(diagnosis);
+  return steps.empty() ? "" : " To decide: " + steps + (steps.ends_with('.') ? "" : ".");
+}
+
+// The probability that exactly this is what is missing; NaN where the record has none.
+double ProbabilityOf(const DecisionRecord& decision, const std::vector<std::string>& names) {
+  for (const HypothesisProbability& one : decision.probabilities)
+    if (one.names == names) return one.probability;
+  return kNotMeasured;
+}
+
+std::string WithProbability(const DiagnosisRecord& diagnosis, const std::string& name) {
+  const double probability = ProbabilityOf(diagnosis.decision, {name});
+  return ShortTitle(diagnosis, name) +
+         (std::isnan(probability) ? "" : fmt::format(" ({})", PercentText(probability)));
+}
+
+std::string MissingSentence(const DiagnosisRecord& diagnosis) {
+  const double probability = ProbabilityOf(diagnosis.decision, diagnosis.effects);
+  std::vector<std::string> titles;
+  for (const std::string& name : diagnosis.effects) titles.push_back(ShortTitle(diagnosis, name));
+  return fmt::format(
+      "What it lacks: {}{}.", fmt::join(titles, " and "),
+      std::isnan(probability) ? "" : fmt::format(" (probability {})", PercentText(probability)));
+}
+
+std::string AmbiguousSentence(const DiagnosisRecord& diagnosis) {
+  std::vector<std::string> titles;
+  for (const std::string& name : diagnosis.effects)
+    titles.push_back(WithProbability(diagnosis, name));
+  return fmt::format("Something is missing, but these recordings cannot tell which of these: {}.{}",
+                     fmt::join(titles, ", or "), NextStep(diagnosis));
+}
+
+std::string NuisanceSentence(const DiagnosisRecord& diagnosis) {
+  std::vector<std::string> whats;
+  for (const std::string& name : diagnosis.effects) whats.push_back(TitleOf(diagnosis, name));
+  std::string advice;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
+    if (!diagnosis.effects.empty() && nuisance.name == diagnosis.effects.front() &&
+        !nuisance.advice.empty() && advice.empty())
+      advice = " What to do: " + nuisance.advice + ".";
+  return fmt::format(
+      "No physical effect needs to be missing: an error of the measurement or of the computation "
+      "explains it{}.{}",
+      whats.empty() ? "" : fmt::format(" ({})", fmt::join(whats, ", ")), advice);
+}
+
+std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
+  const double nothing = ProbabilityOf(diagnosis.decision, {});
+  return fmt::format(
+      "No further effect is needed{}: the error that is left is that of the noise, or no larger "
+      "than the error of any model.",
+      std::isnan(nothing)
+          ? ""
+          : fmt::format(" (probability that nothing is missing: {})", PercentText(nothing)));
+}
+
+std::string VerdictSentence(const ReportedModel& model) {
+  if (!model.diagnosis)
+    return model.errors.rms_over_sigma < kBeyondNoise
+               ? ""
+               : "What is missing has not been diagnosed yet; `lacuna diagnose` does so.";
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
+  switch (diagnosis.verdict) {
+    case Verdict::kMissing:
+      return MissingSentence(diagnosis);
+    case Verdict::kAmbiguous:
+      return AmbiguousSentence(diagnosis);
+    case Verdict::kNuisance:
+      return NuisanceSentence(diagnosis);
+    case Verdict::kNotInLibrary:
+      return "Something is missing that no effect of the catalogue explains.";
+    case Verdict::kNoPower:
+      return "These recordings could not show any effect of plausible size, so that nothing can be "
+             "said about what is missing: more motion, other loads or less noise are needed.";
+    case Verdict::kAdequate:
+      break;
+  }
+  return AdequateSentence(diagnosis);
+}
+
+std::string AfterAdding(const ReportedModel& model, const ReportedModel& before) {
+  const std::string title =
+      before.diagnosis ? ShortTitle(*before.diagnosis, model.added) : model.added;
+  if (!model.calibration.usable)
+    return fmt::format("The model with {} could not be fitted: {}.", title,
+                       model.calibration.message);
+  return fmt::format("With {} the error is {}.", title, Lengths(model.errors));
+}
+
+}  // namespace
+
+std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
+  CHECK(!models.empty());
+  const ReportedModel& first = models.front();
+  if (!first.calibration.usable)
+    return {fmt::format("The fit did not succeed: {}.", first.calibration.message)};
+  std::vector<std::string> sentences{FirstErrorSentence(first)};
+  for (size_t k = 0; k < models.size(); ++k) {
+    if (k > 0) sentences.push_back(AfterAdding(models[k], models[k - 1]));
+    const std::string verdict = models[k].calibration.usable ? VerdictSentence(models[k]) : "";
+    // What was added shows by itself that the model before lacked it.
+    const bool is_last = k + 1 == models.size();
+    if (!verdict.empty() && (is_last || models[k].diagnosis)) sentences.push_back(verdict);
+  }
+  return sentences;
+}
+
+std::vector<std::string> ReconstructionHeadline(const RunRecord& record) {
+  const auto followed = std::count_if(record.frames.begin(), record.frames.end(),
+                                      [](const FrameRecord& frame) { return frame.solver.usable; });
+  const std::string how =
+      followed == 0
+          ? fmt::format("The model could not follow any of {} frames.", record.frames.size())
+          : fmt::format(
+                "With fitted forces the model follows {} of {} frames; its surface points are {} "
+                "from their places in the scans on average, {:.2g} % of the object's size.",
+                followed, record.frames.size(),
+                Millimetres(record.relative_animation_residual * record.object_size),
+                100 * record.relative_animation_residual);
+  return {how, fmt::format("Forces that may act anywhere make any model follow, so that this says "
+                           "nothing about which physics the model lacks.")};
+}
+
+}  // namespace lacuna

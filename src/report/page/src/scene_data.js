@@ -1,0 +1,122 @@
+// The arrays of one recording of one model, and the quantities that can colour it.
+import { unpack } from './decode.js';
+import { displayUnit, isNumber } from './format.js';
+
+const loaded = new WeakMap();
+
+export function loadScene(scene) {
+  if (!loaded.has(scene)) loaded.set(scene, loadNow(scene));
+  return loaded.get(scene);
+}
+
+async function loadNow(scene) {
+  const { surface, points } = scene;
+  const [triangles, positions, measured, model, residual] = await Promise.all([
+    unpack(surface?.triangles), unpack(surface?.positions), unpack(points?.measured), unpack(points?.model),
+    unpack(points?.residual)]);
+  return new SceneData(scene, { triangles, positions, measured, model, residual });
+}
+
+// The rms length that noise of standard deviation σ per component gives to a point.
+export const rmsOfNoise = (sigma, isScan) => (isNumber(sigma) && sigma > 0 ? (isScan ? 1 : Math.sqrt(3)) * sigma : null);
+
+export class SceneData {
+  constructor(scene, arrays) {
+    Object.assign(this, arrays);
+    this.scene = scene;
+    this.times = scene.times ?? [];
+    this.up = scene.up ?? null;
+    this.pointCount = this.measured?.shape[1] ?? this.model?.shape[1] ?? 0;
+    this.triangleCount = this.triangles ? this.triangles.shape[0] : 0;
+    this.indices = this.triangles ? new Uint32Array(this.triangles.values) : null;
+    this.noise = rmsOfNoise(scene.points?.sigma, scene.points?.is_scan);
+  }
+
+  frameAt(time) {
+    const { times } = this;
+    let best = 0;
+    for (let k = 1; k < times.length; ++k) if (Math.abs(times[k] - time) < Math.abs(times[best] - time)) best = k;
+    return best;
+  }
+
+  pointName(index) { return this.scene.points?.names?.[index] ?? String(index); }
+
+  // The length of the residual of each point in m, NaN where it was not observed.
+  residualLengths(frame) {
+    const lengths = new Float32Array(this.pointCount).fill(NaN);
+    if (this.residual) {
+      const values = this.residual.frame(frame);
+      const size = this.residual.stride / this.pointCount;
+      for (let k = 0; k < this.pointCount; ++k) {
+        lengths[k] = size === 1 ? Math.abs(values[k]) : Math.hypot(values[3 * k], values[3 * k + 1], values[3 * k + 2]);
+      }
+    } else if (this.measured && this.model) {
+      const [a, b] = [this.measured.frame(frame), this.model.frame(frame)];
+      for (let k = 0; k < this.pointCount; ++k) {
+        lengths[k] = Math.hypot(b[3 * k] - a[3 * k], b[3 * k + 1] - a[3 * k + 1], b[3 * k + 2] - a[3 * k + 2]);
+      }
+    }
+    return lengths;
+  }
+
+  // Almost the largest residual of all frames, m: single outliers would make all else look alike.
+  residualScale() {
+    if (this.largestResidual === undefined) {
+      const all = [];
+      const every = Math.max(1, Math.floor((this.times.length * this.pointCount) / 200000));
+      for (let frame = 0; frame < this.times.length; frame += every) {
+        for (const value of this.residualLengths(frame)) if (value >= 0) all.push(value);
+      }
+      all.sort((a, b) => a - b);
+      this.largestResidual = all.length > 0 ? all[Math.min(all.length - 1, Math.floor(0.995 * all.length))] : 0;
+    }
+    return this.largestResidual;
+  }
+
+  // Centre and radius of everything that is drawn.
+  bounds() {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (const array of [this.positions, this.measured, this.model]) {
+      if (!array) continue;
+      const every = Math.max(1, Math.floor(array.frames / 12));
+      for (let frame = 0; frame < array.frames; frame += every) {
+        const values = array.frame(frame);
+        for (let k = 0; k < values.length; ++k) {
+          if (values[k] < low[k % 3]) low[k % 3] = values[k];
+          if (values[k] > high[k % 3]) high[k % 3] = values[k];
+        }
+      }
+    }
+    if (!(low[0] <= high[0])) return { centre: [0, 0, 0], radius: 1, low: [0, 0, 0], high: [0, 0, 0] };
+    const centre = low.map((value, k) => (value + high[k]) / 2);
+    return { centre, radius: Math.hypot(...low.map((value, k) => high[k] - value)) / 2 || 1, low, high };
+  }
+}
+
+// What can colour the view: residuals of the points, and the fields of the surface. Each has a key,
+// a label, a unit and a factor from the stored to the shown value.
+export function colourings(scenes) {
+  const list = [];
+  const points = scenes.some((scene) => scene?.points && (scene.points.residual || (scene.points.measured && scene.points.model)));
+  if (points) {
+    list.push({ key: 'residual', label: 'residual', unit: 'mm', factor: 1e3, diverging: false, ofPoints: true });
+    if (scenes.some((scene) => rmsOfNoise(scene?.points?.sigma, scene?.points?.is_scan))) {
+      list.push({ key: 'residual_sigma', label: 'residual', unit: 'σ', factor: 1, diverging: false, ofPoints: true });
+    }
+  }
+  for (const scene of scenes) {
+    for (const field of scene?.surface?.fields ?? []) {
+      const key = `field:${field.name}`;
+      if (list.some((one) => one.key === key)) continue;
+      const size = Math.max(Math.abs(field.low ?? 0), Math.abs(field.high ?? 0));
+      const isStrain = field.unit === '' && /strain/.test(field.name);
+      const shown = isStrain ? { unit: '%', factor: 100 } : displayUnit(field.unit, size);
+      list.push({ key, label: field.label || field.name, unit: shown.unit, factor: shown.factor,
+                  diverging: Boolean(field.diverging), ofPoints: false, name: field.name });
+    }
+  }
+  list.push({ key: 'none', label: 'nothing', unit: '', factor: 1, diverging: false, ofPoints: false });
+  return list;
+}
+
+export const fieldOf = (scene, colouring) => scene?.surface?.fields?.find((field) => field.name === colouring.name);

@@ -1,0 +1,78 @@
+// Studies over many runs: Table 1 of the paper, the ablation of its search, and sealed cases.
+import { chart } from './chart.js';
+import { cellColour } from './colours.js';
+import { h, svg } from './dom.js';
+import { fixed, isNumber, millimetres, NONE, number, quantity, sigmas } from './format.js';
+import { grid, name, section, table } from './section.js';
+import { traceCharts } from './reconstruction.js';
+
+const range = (value, text) => (isNumber(value?.median)
+  ? h('span', {}, text(value.median), h('span', { class: 'extremes' }, `${text(value.least)} … ${text(value.largest)}`)) : NONE);
+const share = (value) => (isNumber(value) ? `${fixed(100 * value, 0)} %` : NONE);
+
+// Median and extremes of a share as a dot and a whisker from 0 to 1, with the paper's value as a diamond.
+function rangeBar(value, paper) {
+  const [width, height] = [220, 18];
+  const x = (one) => 6 + (width - 12) * Math.min(Math.max(one, 0), 1);
+  if (!isNumber(value?.median)) return '';
+  return svg('svg', { class: 'whiskers', width, height, viewBox: `0 0 ${width} ${height}`, 'aria-hidden': 'true' },
+    svg('line', { x1: x(0), x2: x(1), y1: 9, y2: 9, class: 'zero' }), svg('line', { x1: x(value.least), x2: x(value.largest), y1: 9, y2: 9, class: 'whisker', style: { stroke: 'var(--accent)' } }),
+    svg('circle', { cx: x(value.median), cy: 9, r: 4, style: { fill: 'var(--accent)' } }),
+    isNumber(paper) ? svg('rect', { x: x(paper) - 4, y: 5, width: 8, height: 8, transform: `rotate(45 ${x(paper)} 9)`, style: { fill: 'none', stroke: 'var(--text)' } }) : null);
+}
+
+export function table1Section({ data }) {
+  const runs = (data.runs ?? []).filter((run) => run.table1?.rows?.length > 0);
+  return section('table1', 'Table 1', 'Table 1: what the search of geometry and material gains', 'The reduction of the residual, as median and extremes over the seeds, beside the paper’s value (diamond).',
+    runs.map(({ table1 }) => [
+      table(null, [['searched'], ['seeds', true], ['reduction', true], ['from 0 to 100 %'], ['paper', true], ['from the start', true], ['of the sum |D_anim|', true], ['best, per point', true], ['Young’s modulus', true], ['Poisson’s ratio', true]],
+        table1.rows.map((row) => [name(row.name), String(row.seeds), range(row.drop_from_max, share), rangeBar(row.drop_from_max, row.paper_drop), share(row.paper_drop), range(row.drop_from_start, share), range(row.sum_drop_from_max, share), range(row.best_per_point_m, millimetres), range(row.young_modulus_Pa, (value) => quantity(value, 'Pa')), range(row.poisson_ratio, (value) => number(value))])),
+      h('p', { class: 'explain' }, [
+        table1.truth ? `True values: ${quantity(table1.truth.young_modulus_Pa, 'Pa')} and ${number(table1.truth.poisson_ratio)}.` : '',
+        table1.last_is_best?.of > 0 ? `${table1.rows.at(-1).name} does at least as well as the better of the others in ${table1.last_is_best.seeds} of ${table1.last_is_best.of} seeds.` : '',
+        isNumber(table1.mesh_noise?.per_point) ? `Mesh noise: ${number(100 * table1.mesh_noise.per_point, 2)} % of the residual per point.` : ''].filter(Boolean).join(' ').slice(0, 1000)),
+      Object.entries(table1.traces ?? {}).map(([key, trace]) => [h('h3', {}, name(key)), traceCharts(trace)])]));
+}
+
+export function ablationSection({ data }) {
+  const runs = (data.runs ?? []).filter((run) => run.ablation?.rows?.length > 0);
+  return section('ablation', 'Ablation', 'Ablation of the search', 'The search, repeated with one thing changed at a time. Each row is compared with the row that it names.',
+    runs.map(({ ablation }) => [
+      table(null, [['row'], ['varies'], ['against'], ['reduction', true], ['from 0 to 100 %'], ['best, per point', true], ['modulus / truth', true], ['Poisson’s ratio − truth', true], ['evaluations', true], ['what it shows']],
+        ablation.rows.map((row) => [name(row.name), name(row.varies), name(row.against), range(row.drop, share), rangeBar(row.drop), range(row.best_per_point_m, millimetres), range(row.young_modulus_over_truth, (value) => number(value)), range(row.poisson_ratio_less_truth, (value) => number(value, 2)), range(row.evaluations, (value) => number(value)), h('div', { class: 'prose' }, name(row.shows))])),
+      isNumber(ablation.mesh_noise) ? h('p', { class: 'explain' }, `Mesh noise: ${number(100 * ablation.mesh_noise, 2)} % of the residual per point; smaller differences mean nothing.`) : null]));
+}
+
+function confusion(counts) {
+  const truths = Object.keys(counts ?? {});
+  if (truths.length === 0) return null;
+  const said = [...new Set(truths.flatMap((truth) => Object.keys(counts[truth])))].sort();
+  return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, 'Confusion matrix'), h('p', { class: 'explain' }, 'Rows are what was hidden; columns are the effect that was named, or the verdict. The tint is the share of the row.')),
+    h('div', { class: 'table-box' }, h('table', { class: 'matrix' }, h('thead', {}, h('tr', {}, h('th', {}), said.map((one) => h('th', { scope: 'col' }, name(one))))),
+      h('tbody', {}, truths.map((truth) => {
+        const total = Object.values(counts[truth]).reduce((sum, value) => sum + value, 0);
+        return h('tr', {}, h('th', { scope: 'row' }, name(truth)), said.map((one) => {
+          const value = counts[truth][one] ?? 0;
+          const { background, colour } = cellColour(value / total);
+          return h('td', value > 0 ? { class: 'number', style: { background, color: colour } } : { class: 'number' }, value > 0 ? String(value) : '');
+        }));
+      })))));
+}
+
+function calibrationCurve(bins) {
+  const shown = (bins ?? []).filter((bin) => isNumber(bin.stated) && isNumber(bin.frequency));
+  if (shown.length === 0) return null;
+  return chart({ title: 'Calibration of the probabilities', explain: 'How often a stated probability was right. On the dashed diagonal, probabilities mean what they say.', x: 'stated probability, %', y: 'frequency, %', xRange: [0, 100], yRange: [0, 100], height: 280,
+    series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: shown.map((bin) => 100 * bin.stated), y: shown.map((bin) => 100 * bin.frequency), colour: 'series-last', style: 'line-dots', size: 8 }] });
+}
+
+export function trialsSection({ data }) {
+  const of = (part, whole) => (whole > 0 ? `${part} of ${whole}` : NONE);
+  return section('trials', 'Sealed cases', 'Sealed cases', 'Synthetic recordings whose hidden effect the diagnosis does not read. They measure how often a verdict is right.',
+    (data.runs ?? []).filter((run) => run.trials).map(({ trials }) => [
+      table(null, [['group'], ['cases', true], ['correct', true], ['top two', true], ['wrong', true], ['ranked first', true], ['at noise', true], ['size ± 15 %', true], ['in interval', true], ['before', true], ['after', true], ['verdicts']],
+        (trials.tallies ?? []).map((one) => [name(one.group), String(one.cases), String(one.top1), String(one.top2), String(one.wrong), String(one.ranked_first), of(one.at_noise, one.fitted), of(one.within_15_percent, one.fitted), of(one.covered, one.intervals), sigmas(one.median_error_before), one.fitted > 0 ? sigmas(one.median_error_after) : NONE,
+          name(Object.entries(one.verdicts ?? {}).map(([verdict, count]) => `${count} ${verdict}`).join(', '))])),
+      confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
+      trials.unfinished?.length ? h('p', { class: 'explain' }, `${trials.unfinished.length} cases have no outcome.`) : null]));
+}

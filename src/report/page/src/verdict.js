@@ -1,0 +1,67 @@
+// The verdict with its probabilities: of families of effects, and of their members.
+import { h } from './dom.js';
+import { percent, probabilityText, sigmas, isNumber } from './format.js';
+import { FAMILIES, VERDICTS, namesOf } from './text.js';
+
+const WORTH_NAMING = 0.01;
+
+// Hypotheses grouped by family, the most probable one first.
+export function probabilityGroups(decision) {
+  const groups = [];
+  for (const one of decision?.probabilities ?? []) {
+    const isMember = one.kind === 'effect' && one.family !== 'other';
+    const key = isMember ? one.family : `${one.kind}:${namesOf(one.names)}`;
+    let group = groups.find((candidate) => candidate.key === key);
+    if (!group) {
+      group = { key, title: isMember ? FAMILIES[one.family] ?? one.family : one.kind === 'nothing' ? 'nothing is missing' : namesOf(one.names),
+                kind: one.kind, probability: 0, members: [] };
+      groups.push(group);
+    }
+    group.probability += one.probability;
+    if (isMember) group.members.push({ name: namesOf(one.names), probability: one.probability, isRefuted: one.is_refuted });
+  }
+  return groups.sort((a, b) => b.probability - a.probability);
+}
+
+function probabilityRow(name, probability, isMember) {
+  return h('div', { class: `probability${isMember ? ' member' : ''}`, role: 'listitem' },
+    h('span', { class: 'probability-name', title: name.slice(0, 300) }, name.slice(0, 120)),
+    h('div', { class: 'probability-track' }, h('div', { class: 'probability-fill', style: { width: `${100 * probability}%` } })),
+    h('span', { class: 'probability-value' }, percent(probability)));
+}
+
+function adequacyText(decision) {
+  const adequacy = decision?.adequacy;
+  if (!adequacy) return null;
+  const subject = adequacy.beside?.length ? `The model with ${namesOf(adequacy.beside)}` : 'The model as it is';
+  if (adequacy.is_adequate) return `${subject} leaves no more than noise (${probabilityText(adequacy.p)}).`;
+  const left = isNumber(adequacy.left_share) ? `, ${(100 * adequacy.left_share).toFixed(1)} % of what was explained` : '';
+  const size = `${probabilityText(adequacy.p)}, ${sigmas(adequacy.rms_over_sigma)} over all frames${left}`;
+  return adequacy.is_tolerated ? `${subject} leaves slightly more than noise (${size}): no more than the error of any model.`
+    : `Something unknown is left: ${subject.toLowerCase()} leaves more than noise (${size}).`;
+}
+
+// One line: the verdict on a model that came later, and its most probable hypotheses.
+function shortVerdict(diagnosis, subject, title, groups) {
+  return h('div', { class: `verdict short verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
+    h('p', { class: 'verdict-head' }, h('span', { class: 'muted' }, `${subject.slice(0, 200)}: `), h('span', { class: 'verdict-name' }, title), ' ',
+      (diagnosis.effects ?? []).map((effect) => [h('code', { class: 'clip' }, effect), ' ']),
+      h('span', { class: 'muted' }, groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${percent(group.probability)}`).join(', '))));
+}
+
+export function verdictBox(diagnosis, subject, isFirst) {
+  if (!diagnosis?.verdict) return null;
+  const [title, meaning] = VERDICTS[diagnosis.verdict] ?? [diagnosis.verdict, ''];
+  const effects = diagnosis.effects ?? [];
+  const groups = probabilityGroups(diagnosis.decision).filter((group) => group.probability >= WORTH_NAMING).slice(0, 5);
+  if (!isFirst) return shortVerdict(diagnosis, subject, title, groups);
+  return h('div', { class: `verdict verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
+    h('p', { class: 'verdict-head' },
+      subject ? h('span', { class: 'muted' }, `${subject}: `) : null,
+      h('span', { class: 'verdict-name' }, title), effects.length > 0 ? [' ', effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
+    h('p', { class: 'explain' }, meaning, ' ', adequacyText(diagnosis.decision)),
+    groups.length > 0 ? h('div', { class: 'probabilities', role: 'list', 'aria-label': 'Probability of what is missing' },
+      h('p', { class: 'small-head' }, 'How sure: probability of what is missing'),
+      groups.map((group) => [probabilityRow(group.title, group.probability, false),
+        group.members.filter((member) => member.probability >= WORTH_NAMING).map((member) => probabilityRow(member.name, member.probability, true))])) : null);
+}

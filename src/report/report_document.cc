@@ -1,0 +1,314 @@
+#include "report/report_document.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/json_number.h"
+#include "record/csv_table.h"
+#include "record/json_vector.h"
+#include "record/library_versions.h"
+#include "record/run_directory.h"
+#include "record/run_record.h"
+#include "report/headline.h"
+#include "report/reported_run.h"
+#include "report/run_differences.h"
+#include "report/scene_document.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int kSchema = 1;
+
+// One run: its part of the document, and what a comparison with others needs.
+struct GatheredRun {
+  json document;
+  std::vector<std::string> sentences;
+  ComparableRun comparable;
+};
+
+// A path as seen from the folder that contains results/NAME, where commands are usually given, so
+// that the document does not depend on where it is made.
+std::string FromProject(const fs::path& path, const fs::path& run) {
+  const auto normal = [](const fs::path& any) { return fs::absolute(any).lexically_normal(); };
+  return normal(path / ".").parent_path().lexically_proximate(normal(run / "../..") / "").string();
+}
+
+json Provenance(const Manifest& manifest, const std::vector<std::string>& commands) {
+  return {{"program", "Lacuna " + manifest.program_version},
+          {"libraries", manifest.library_versions},
+          {"configuration", manifest.configuration},
+          {"inputs", manifest.inputs},
+          {"seed", manifest.seed},
+          {"commands", commands}};
+}
+
+json TableToJson(const CsvTable& table) {
+  json columns = json::object();
+  for (const CsvColumn& column : table) columns[column.name] = VectorToJson(column.values);
+  return columns;
+}
+
+// --- Runs of `lacuna fit` ---
+
+std::vector<std::string> FitCommands(const ReportedRun& run, const fs::path& folder) {
+  const ReportedModel& first = run.models.front();
+  const std::string name = FromProject(first.folder, folder);
+  std::vector<std::string> commands{
+      "lacuna fit " + FromProject(first.folder / first.calibration.experiment, folder)};
+  if (first.comparison) commands.push_back("lacuna compare " + name);
+  if (!run.ledger.is_null()) {
+    commands.push_back("lacuna diagnose " + name + " --until-done");
+  } else {
+    if (first.diagnosis) commands.push_back("lacuna diagnose " + name);
+    for (size_t k = 1; k < run.models.size(); ++k)
+      commands.push_back(fmt::format(
+          "lacuna add {} {}", FromProject(run.models[k - 1].folder, folder), run.models[k].added));
+  }
+  commands.push_back("lacuna report " + FromProject(folder, folder));
+  return commands;
+}
+
+json ModelDocument(const ReportedModel& model, size_t index) {
+  const auto file = [&](bool exists, const char* name) {
+    return exists ? ReadJsonFile(model.folder / name) : json();
+  };
+  const ModelErrors& errors = model.errors;
+  const bool usable = model.calibration.usable;
+  const auto if_usable = [&](double value) { return usable ? json(value) : json(); };
+  return {{"name", model.name},
+          {"added", model.added},
+          {"label", index == 0   ? "initial model"
+                    : index == 1 ? "with " + model.added
+                                 : "and with " + model.added},
+          {"errors",
+           {{"in_fit", if_usable(errors.in_fit_rms)},
+            {"held_out", if_usable(errors.held_out_rms)},
+            {"held_out_over_sigma", if_usable(errors.rms_over_sigma)},
+            {"has_held_out", errors.has_held_out}}},
+          {"calibration", file(true, "calibration/calibration.json")},
+          {"comparison", file(model.comparison.has_value(), "comparison/comparison.json")},
+          {"diagnosis", file(model.diagnosis.has_value(), "diagnosis/diagnosis.json")},
+          {"scenes", SceneDocuments(model)}};
+}
+
+// The rms length of the noise of a point, m. No single number stands for the patches of scans.
+json NoiseOf(const CalibrationRecord& record) {
+  const bool has_scans =
+      std::any_of(record.recordings.begin(), record.recordings.end(),
+                  [](const FittedRecording& recording) { return recording.scan.has_value(); });
+  return has_scans ? json() : json(std::sqrt(3.0) * record.noise);
+}
+
+GatheredRun GatherFit(const fs::path& folder) {
+  const ReportedRun run = OpenReportedRun(folder);
+  const ReportedModel& first = run.models.front();
+  const Manifest manifest = LoadManifest(first.folder / "manifest.json");
+  json models = json::array();
+  for (size_t k = 0; k < run.models.size(); ++k) models.push_back(ModelDocument(run.models[k], k));
+  GatheredRun gathered;
+  gathered.sentences = Headline(run.models);
+  gathered.comparable = {first.name, manifest, {}};
+  for (const FittedRecording& recording : first.calibration.recordings)
+    gathered.comparable.spans.push_back({recording.name, recording.scan ? "scans" : "markers",
+                                         recording.in_fit.frames, recording.held_out.frames});
+  gathered.document = {{"name", run.ledger.is_null() ? run.models.back().name : first.name},
+                       {"folder", FromProject(folder, folder)},
+                       {"kind", "prediction"},
+                       {"models", models},
+                       {"ledger", run.ledger},
+                       {"noise", NoiseOf(first.calibration)},
+                       {"reconstruction", nullptr},
+                       {"table1", nullptr},
+                       {"trials", nullptr},
+                       {"notes", run.notes},
+                       {"provenance", Provenance(manifest, FitCommands(run, folder))}};
+  return gathered;
+}
+
+// --- Runs of `lacuna reconstruct` ---
+
+GatheredRun GatherReconstruction(const fs::path& folder) {
+  const fs::path results = FinishedStage(folder, "results");
+  const RunRecord record = LoadRunRecord(results);
+  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  const std::string name = fs::path(FromProject(folder, folder)).filename().string();
+  json scenes = json::array();
+  if (json scene = ReconstructionScene(folder); !scene.is_null()) scenes.push_back(scene);
+  GatheredRun gathered;
+  gathered.sentences = ReconstructionHeadline(record);
+  gathered.comparable = {
+      name, manifest, {{record.recording, "scans", static_cast<int>(record.frames.size()), 0}}};
+  gathered.document = {
+      {"name", name},
+      {"folder", FromProject(folder, folder)},
+      {"kind", "reconstruction"},
+      {"models",
+       {{{"name", name}, {"added", ""}, {"label", "reconstruction"}, {"scenes", scenes}}}},
+      {"ledger", nullptr},
+      {"noise", nullptr},
+      {"reconstruction",
+       {{"record", ReadJsonFile(results / "record.json")},
+        {"frames", TableToJson(LoadCsv(results / "frames.csv"))},
+        {"trace", nullptr}}},
+      {"table1", nullptr},
+      {"trials", nullptr},
+      {"notes", json::array()},
+      {"provenance", Provenance(manifest, {"lacuna report " + FromProject(folder, folder)})}};
+  return gathered;
+}
+
+// --- Studies of many runs: Table 1, its ablation, sealed cases ---
+
+// The largest drop of each row, as far as the table has it, and whether it reaches the paper's.
+std::vector<std::string> Table1Headline(const json& table) {
+  std::vector<std::string> sentences;
+  for (const json& row : table.at("rows")) {
+    const json& drop = row.at("drop_from_max").at("median");
+    if (drop.is_null()) continue;
+    std::string sentence = fmt::format("The search over {} lowers the residual by {:.1f} %",
+                                       row.at("name").get<std::string>(), 100 * drop.get<double>());
+    if (row.contains("paper_drop"))
+      sentence += fmt::format(", {} the paper's {:.1f} %",
+                              drop >= row.at("paper_drop") ? "at least" : "less than",
+                              100 * row.at("paper_drop").get<double>());
+    sentences.push_back(sentence + ".");
+  }
+  return sentences;
+}
+
+// table1.json with the trace of each search.
+json Table1WithTraces(const fs::path& folder) {
+  json table = ReadJsonFile(folder / "table1.json");
+  table["traces"] = json::object();
+  for (const json& row : table.at("rows")) {
+    const std::string name = row.at("name");
+    if (const fs::path file = folder / (name + ".csv"); fs::exists(file))
+      table["traces"][name] = TableToJson(LoadCsv(file));
+  }
+  return table;
+}
+
+// The report of sealed cases; null where there is none.
+json FindTrials(const fs::path& folder) {
+  const fs::path file = folder / "report.json";
+  if (!fs::exists(file)) return nullptr;
+  json report = ReadJsonFile(file);
+  return report.is_object() && report.contains("tallies") ? report : json();
+}
+
+bool IsStudy(const fs::path& folder) {
+  return fs::exists(folder / "table1.json") || fs::exists(folder / "ablation.json") ||
+         !FindTrials(folder).is_null();
+}
+
+GatheredRun GatherStudy(const fs::path& folder) {
+  GatheredRun gathered;
+  const std::string name = fs::path(FromProject(folder, folder)).filename().string();
+  const bool has_table = fs::exists(folder / "table1.json");
+  const bool has_ablation = fs::exists(folder / "ablation.json");
+  json table;
+  try {
+    if (has_table) table = Table1WithTraces(folder);
+    if (has_table) gathered.sentences = Table1Headline(table);
+  } catch (const json::exception& problem) {
+    throw InputError({(folder / "table1.json").string()},
+                     std::string("is not a Table 1: ") + problem.what());
+  }
+  gathered.comparable.name = name;
+  gathered.document = {
+      {"name", name},
+      {"folder", FromProject(folder, folder)},
+      {"kind", has_table || has_ablation ? "table1" : "trials"},
+      {"models", json::array()},
+      {"ledger", nullptr},
+      {"noise", nullptr},
+      {"reconstruction", nullptr},
+      {"table1", table},
+      {"ablation", has_ablation ? ReadJsonFile(folder / "ablation.json") : json()},
+      {"trials", FindTrials(folder)},
+      {"notes", json::array()},
+      {"provenance", {{"program", "Lacuna " + ProgramVersion()}, {"commands", json::array()}}}};
+  return gathered;
+}
+
+GatheredRun Gather(const fs::path& folder) {
+  if (!fs::exists(folder)) throw InputError({folder.string()}, "there is no such folder");
+  if (IsStudy(folder)) return GatherStudy(folder);
+  if (!fs::exists(folder / "manifest.json"))
+    throw InputError(
+        {folder.string()},
+        "is not a run: it holds no manifest.json, table1.json, ablation.json or report.json");
+  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  if (!manifest.finished)
+    throw InputError({folder.string()},
+                     "the run is not finished: run the same command again to resume it");
+  if (manifest.stages.contains("calibration")) return GatherFit(folder);
+  if (manifest.stages.contains("results")) return GatherReconstruction(folder);
+  throw InputError({folder.string()}, "is a run of which no report can be made");
+}
+
+void RefuseOtherKinds(const std::vector<GatheredRun>& runs) {
+  for (const GatheredRun& run : runs)
+    if (run.document.at("kind") != runs.front().document.at("kind"))
+      throw InputError(fmt::format(
+          "{} is a {} and {} a {}: their errors cannot be compared", runs.front().comparable.name,
+          runs.front().document.at("kind").get<std::string>(), run.comparable.name,
+          run.document.at("kind").get<std::string>()));
+}
+
+}  // namespace
+
+json ReportDocument(const std::vector<fs::path>& runs) {
+  CHECK(!runs.empty());
+  std::vector<GatheredRun> gathered;
+  for (const fs::path& run : runs) gathered.push_back(Gather(run));
+  RefuseOtherKinds(gathered);
+  std::vector<ComparableRun> comparable;
+  std::vector<std::string> names, sentences;
+  json documents = json::array();
+  for (GatheredRun& run : gathered) {
+    comparable.push_back(run.comparable);
+    names.push_back(run.document.at("name"));
+    for (const std::string& sentence : run.sentences)
+      sentences.push_back(gathered.size() > 1 ? names.back() + ": " + sentence : sentence);
+    documents.push_back(std::move(run.document));
+  }
+  json differences = json::array();
+  if (runs.size() > 1) {
+    RefuseOtherMetrics(comparable);
+    differences = ConfigurationDifferences(comparable);
+  }
+  return {{"schema", kSchema},
+          {"program", "Lacuna " + ProgramVersion()},
+          {"title", fmt::format("{}", fmt::join(names, ", "))},
+          {"sentences", sentences},
+          {"runs", documents},
+          {"differences", differences}};
+}
+
+json WithoutPackedArrays(const json& document) {
+  if (!document.is_structured()) return document;
+  json kept = document.is_array() ? json::array() : json::object();
+  for (const auto& [key, value] : document.items()) {
+    if (value.is_object() && value.contains("base64")) continue;
+    if (document.is_array()) {
+      kept.push_back(WithoutPackedArrays(value));
+    } else {
+      kept[key] = WithoutPackedArrays(value);
+    }
+  }
+  return kept;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,136 @@
+#include "report/reported_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/text_file.h"
+#include "record/ledger.h"
+#include "record/run_directory.h"
+
+namespace lacuna {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string NameOf(const fs::path& folder) {
+  return fs::absolute(folder / ".").lexically_normal().parent_path().filename().string();
+}
+
+// Whether diagnosis.json is of this fit and was not changed since; of_fit.json says both.
+bool IsDiagnosisOf(const std::string& fit, const fs::path& folder) {
+  const fs::path origin = folder / "of_fit.json";
+  if (!fs::exists(origin)) return false;
+  const json value = ReadJsonFile(origin);
+  return value.value("diagnosis", "") == HashFile(folder / "diagnosis.json") &&
+         value.value("of", json::object()).value("fit", "") == fit;
+}
+
+ReportedModel OpenModel(const fs::path& folder, const std::string& added,
+                        std::vector<std::string>* notes) {
+  ReportedModel model;
+  model.folder = folder;
+  model.name = NameOf(folder);
+  model.added = added;
+  const fs::path fit = FinishedStage(folder, "calibration") / "calibration.json";
+  model.fit = HashFile(fit);
+  model.calibration = ReadCalibrationFile(fit);
+  if (model.calibration.usable) model.errors = ErrorsOf(model.calibration);
+  const auto leave_out = [&](const char* what, const char* command) {
+    notes->push_back(fmt::format(
+        "The {} in the folder of {} is of an earlier fit and is not shown; `lacuna {}` makes a new "
+        "one.",
+        what, model.name, command));
+  };
+  if (const fs::path file = folder / "comparison/comparison.json"; fs::exists(file)) {
+    model.comparison = ReadComparisonFile(file);
+    if (model.comparison->fit != model.fit) {
+      model.comparison.reset();
+      leave_out("comparison", "compare");
+    }
+  }
+  if (const fs::path file = folder / "diagnosis/diagnosis.json"; fs::exists(file)) {
+    if (IsDiagnosisOf(model.fit, folder / "diagnosis")) {
+      model.diagnosis = ReadDiagnosisFile(file);
+    } else {
+      leave_out("diagnosis", "diagnose");
+    }
+  }
+  return model;
+}
+
+// Whether the ledger's errors of a model are those of the fit that stands in its folder.
+bool IsOf(const json& entry, const ReportedModel& model) {
+  constexpr double kRounding = 1e-9;
+  const double then = entry.at("errors").at("held_out_rms_m");
+  return entry.at("usable") == model.calibration.usable &&
+         std::abs(then - model.errors.held_out_rms) <= kRounding * then;
+}
+
+// Opens the models that the ledger lists. False where they have changed since.
+bool OpenLedger(const fs::path& folder, ReportedRun* run) {
+  const fs::path file = folder / "ledger.json";
+  if (!fs::exists(file)) return false;
+  const json ledger = ReadJsonFile(file);
+  std::vector<std::string> notes;
+  std::vector<ReportedModel> models;
+  try {
+    for (const json& entry : ledger.at("models")) {
+      const fs::path of_model = (folder / entry.at("run").get<std::string>()).lexically_normal();
+      if (!IsFittedRun(of_model)) break;
+      models.push_back(OpenModel(of_model, entry.value("added", ""), &notes));
+      if (!IsOf(entry, models.back())) break;
+    }
+    const json& all = ledger.at("models");
+    if (models.size() != all.size() || models.empty() || !IsOf(all.back(), models.back())) {
+      run->notes.push_back(
+          "The ledger of models does not belong to the fits in the folders and is not shown; "
+          "`lacuna diagnose --until-done` makes a new one.");
+      return false;
+    }
+  } catch (const json::exception& problem) {
+    throw InputError({file.string()}, std::string("is not a ledger: ") + problem.what());
+  }
+  run->ledger = ledger;
+  run->models = std::move(models);
+  run->notes.insert(run->notes.end(), notes.begin(), notes.end());
+  return true;
+}
+
+}  // namespace
+
+json ReadJsonFile(const fs::path& file) {
+  try {
+    return json::parse(ReadWholeFile(file));
+  } catch (const json::exception& problem) {
+    throw InputError({file.string()}, std::string("is not JSON: ") + problem.what());
+  }
+}
+
+bool IsFittedRun(const fs::path& folder) {
+  if (!fs::exists(folder / "manifest.json")) return false;
+  const Manifest manifest = LoadManifest(folder / "manifest.json");
+  return manifest.finished && manifest.stages.contains("calibration");
+}
+
+ReportedRun OpenReportedRun(const fs::path& folder) {
+  ReportedRun run;
+  if (OpenLedger(folder, &run)) return run;
+  // A run NAME+EFFECT was made from the run NAME beside it.
+  run.models.push_back(OpenModel(folder, "", &run.notes));
+  const fs::path beside = fs::absolute(folder / "..").lexically_normal();
+  for (size_t plus = run.models.front().name.rfind('+'); plus != std::string::npos;
+       plus = run.models.front().name.rfind('+')) {
+    const std::string before = run.models.front().name.substr(0, plus);
+    if (before.empty() || !IsFittedRun(beside / before)) break;
+    run.models.front().added = run.models.front().name.substr(plus + 1);
+    run.models.insert(run.models.begin(), OpenModel(beside / before, "", &run.notes));
+  }
+  return run;
+}
+
+}  // namespace lacuna

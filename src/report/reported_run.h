@@ -1,0 +1,51 @@
+// A finished run of `lacuna fit` with everything that its folder keeps, opened for a report.
+#ifndef LACUNA_REPORT_REPORTED_RUN_H_
+#define LACUNA_REPORT_REPORTED_RUN_H_
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "record/calibration_record.h"
+#include "record/comparison_record.h"
+#include "record/diagnosis_record.h"
+#include "record/manifest.h"
+#include "record/model_errors.h"
+
+namespace lacuna {
+
+// One fitted model. A comparison or a diagnosis of an earlier fit in the same folder is left out.
+struct ReportedModel {
+  std::filesystem::path folder;
+  std::string name;   // of the folder
+  std::string added;  // the effect that the model before it lacks; empty: none
+  std::string fit;    // hash of calibration.json
+  CalibrationRecord calibration;
+  ModelErrors errors;  // 0 if the fit is not usable
+  std::optional<ComparisonRecord> comparison;
+  std::optional<DiagnosisRecord> diagnosis;
+};
+
+struct ReportedRun {
+  std::vector<ReportedModel> models;  // at least one; each has one effect more than the one before
+  nlohmann::json ledger;              // ledger.json; null where there is none
+  std::vector<std::string> notes;     // what was left out, and why
+};
+
+// Opens the run with the models that belong to it: those of its ledger, or, for a run that
+// `lacuna add` has made, the models that it was made from, as far as their folders lie beside it.
+// Nothing is computed. Throws InputError when the folder is no finished run of `lacuna fit`, or
+// when one of its files is damaged.
+ReportedRun OpenReportedRun(const std::filesystem::path& folder);
+
+// Whether the folder holds a finished run of `lacuna fit`.
+bool IsFittedRun(const std::filesystem::path& folder);
+
+// The parsed file. Throws InputError when it cannot be read or is no JSON.
+nlohmann::json ReadJsonFile(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_REPORT_REPORTED_RUN_H_

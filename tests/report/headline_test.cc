@@ -1,0 +1,153 @@
+#include "report/headline.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lacuna {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+ReportedModel Model(double rms, double over_sigma) {
+  ReportedModel model;
+  model.name = "bar";
+  model.calibration.usable = true;
+  model.calibration.recordings.resize(1);
+  model.calibration.recordings[0].name = "swing";
+  model.errors.held_out_rms = rms;
+  model.errors.rms_over_sigma = over_sigma;
+  model.errors.has_held_out = true;
+  return model;
+}
+
+void Compare(ReportedModel* model) {
+  ComparedPart part;
+  part.fitted = false;
+  part.error.rms = 1;
+  part.worst_point = 1;
+  part.worst_period = WorstPeriod{30, 40, 11, 0.3, 0.4, 1e-3, {}};
+  ComparedRecording recording;
+  recording.name = "swing";
+  recording.point_names = {"root", "tip"};
+  recording.parts = {part};
+  model->comparison.emplace().recordings = {recording};
+}
+
+DiagnosisRecord Diagnosis(Verdict verdict, const std::vector<std::string>& names) {
+  DiagnosisRecord diagnosis;
+  diagnosis.verdict = verdict;
+  diagnosis.effects = names;
+  diagnosis.ranking.resize(2);
+  diagnosis.ranking[0].type = "viscoelastic_branch";
+  diagnosis.ranking[0].title = "Viscoelastic branch (Maxwell element of a Prony series)";
+  diagnosis.ranking[1].type = "drag";
+  diagnosis.ranking[1].title = "Drag of the surrounding medium";
+  diagnosis.ranking[1].separating_experiment = "Film it in a vacuum.";
+  diagnosis.nuisances.resize(1);
+  diagnosis.nuisances[0].name = "clock";
+  diagnosis.nuisances[0].what = "the clock of swing";
+  diagnosis.nuisances[0].advice = "give clock_deviation";
+  return diagnosis;
+}
+
+void Believe(DiagnosisRecord* diagnosis, const std::vector<std::string>& names, double probability,
+             HypothesisProbability::Kind kind = HypothesisProbability::Kind::kEffect) {
+  HypothesisProbability one;
+  one.kind = kind;
+  one.names = names;
+  one.probability = probability;
+  diagnosis->decision.probabilities.push_back(one);
+}
+
+TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
+  ReportedModel before = Model(8.7e-4, 5.1);
+  Compare(&before);
+  before.diagnosis = Diagnosis(Verdict::kMissing, {"viscoelastic_branch"});
+  Believe(&*before.diagnosis, {"viscoelastic_branch"}, 0.992);
+  ReportedModel after = Model(1.9e-4, 1.2);
+  after.added = "viscoelastic_branch";
+  after.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  Believe(&*after.diagnosis, {}, 0.78, HypothesisProbability::Kind::kNothing);
+  EXPECT_THAT(
+      Headline({before, after}),
+      ElementsAre(
+          "The model misses the markers by 0.870 mm, 5.1 times the noise, in frames that it was "
+          "not fitted to; the error is largest at marker tip and from 0.3 s to 0.4 s.",
+          "What it lacks: viscoelastic branch (probability 99 %).",
+          "With viscoelastic branch the error is 0.190 mm, 1.2 times the noise.",
+          "No further effect is needed (probability that nothing is missing: 78 %): the error that "
+          "is left is that of the noise, or no larger than the error of any model."));
+}
+
+TEST(Headline, SaysThatItWasNotDiagnosedAndNotCompared) {
+  EXPECT_THAT(
+      Headline({Model(8.7e-4, 5.1)}),
+      ElementsAre("The model misses the markers by 0.870 mm, 5.1 times the noise, in "
+                  "frames that it was not fitted to.",
+                  "What is missing has not been diagnosed yet; `lacuna diagnose` does so."));
+  ReportedModel fitted = Model(2e-4, 1.1);
+  fitted.errors.has_held_out = false;
+  fitted.calibration.recordings[0].scan.emplace();
+  EXPECT_THAT(Headline({fitted}), ElementsAre("The model meets the scans to within 0.200 mm, 1.1 "
+                                              "times the noise, in frames that it was fitted to."));
+}
+
+TEST(Headline, AnAmbiguousVerdictNamesTheSetAndTheExperiment) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kAmbiguous, {"viscoelastic_branch", "drag"});
+  model.diagnosis->next_steps = {SeparateLookAlikes{"drag"}};
+  Believe(&*model.diagnosis, {"viscoelastic_branch"}, 0.6);
+  Believe(&*model.diagnosis, {"drag"}, 0.4);
+  EXPECT_EQ(Headline({model}).at(1),
+            "Something is missing, but these recordings cannot tell which of these: viscoelastic "
+            "branch (60 %), or drag of the surrounding medium (40 %). To decide: Film it in a "
+            "vacuum.");
+}
+
+TEST(Headline, EveryOtherVerdictHasItsSentence) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kNuisance, {"clock"});
+  EXPECT_EQ(Headline({model}).at(1),
+            "No physical effect needs to be missing: an error of the measurement or of the "
+            "computation explains it (the clock of swing). What to do: give clock_deviation.");
+  model.diagnosis = Diagnosis(Verdict::kNoPower, {});
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("nothing can be said about what is missing"));
+  model.diagnosis = Diagnosis(Verdict::kNotInLibrary, {});
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("no effect of the catalogue explains"));
+  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  EXPECT_THAT(Headline({model}).at(1), HasSubstr("No further effect is needed: "));
+}
+
+TEST(Headline, AFitThatFailedIsNotCalledAModel) {
+  ReportedModel failed = Model(0, 0);
+  failed.calibration.usable = false;
+  failed.calibration.message = "an element inverted";
+  EXPECT_THAT(Headline({failed}), ElementsAre("The fit did not succeed: an element inverted."));
+  ReportedModel before = Model(8.7e-4, 5.1);
+  before.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  failed.added = "drag";
+  const std::vector<std::string> sentences = Headline({before, failed});
+  ASSERT_THAT(sentences, SizeIs(3));
+  EXPECT_EQ(sentences[2],
+            "The model with drag of the surrounding medium could not be fitted: an element "
+            "inverted.");
+}
+
+TEST(Headline, AReconstructionDoesNotJudgePhysics) {
+  RunRecord record;
+  record.object_size = 0.1;
+  record.relative_animation_residual = 0.004;
+  record.frames.resize(3);
+  record.frames[0].solver.usable = record.frames[1].solver.usable = true;
+  const std::vector<std::string> sentences = ReconstructionHeadline(record);
+  EXPECT_THAT(sentences.at(0), HasSubstr("follows 2 of 3 frames; its surface points are 0.400 mm"));
+  EXPECT_THAT(sentences.at(1), HasSubstr("says nothing about which physics"));
+  record.frames.clear();
+  EXPECT_THAT(ReconstructionHeadline(record).at(0), HasSubstr("could not follow any of 0 frames"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,382 @@
+// Opens reports in a real browser without network: `npm ci && node --test .`
+//
+//   CHROMIUM               the browser, /usr/bin/chromium unless given
+//   LACUNA_REPORT_FILES    report files, separated by colons, that the general tests open as well
+import assert from 'node:assert/strict';
+import { createHash } from 'node:crypto';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { chromium } from 'playwright-core';
+import { HOSTILE, kinds, writeReport } from './fixture.mjs';
+import { METRIC_OF_NOISE, validationMetric } from '../../../src/report/page/src/validation_metric.js';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const pageFolder = join(here, '../../../src/report/page');
+const givenFiles = (process.env.LACUNA_REPORT_FILES ?? '').split(':').filter(Boolean);
+const LAPTOP = { width: 1440, height: 900 }, PHONE = { width: 390, height: 844 };
+
+// The aims are 4 MB, 2 s and 100 ms on an idle machine with two cores; the limits of
+// the times leave room for one that many share.
+const LARGEST_FILE = 4e6, LONGEST_OPENING = 20000, LONGEST_STEP = 1000;
+
+let browser, folder;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'report_page_'));
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const fixture = (kind) => {
+  const file = join(folder, `${kind}.html`);
+  writeReport(kinds[kind](), file);
+  return file;
+};
+
+// Opens a file. `problems` collects errors, warnings and every request beside the file itself.
+async function open(file, { viewport = LAPTOP, colorScheme = 'light', timeout = 120000 } = {}) {
+  const context = await browser.newContext({ viewport, colorScheme, offline: true });
+  context.setDefaultTimeout(120000);
+  const page = await context.newPage();
+  const problems = [];
+  const url = pathToFileURL(file).href;
+  page.on('console', (message) => { if (['error', 'warning'].includes(message.type()) && !/GPU stall|GL Driver/.test(message.text())) problems.push(message.text()); });
+  page.on('pageerror', (error) => problems.push(error.message));
+  page.on('request', (request) => { if (request.url().split('#')[0] !== url && !/^(data|blob):/.test(request.url())) problems.push(`request ${request.url()}`); });
+  page.on('dialog', (dialog) => { problems.push(`dialog ${dialog.message()}`); dialog.dismiss(); });
+  await page.route('**', (route) => (route.request().url().startsWith('file:') ? route.continue() : route.abort()));
+  await page.goto(url);
+  await page.waitForFunction(() => document.documentElement.dataset.complete, null, { timeout });
+  return { page, problems, close: () => context.close() };
+}
+
+// A number that changes when the picture of the 3D view changes.
+const picture = (page) => page.evaluate(async () => {
+  const { view } = window.lacunaReport.motion;
+  await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  const gl = view.renderer.getContext();
+  const bytes = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+  return bytes.reduce((sum, byte, k) => (sum * 31 + byte * (k % 251)) >>> 0, 7);
+});
+
+const hasNoSidewaysScrolling = (page) => page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+
+// Scrolls through the page, so that every chart is drawn.
+const readAll = (page) => page.evaluate(async () => {
+  document.documentElement.style.scrollBehavior = 'auto';
+  for (let y = 0; y < document.documentElement.scrollHeight; y += 600) {
+    scrollTo(0, y);
+    await new Promise((resolve) => setTimeout(resolve, 30));
+  }
+  scrollTo(0, 0);
+});
+
+// Boxes that are shown without anything in them.
+const emptyBoxes = (page) => page.evaluate(() => [...document.querySelectorAll('section, figure, table, .block, .following, .grid, .table-box, .verdict, .facts, ul, select')]
+  .filter((box) => box.checkVisibility() && (box.getBoundingClientRect().height < 8 || (box.textContent.trim() === '' && !box.querySelector('canvas, svg'))))
+  .map((box) => `${box.tagName} ${box.className} ${box.id}`));
+
+test('the bundle belongs to its sources', () => {
+  const hash = (bytes) => createHash('sha256').update(bytes).digest('hex');
+  const scripts = readdirSync(join(pageFolder, 'src')).filter((name) => name.endsWith('.js')).sort().map((name) => `src/${name}`);
+  const names = ['LICENSES.txt', 'bundle.mjs', 'package-lock.json', 'package.json', 'page.css', 'page.html', ...scripts];
+  const expected = hash(names.map((name) => `${hash(readFileSync(join(pageFolder, name)))}  ${name}\n`).join(''));
+  const template = readFileSync(join(pageFolder, 'template.html'), 'utf8');
+  assert.ok(template.includes(`name="source-sha256" content="${expected}"`), 'run `npm run bundle` in src/report/page');
+  assert.equal(template.split('\n<script type="application/json" id="report-data">{}</script>\n').length, 2);
+  assert.doesNotMatch(template, /<(script|link|img|iframe)[^>]+(src|href)="(?!data:)[^#]/);
+  assert.ok(template.includes('three.js authors') && template.includes('Leon Sorokin'), 'the licences of the libraries');
+});
+
+test('the validation metric of known errors', () => {
+  // Errors 1, 1 and 6 with U = 2: the two small ones weigh 2 of 8.
+  const small = validationMetric([[1, 1], [6]], 100, 1);
+  assert.equal(small.metric, 0.25);
+  assert.equal(small.withinShare, 2 / 3);
+  assert.equal(small.thresholdShare, 0.02);
+  assert.ok(small.low <= small.metric && small.metric <= small.high);
+  // Normally distributed errors of the assumed size, from the quantiles of the distribution by Box and Muller.
+  const frames = Array.from({ length: 100 }, (_, a) => Array.from({ length: 100 }, (_, b) => Math.abs(Math.sqrt(-2 * Math.log(1 - (a + 0.5) / 100)) * Math.cos((2 * Math.PI * (b + 0.5)) / 100))));
+  const noise = validationMetric(frames, 1, 1);
+  assert.ok(Math.abs(noise.metric - METRIC_OF_NOISE) < 0.01, String(noise.metric));
+  assert.ok(Math.abs(noise.withinShare - 0.9545) < 0.01);
+  assert.equal(validationMetric([[]], 1, 1), null);
+});
+
+for (const [label, makeFile] of [['full', () => fixture('full')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['table1', () => fixture('table1')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
+                                ...givenFiles.map((file) => [basename(file), () => file])]) {
+  test(`${label}: opens without an error or a request, and without empty boxes`, async () => {
+    const { page, problems, close } = await open(makeFile());
+    await readAll(page);
+    assert.deepEqual(problems, []);
+    assert.deepEqual(await emptyBoxes(page), []);
+    assert.ok(await hasNoSidewaysScrolling(page));
+    assert.equal(await page.locator('h1').count(), 1);
+    for (const link of await page.locator('nav a').all()) assert.equal(await page.locator(await link.getAttribute('href')).count(), 1);
+    await close();
+  });
+
+  test(`${label}: fits a phone, in the dark`, async () => {
+    const { page, problems, close } = await open(makeFile(), { viewport: PHONE, colorScheme: 'dark' });
+    await readAll(page);
+    assert.ok(await hasNoSidewaysScrolling(page));
+    assert.deepEqual(problems, []);
+    await close();
+  });
+}
+
+for (const [label, makeFile] of [['full', () => fixture('full')], ...givenFiles.map((file) => [basename(file), () => file])]) {
+  test(`${label}: the slider changes the picture, and every field can be chosen`, async (t) => {
+    const { page, problems, close } = await open(makeFile());
+    if (!(await page.evaluate(() => Boolean(window.lacunaReport.motion)))) {
+      await close();
+      t.skip('no motion');
+      return;
+    }
+    const slider = page.getByRole('slider', { name: 'Time' });
+    if (await slider.isVisible()) {
+      await slider.focus();
+      await page.keyboard.press('Home');
+      const first = await picture(page);
+      for (let k = 0; k < 3; ++k) await page.keyboard.press('PageUp');
+      const later = await picture(page);
+      assert.notEqual(first, later);
+      await page.keyboard.press('End');
+      assert.match(await slider.getAttribute('aria-valuetext'), /frame (\d+) of \1/);
+    }
+    const colour = page.getByLabel('Colour', { exact: true });
+    const values = await colour.locator('option').evaluateAll((options) => options.map((option) => option.value));
+    const pictures = new Set();
+    for (const value of values) {
+      await colour.selectOption(value);
+      await page.waitForTimeout(150);
+      pictures.add(await picture(page));
+      const isShown = await page.locator('.scale').isVisible();
+      assert.equal(isShown, value !== 'none');
+    }
+    assert.ok(pictures.size >= Math.min(2, values.length));
+    for (const mode of ['measured', 'model', 'difference', 'both']) {
+      const button = page.getByRole('button', { name: mode, exact: true });
+      if (await button.isVisible()) {
+        await button.click();
+        assert.equal(await button.getAttribute('aria-pressed'), 'true');
+      }
+    }
+    assert.deepEqual(problems, []);
+    await close();
+  });
+}
+
+test('a worst place sets the time and the camera', async () => {
+  const { page, close } = await open(fixture('full'));
+  const state = () => page.evaluate(() => {
+    const { store, motion } = window.lacunaReport;
+    return { time: store.get().time, point: store.get().point, target: motion.view.orbit.target.toArray(), distance: motion.view.orbit.distance };
+  });
+  const before = await state();
+  await page.locator('.worst-item').filter({ hasText: 'held out' }).first().click();
+  const after = await state();
+  assert.notEqual(after.time, before.time);
+  assert.notDeepEqual(after.target, before.target);
+  assert.ok(after.distance < before.distance);
+  assert.notEqual(after.point, null);
+  await page.locator('.worst-item').filter({ hasText: 'period' }).first().click();
+  assert.notEqual((await state()).time, after.time);
+  await close();
+});
+
+test('a click on a marker selects it', async () => {
+  const { page, close } = await open(fixture('full'));
+  const at = await page.evaluate(() => {
+    const { view } = window.lacunaReport.motion;
+    const { left, top } = view.canvas.getBoundingClientRect();
+    const place = view.project(view.placeOfPoint(0, 3), view.boxes[0]);
+    return { x: left + place.x, y: top + place.y };
+  });
+  await page.mouse.click(at.x, at.y);
+  assert.equal(await page.evaluate(() => window.lacunaReport.store.get().point), 3);
+  await page.getByRole('heading', { name: 'Position of m3' }).waitFor();
+  await close();
+});
+
+test('markers that were not observed are not drawn', async () => {
+  const { page, close } = await open(fixture('full'));
+  const counts = await page.evaluate(async () => {
+    const { view } = window.lacunaReport.motion;
+    return [3, 4].map((frame) => {
+      view.showFrames([frame, frame]);
+      return view.panes[0].measured.geometry.drawRange.count;
+    });
+  });
+  assert.deepEqual(counts, [8, 7]);
+  await close();
+});
+
+test('numbers arrive as they were packed', async () => {
+  const { page, close } = await open(fixture('full'));
+  const { positions, measured, tolerance } = await page.evaluate(() => {
+    const { data } = window.lacunaReport.motion;
+    const tip = data[0].positions.frame(59);
+    return { positions: [...tip].every(Number.isFinite), measured: [...data[0].measured.frame(0)].slice(0, 3), tolerance: data[0].positions.step };
+  });
+  assert.ok(positions);
+  assert.ok(tolerance < 2e-6);
+  assert.ok(Math.abs(measured[0] - 0.011) < 0.003);
+  await close();
+});
+
+test('a hostile name stays text', async () => {
+  const { page, problems, close } = await open(fixture('hostile'));
+  await readAll(page);
+  assert.deepEqual(problems, []);
+  assert.ok(await hasNoSidewaysScrolling(page));
+  assert.equal(await page.locator('main script, main img').count(), 0);
+  assert.equal(await page.locator('h1').textContent(), HOSTILE);
+  assert.ok((await page.locator('.sentences').textContent()).includes('<script>alert(1)</script>"\'`</script><img'));
+  await close();
+  const phone = await open(fixture('hostile'), { viewport: PHONE });
+  await readAll(phone.page);
+  assert.ok(await hasNoSidewaysScrolling(phone.page));
+  await phone.close();
+});
+
+test('two runs stand side by side', async () => {
+  const { page, problems, close } = await open(fixture('two-runs'));
+  assert.equal(await page.locator('.view-label').count(), 2);
+  assert.match(await page.locator('.view-label').first().textContent(), /^hidden_effect/);
+  assert.match(await page.locator('.view-label').last().textContent(), /^stiff/);
+  assert.match(await page.locator('#runs').textContent(), /material\.young_modulus.*0\.12 MPa.*0\.2 MPa/);
+  assert.equal(await page.locator('.bars').count(), 2);
+  const both = await picture(page);
+  await page.getByRole('button', { name: 'Side by side' }).click();
+  await page.waitForTimeout(200);
+  assert.notEqual(await picture(page), both);
+  assert.equal(await page.locator('.view-label').count(), 1);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
+test('parts without data are left out', async () => {
+  const { page, problems, close } = await open(fixture('minimal'));
+  assert.deepEqual(problems, []);
+  assert.equal(await page.locator('main section').count(), 0);
+  assert.equal(await page.locator('canvas').count(), 0);
+  await close();
+});
+
+test('every part is there when its data is', async () => {
+  const full = await open(fixture('full'));
+  for (const id of ['errors', 'force', 'physics', 'parameters', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);
+  const text = await full.page.locator('main').textContent();
+  for (const part of ['Error over time', 'Position of', 'Load against displacement', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'Which pairs these recordings can separate',
+                      'What such recordings would have said', 'traded off with young_modulus', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
+  await full.close();
+  const study = await open(fixture('study'));
+  for (const id of ['reconstruction', 'table1', 'ablation', 'trials']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);
+  const words = await study.page.locator('main').textContent();
+  for (const part of ['Trace of the search', 'Confusion matrix', 'Calibration of the probabilities']) assert.ok(words.includes(part), part);
+  await study.close();
+});
+
+test('the keyboard alone reaches and works every control', async () => {
+  const { page, close } = await open(fixture('full'));
+  const wanted = await page.evaluate(() => {
+    const all = [...document.querySelectorAll('a[href], button, select, input, summary, canvas[tabindex], pre[tabindex]')].filter((one) => one.checkVisibility());
+    all.forEach((one, k) => { one.dataset.probe = String(k); });
+    return all.length;
+  });
+  const reached = new Set();
+  let unlabelled = [];
+  await page.evaluate(() => document.activeElement?.blur());
+  for (let k = 0; k < wanted + 30 && reached.size < wanted; ++k) {
+    await page.keyboard.press('Tab');
+    const found = await page.evaluate(() => {
+      const one = document.activeElement;
+      const label = one.getAttribute('aria-label') ?? (one.labels?.[0]?.textContent || one.textContent || '').trim();
+      const style = getComputedStyle(one);
+      return { probe: one.dataset.probe, label, hasOutline: style.outlineStyle !== 'none' };
+    });
+    if (found.probe === undefined) continue;
+    reached.add(found.probe);
+    if (!found.label || !found.hasOutline) unlabelled.push(found);
+  }
+  assert.equal(reached.size, wanted);
+  assert.deepEqual(unlabelled, []);
+  const canvas = page.locator('canvas.view-canvas');
+  await canvas.focus();
+  for (const key of ['ArrowLeft', 'ArrowUp', 'Shift+ArrowRight', '+', '-', 'Shift+ArrowDown']) {
+    const before = await picture(page);
+    await page.keyboard.press(key);
+    assert.notEqual(await picture(page), before, key);
+  }
+  await page.keyboard.press('0');
+  await page.getByRole('button', { name: 'Play' }).focus();
+  const time = () => page.evaluate(() => window.lacunaReport.store.get().time);
+  const before = await time();
+  await page.keyboard.press('Space');
+  await page.waitForTimeout(800);
+  await page.keyboard.press('Space');
+  assert.notEqual(await time(), before);
+  await close();
+});
+
+test('a report of 10 000 vertices and 30 frames is small and quick', async () => {
+  const file = fixture('10k');
+  const size = statSync(file).size;
+  const opening = [], steps = [];
+  for (let k = 0; k < 2; ++k) {
+    const { page, problems, close } = await open(file);
+    opening.push(await page.evaluate(() => Number(document.documentElement.dataset.ready)));
+    if (k === 1) {
+      await page.getByLabel('Colour', { exact: true }).selectOption('field:strain');
+      steps.push(...await page.evaluate(() => Array.from({ length: 20 }, (_, f) => window.lacunaReport.motion.view.measureStep([(3 * f) % 30]))));
+    }
+    assert.deepEqual(problems, []);
+    await close();
+  }
+  const step = steps.sort((a, b) => a - b)[10];
+  console.log(`10 000 vertices × 30 frames: ${(size / 1e6).toFixed(2)} MB (aim 4), ready after ${opening.map((ms) => (ms / 1e3).toFixed(1)).join(' and ')} s (aim 2), median step ${step.toFixed(0)} ms (aim 100)`);
+  assert.ok(size <= LARGEST_FILE);
+  assert.ok(Math.min(...opening) <= LONGEST_OPENING);
+  assert.ok(step <= LONGEST_STEP);
+});
+
+test('a report of 100 000 vertices and 100 frames opens', async () => {
+  const file = fixture('100k');
+  const { page, problems, close } = await open(file, { timeout: 180000 });
+  const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready));
+  const step = await page.evaluate(() => window.lacunaReport.motion.view.measureStep([50]));
+  console.log(`100 000 vertices × 100 frames: ${(statSync(file).size / 1e6).toFixed(1)} MB, ready after ${(ready / 1e3).toFixed(1)} s, one step ${step.toFixed(0)} ms`);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
+test('the page prints with all its charts', async () => {
+  const { page, problems, close } = await open(fixture('full'));
+  const pdf = await page.pdf({ format: 'A4', printBackground: true });
+  assert.ok(pdf.length > 100000);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
+test('damaged data is reported in words', async () => {
+  const data = kinds.full();
+  data.runs[0].models[0].scenes[0].surface.positions.base64 = 'AAAA';
+  const file = join(folder, 'damaged.html');
+  writeReport(data, file);
+  const { page, close } = await open(file);
+  assert.ok(await page.locator('.notice').first().isVisible());
+  assert.ok(await page.locator('#physics').isVisible());
+  await close();
+});

@@ -1,0 +1,170 @@
+#include "report/report_document.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "record/packed_array.h"
+#include "support/small_ledger.h"
+#include "support/small_run.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string WhyRefused(const std::vector<std::filesystem::path>& runs) {
+  try {
+    ReportDocument(runs);
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
+// One run of the first model of SmallLedger().
+void WriteFit(const std::filesystem::path& folder, const SmallRun& run) {
+  CalibrationRecord record = SmallLedger().models[0].record;
+  record.recordings[0].held_out.frames = run.held_out_frames;
+  WriteSmallFit(folder, run, record);
+}
+
+TEST(ReportDocument, ShowsTheModelsOfTheLedger) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const json document = ReportDocument({folder / "bar"});
+  const json& run = document.at("runs").at(0);
+  EXPECT_EQ(run.at("kind"), "prediction");
+  EXPECT_EQ(run.at("models").size(), 2u);
+  EXPECT_EQ(run.at("models").at(1).at("added"), "drag");
+  EXPECT_EQ(run.at("models").at(1).at("label"), "with drag");
+  EXPECT_EQ(run.at("models").at(0).at("errors").at("held_out_over_sigma"), 4);
+  EXPECT_EQ(run.at("ledger").at("models").size(), 2u);
+  EXPECT_EQ(run.at("models").at(0).at("diagnosis").at("verdict"), "missing");
+  EXPECT_NEAR(run.at("noise").get<double>(), std::sqrt(3.0) * 1e-4, 1e-12);
+  EXPECT_THAT(run.at("notes"), IsEmpty());
+  EXPECT_THAT(document.at("sentences").at(0).get<std::string>(),
+              HasSubstr("at marker tip and from 0.31 s to 0.35 s of a"));
+  const std::vector<std::string> commands = run.at("provenance").at("commands");
+  EXPECT_THAT(commands, testing::Contains(HasSubstr("diagnose")));
+  EXPECT_EQ(run.at("provenance").at("inputs").at("a/markers.csv"), "1f2e3d");
+}
+
+TEST(ReportDocument, AnAddedModelIsShownAfterTheOneThatItWasMadeFrom) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const json run = ReportDocument({folder / "bar+drag"}).at("runs").at(0);
+  EXPECT_EQ(run.at("models").size(), 2u);
+  EXPECT_EQ(run.at("models").at(0).at("name"), "bar");
+  EXPECT_EQ(run.at("models").at(1).at("added"), "drag");
+}
+
+TEST(ReportDocument, ScenesHaveTheFramesOfTheMotionAndAllFramesAsSeries) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const json scenes =
+      ReportDocument({folder / "bar"}).at("runs").at(0).at("models").at(0).at("scenes");
+  ASSERT_EQ(scenes.size(), 2u);
+  const json& scene = scenes.at(0);
+  EXPECT_EQ(scene.at("times"), json({0.0, 0.1, 0.3}));
+  EXPECT_EQ(scene.at("fitted"), json({true, true, false}));
+  EXPECT_EQ(scene.at("up"), json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(Unpack(scene.at("surface").at("positions")).shape, (std::vector<int>{3, 3, 3}));
+  const UnpackedArray measured = Unpack(scene.at("points").at("measured"));
+  EXPECT_EQ(measured.shape, (std::vector<int>{3, 2, 3}));
+  EXPECT_NEAR(measured.values(2, 1), 0.01, 1e-6);  // frame 10
+  EXPECT_NEAR(Unpack(scene.at("points").at("residual")).values(2, 1), 3e-4, 1e-8);
+  EXPECT_EQ(scene.at("points").at("names"), json({"root", "tip"}));
+  EXPECT_EQ(scene.at("series").at("time_s").size(), 40u);
+  EXPECT_NEAR(scene.at("series").at("rms_m").at(7).get<double>(), 3e-4, 1e-12);
+  EXPECT_TRUE(std::isnan(Unpack(scene.at("points_series").at("model")).values(5, 3)));
+  // The second recording has no motion: its points are shown alone.
+  EXPECT_TRUE(scenes.at(1).at("surface").is_null());
+  EXPECT_EQ(scenes.at(1).at("times").size(), 40u);
+}
+
+TEST(ReportDocument, WhatIsOfAnEarlierFitIsLeftOutWithANote) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  std::filesystem::remove(folder / "bar/ledger.json");
+  CalibrationRecord other = SmallLedger().models[0].record;
+  other.rms = 7;
+  WriteSmallFit(folder / "other", {}, other);
+  std::filesystem::copy(folder / "bar/comparison", folder / "other/comparison");
+  std::filesystem::copy(folder / "bar/diagnosis", folder / "other/diagnosis");
+  std::filesystem::copy(
+      folder / "bar/shown_motion", folder / "other/shown_motion",
+      std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+  const json run = ReportDocument({folder / "other"}).at("runs").at(0);
+  const json& model = run.at("models").at(0);
+  EXPECT_TRUE(model.at("comparison").is_null());
+  EXPECT_TRUE(model.at("diagnosis").is_null());
+  EXPECT_TRUE(model.at("scenes").at(0).at("surface").is_null());
+  const std::vector<std::string> notes = run.at("notes");
+  EXPECT_THAT(notes, ElementsAre(HasSubstr("comparison"), HasSubstr("diagnosis")));
+}
+
+TEST(ReportDocument, ALedgerOfOtherFitsIsLeftOut) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  CalibrationRecord changed = SmallLedger().models[0].record;
+  changed.recordings[0].held_out.rms = 9e-4;
+  WriteSmallFit(folder / "bar", {}, changed);
+  const json run = ReportDocument({folder / "bar"}).at("runs").at(0);
+  EXPECT_TRUE(run.at("ledger").is_null());
+  EXPECT_EQ(run.at("models").size(), 1u);
+  EXPECT_THAT(run.at("notes").at(0).get<std::string>(), HasSubstr("ledger"));
+}
+
+TEST(ReportDocument, TwoRunsAreComparedByTheirConfigurations) {
+  const TemporaryFolder folder;
+  WriteFit(folder / "soft", {.name = "soft", .young_modulus = 1e5});
+  WriteFit(folder / "stiff", {.name = "stiff", .young_modulus = 2e5});
+  const json document = ReportDocument({folder / "soft", folder / "stiff"});
+  EXPECT_EQ(document.at("title"), "soft, stiff");
+  EXPECT_EQ(document.at("runs").size(), 2u);
+  EXPECT_EQ(document.at("differences"),
+            json({{{"key", "material.young_modulus"}, {"values", {"100000", "200000"}}},
+                  {{"key", "name"}, {"values", {"soft", "stiff"}}}}));
+  EXPECT_THAT(document.at("sentences").at(0).get<std::string>(), HasSubstr("soft: The model"));
+}
+
+TEST(ReportDocument, RefusesErrorsThatCannotBeCompared) {
+  const TemporaryFolder folder;
+  WriteFit(folder / "a", {.name = "a"});
+  WriteFit(folder / "longer", {.name = "longer", .held_out_frames = 12});
+  WriteFit(folder / "other", {.name = "other", .content = "another recording"});
+  EXPECT_THAT(WhyRefused({folder / "a", folder / "longer"}),
+              HasSubstr("the errors of a and longer cannot be compared: a with 30 fitted and 10 "
+                        "held-out frames of markers, and a with 30 fitted and 12"));
+  EXPECT_THAT(WhyRefused({folder / "a", folder / "other"}),
+              HasSubstr("the content of a/markers.csv is not the same"));
+}
+
+TEST(ReportDocument, RefusesWhatIsNoRun) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(WhyRefused({folder / "absent"}), HasSubstr("there is no such folder"));
+  EXPECT_THAT(WhyRefused({folder.Path()}), HasSubstr("is not a run"));
+  WriteFit(folder / "a", {});
+  std::ofstream(folder / "a/calibration/calibration.json", std::ios::app) << "\n";
+  EXPECT_THAT(WhyRefused({folder / "a"}), HasSubstr("calibration.json"));
+}
+
+TEST(ReportDocument, WithoutPackedArraysIsSmallAndHasTheNumbers) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const json document = WithoutPackedArrays(ReportDocument({folder / "bar"}));
+  EXPECT_THAT(document.dump(), testing::Not(HasSubstr("base64")));
+  const json& scene = document.at("runs").at(0).at("models").at(0).at("scenes").at(0);
+  EXPECT_EQ(scene.at("series").at("rms_m").size(), 40u);
+  EXPECT_FALSE(scene.at("points").contains("measured"));
+}
+
+}  // namespace
+}  // namespace lacuna
