@@ -42,7 +42,7 @@ struct ReasonSentence {
     if (adequacy.is_tolerated && !adequacy.is_adequate)
       return fmt::format(
           "The error is {:.3f} mm or {:.1f} σ, and no effect has sufficient evidence.",
-          Millimetres(reason.rms), reason.rms_over_sigma);
+          1e3 * reason.rms, reason.rms_over_sigma);
     return fmt::format(
         "The error, {:.3f} mm or {:.1f} σ, is that of the noise, and no effect has sufficient "
         "evidence.",
