@@ -2,7 +2,7 @@
 import { chart, sharedLegend } from './chart.js';
 import { unpack } from './decode.js';
 import { h, labelledSelect } from './dom.js';
-import { fixed, isNumber, millimetres, number, sigmas } from './format.js';
+import { fixed, isNumber, millimetres, sigmas } from './format.js';
 import { following, grid, name, section, table } from './section.js';
 import { rmsOfNoise } from './scene_data.js';
 import { sceneOf } from './motion.js';
@@ -121,7 +121,7 @@ function errorTable(choices) {
     const compared = choice.model.comparison?.recordings ?? [];
     for (const recording of compared) {
       for (const part of recording.parts ?? []) {
-        rows.push([name(choice.label), name(recording.name), part.part, number(part.frames, 3), millimetres(part.rms_m), sigmas(part.rms_over_sigma), sigmas(part.rms_over_floor), millimetres(part.largest_m),
+        rows.push([name(choice.label), name(recording.name), part.part, fixed(part.frames, 0), millimetres(part.rms_m), sigmas(part.rms_over_sigma), sigmas(part.rms_over_floor), millimetres(part.largest_m),
           fixed(part.time_correlation?.lag_one_correlation, 2), name(recording.point_names?.[part.worst_point] ?? '–')]);
       }
     }
@@ -129,7 +129,7 @@ function errorTable(choices) {
     for (const recording of choice.model.calibration?.recordings ?? []) {
       for (const [key, part] of [['in_fit', 'fitted'], ['held_out', 'held out']]) {
         const measure = recording[key];
-        if (measure?.frames > 0) rows.push([name(choice.label), name(recording.name), part, number(measure.frames, 3), millimetres(measure.rms_m), sigmas(measure.rms_over_sigma), '–', millimetres(measure.largest_m), '–', '–']);
+        if (measure?.frames > 0) rows.push([name(choice.label), name(recording.name), part, fixed(measure.frames, 0), millimetres(measure.rms_m), sigmas(measure.rms_over_sigma), '–', millimetres(measure.largest_m), '–', '–']);
       }
     }
   }

@@ -35,6 +35,11 @@ export function percent(share) {
   return `${minus((100 * share).toFixed(0))} %`;
 }
 
+// The probability of a hypothesis, which is never certain.
+export function posterior(probability) {
+  return probability > 0.995 ? '> 99 %' : probability < 0.005 ? '< 1 %' : percent(probability);
+}
+
 export function probabilityText(p) {
   if (!isNumber(p)) return NONE;
   return p < 0.001 ? 'p < 0.001' : `p = ${number(p, p < 0.01 ? 1 : 2)}`;

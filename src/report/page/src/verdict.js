@@ -1,6 +1,6 @@
 // The verdict with its probabilities: of families of effects, and of their members.
 import { h } from './dom.js';
-import { percent, probabilityText, sigmas, isNumber } from './format.js';
+import { posterior, probabilityText, sigmas, isNumber } from './format.js';
 import { FAMILIES, VERDICTS, namesOf } from './text.js';
 
 const WORTH_NAMING = 0.01;
@@ -27,7 +27,7 @@ function probabilityRow(name, probability, isMember) {
   return h('div', { class: `probability${isMember ? ' member' : ''}`, role: 'listitem' },
     h('span', { class: 'probability-name', title: name.slice(0, 300) }, name.slice(0, 120)),
     h('div', { class: 'probability-track' }, h('div', { class: 'probability-fill', style: { width: `${100 * probability}%` } })),
-    h('span', { class: 'probability-value' }, percent(probability)));
+    h('span', { class: 'probability-value' }, posterior(probability)));
 }
 
 function adequacyText(decision) {
@@ -46,7 +46,7 @@ function shortVerdict(diagnosis, subject, title, groups) {
   return h('div', { class: `verdict short verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
     h('p', { class: 'verdict-head' }, h('span', { class: 'muted' }, `${subject.slice(0, 200)}: `), h('span', { class: 'verdict-name' }, title), ' ',
       (diagnosis.effects ?? []).map((effect) => [h('code', { class: 'clip' }, effect), ' ']),
-      h('span', { class: 'muted' }, groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${percent(group.probability)}`).join(', '))));
+      h('span', { class: 'muted' }, groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${posterior(group.probability)}`).join(', '))));
 }
 
 export function verdictBox(diagnosis, subject, isFirst) {
