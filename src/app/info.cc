@@ -18,6 +18,7 @@
 #include "report/calibration_report.h"
 #include "report/diagnosis_report.h"
 #include "scan/recording.h"
+#include "scan/recording_check.h"
 
 namespace lacuna {
 namespace {
@@ -79,6 +80,18 @@ void DescribeRun(const std::filesystem::path& folder) {
   for (const std::string& warning : record.warnings) fmt::print("  warning: {}\n", warning);
 }
 
+void ShowRecording(const Recording& recording) {
+  constexpr int64_t kMostPoints = 5'000'000;  // what is read within seconds
+  fmt::print("{}", DescribeRecording(recording));
+  std::vector<std::string> findings;
+  try {
+    findings = ExamineFrames(recording, kMostPoints);
+  } catch (const InputError& problem) {
+    findings = {problem.what()};
+  }
+  for (const std::string& finding : findings) fmt::print("  {:<12} {}\n", "warning", finding);
+}
+
 int Info(const std::filesystem::path& path) {
   constexpr std::array kSurfaces{".ply", ".obj", ".stl", ".off"};
   constexpr std::array kTets{".msh", ".node", ".ele", ".mesh", ".tet", ".txt"};
@@ -91,7 +104,7 @@ int Info(const std::filesystem::path& path) {
   if (std::filesystem::exists(path / "manifest.json")) {
     DescribeRun(path);
   } else if (std::filesystem::is_directory(path) || extension == ".yaml") {
-    fmt::print("{}", DescribeRecording(LoadRecording(path)));
+    ShowRecording(LoadRecording(path));
   } else if (is_in(kSurfaces)) {
     DescribeSurface(path);
   } else if (is_in(kTets)) {

@@ -15,16 +15,26 @@
 #include "prediction/recorded_motion.h"
 #include "reconstruction/reconstruction_study.h"
 #include "scan/recording.h"
+#include "scan/recording_check.h"
 
 namespace lacuna {
 namespace {
+
+// An experiment is checked within seconds; the frames of its recordings are examined up to here.
+constexpr int64_t kMostPoints = 5'000'000;
+
+void PrintWarnings(const std::vector<std::string>& warnings, const std::string& of = "") {
+  for (const std::string& warning : warnings) {
+    if (!warning.empty()) fmt::print("warning: {}{}\n", of, warning);
+  }
+}
 
 int Validate(const std::filesystem::path& path, bool show) {
   nlohmann::json resolved;
   if (std::filesystem::is_directory(path) || path.filename() == "recording.yaml") {
     const Recording recording = LoadRecording(path);
-    for (int frame = 0; frame < recording.FrameCount(); ++frame) LoadFrame(recording, frame);
-    for (const std::string& warning : recording.warnings) fmt::print("warning: {}\n", warning);
+    PrintWarnings(recording.warnings);
+    PrintWarnings(ExamineFrames(recording));
     fmt::print("{}: a valid recording of {} frames\n", path.string(), recording.FrameCount());
     resolved = nlohmann::json::parse(recording.resolved);
   } else {
@@ -34,9 +44,13 @@ int Validate(const std::filesystem::path& path, bool show) {
       fmt::print("{}: a valid scene\n", path.string());
     } else if (IsPredictionStudy(config)) {
       const PredictionStudy study = ReadPredictionStudy(config);
-      for (const std::string& warning : StudyWarnings(study)) fmt::print("warning: {}\n", warning);
+      PrintWarnings(StudyWarnings(study));
+      for (const PredictedRecording& item : study.recordings)
+        PrintWarnings(ExamineFrames(item.recording, kMostPoints), item.name + ": ");
+      if (study.density != study.recordings.front().recording.object.density)
+        PrintWarnings({DoubtOfDensity(study.density)});
       const ReferenceBody body = MakeReferenceBody(study);
-      for (const std::string& note : body.notes) fmt::print("warning: the mesh: {}\n", note);
+      PrintWarnings(body.notes, "the mesh: ");
       const CalibrationProblem problem(study, body.mesh);  // checks the recordings on that mesh
       fmt::print(
           "{}: a valid experiment for `lacuna fit` on {} recording{}, {} nodes and {} unknowns\n",
@@ -44,8 +58,10 @@ int Validate(const std::filesystem::path& path, bool show) {
           body.mesh.NodeCount(), problem.parameters().size());
     } else {
       const ReconstructionStudy study = ReadReconstruction(config);
-      for (const std::string& warning : study.recording.warnings)
-        fmt::print("warning: {}\n", warning);
+      PrintWarnings(study.recording.warnings);
+      PrintWarnings(ExamineFrames(study.recording, kMostPoints));
+      if (study.density != study.recording.object.density)
+        PrintWarnings({DoubtOfDensity(study.density)});
       fmt::print("{}: a valid experiment on {} frames of \"{}\"\n", path.string(),
                  study.frames.size(), study.recording.name);
     }

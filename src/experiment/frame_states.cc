@@ -31,6 +31,18 @@ void SplitTracked(const Frame& frame, int hold_out_every, FrameState* state) {
   state->cloud.points = state->tracked(Eigen::all, seen);
 }
 
+void RefuseFarSurface(const FrameState& state, const std::string& where) {
+  const double size = BoundingBoxDiagonal(state.surface.vertices);
+  const double mean = SurfaceSearch(state.surface).Nearest(state.cloud.points).distance.mean();
+  if (mean <= kFarFromScan * size) return;
+  throw InputError(fmt::format(
+      "{}: the surface made from the points is {:.3g} mm from them on average, but only {:.3g} mm "
+      "across: the points do not surround one object. Likely causes are poses or intrinsics of the "
+      "cameras that do not belong to the images, and other objects in the scan (`crop`, "
+      "`keep_largest` and `filter` leave them out)",
+      where, 1e3 * mean, 1e3 * size));
+}
+
 std::filesystem::path FrameFile(const std::filesystem::path& folder, size_t k, const char* what) {
   return folder / fmt::format("{}_{:04}.npy", what, k);
 }
@@ -77,6 +89,7 @@ FrameState MakeFrameState(const Recording& recording, int frame_number,
       NamingWhere(where, [&] { return ReconstructSurface(state.cloud, options.surface); });
   if (!surface.IsUsable()) throw InputError(where + ": no closed surface: " + surface.message);
   state.surface = surface.mesh;
+  RefuseFarSurface(state, where);
   return state;
 }
 

@@ -39,8 +39,14 @@ struct FrameStateOptions {
   bool surfaces = true;  // reconstruct a Poisson surface; otherwise the points represent the state
   int hold_out_every = 0;  // hold out every k-th tracked point; 0: none
 };
+// A surface or model farther than this from the points of its own frame, as a fraction of its size,
+// is no description of them. Scanners err by less than a hundredth of the size, and a model that
+// follows by less than a twentieth, while wrong units, intrinsics and poses lead to a quarter and
+// more.
+inline constexpr double kFarFromScan = 0.1;
+
 // Processes one frame of the recording. Throws InputError, which names the frame, where it cannot
-// be read or has no closed surface.
+// be read, has no closed surface, or has one whose mean distance from the points is kFarFromScan.
 FrameState MakeFrameState(const Recording& recording, int frame, const FrameStateOptions& options);
 
 // The files of a run directory: arrays in .npy format, one set per frame.

@@ -113,6 +113,15 @@ ReferenceBody MakeReferenceBody(const ReferenceRequest& request) {
       body.notes.insert(body.notes.end(), meshed.notes.begin(), meshed.notes.end());
     }
   }
+  if (const Eigen::Index flat = FindFlatTet(body.mesh); flat >= 0) {
+    const Eigen::Vector3d place = body.mesh.nodes.col(body.mesh.tets(0, flat));
+    throw InputError(
+        fmt::format("{}: the reference shape cannot be meshed: tetrahedron {} of {}, at ({:.4g}, "
+                    "{:.4g}, {:.4g}) "
+                    "m, has no volume; the surface nearly touches itself there",
+                    request.recording.file.string(), flat + 1, body.mesh.TetCount(), place.x(),
+                    place.y(), place.z()));
+  }
   if (request.mesh.order == 2 && body.mesh.Order() == 1) body.mesh = ToQuadratic(body.mesh);
   body.quality = Describe(body.mesh);
   return body;

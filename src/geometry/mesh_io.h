@@ -22,8 +22,9 @@ struct TriMeshFile {
   std::vector<std::string> notes;
 };
 
-// Reads .ply, .obj, .stl and .off, in text or binary form where the format has both. Polygons are
-// cut into triangles; vertices of an STL file that are equal bit by bit are merged. The surface may
+// Reads .ply, .obj, .stl and .off, in text or binary form where the format has both (OFF: text);
+// polygon_soup.h says which variants. Polygons are cut into triangles; vertices of an STL file that
+// are equal are merged. The surface may
 // have any topology; CheckSurface examines it.
 TriMeshFile ReadTriMesh(const std::filesystem::path& file);
 

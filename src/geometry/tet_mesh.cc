@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -167,6 +168,20 @@ BoundarySurface ExtractBoundary(const TetMesh& mesh) {
 TriMesh BoundaryAt(const BoundarySurface& boundary, const Eigen::Matrix3Xd& nodes) {
   CHECK(boundary.node.size() == 0 || boundary.node.maxCoeff() < nodes.cols());
   return {nodes(Eigen::all, boundary.node), boundary.surface.triangles};
+}
+
+Eigen::Index FindFlatTet(const TetMesh& mesh) {
+  constexpr double kFlat = 1e-14;  // relative to the cubed edge length
+  const Eigen::VectorXd volumes = TetVolumes(mesh);
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
+    double longest = 0;
+    for (int k = 1; k < 4; ++k) {
+      longest = std::max(
+          longest, (mesh.nodes.col(mesh.tets(k, e)) - mesh.nodes.col(mesh.tets(0, e))).norm());
+    }
+    if (std::abs(volumes(e)) <= kFlat * std::pow(longest, 3)) return e;
+  }
+  return -1;
 }
 
 }  // namespace lacuna

@@ -23,6 +23,10 @@ struct TetMesh {
 // The signed volume (m³) of each tetrahedron, computed from its corners.
 Eigen::VectorXd TetVolumes(const TetMesh& mesh);
 
+// The first tetrahedron whose volume is a rounding error of its coordinates; −1 if there is none.
+// ReadTetMesh refuses such a mesh.
+Eigen::Index FindFlatTet(const TetMesh& mesh);
+
 // The same mesh with an additional node at the midpoint of each edge; corner nodes keep their
 // numbers. A mesh that is already quadratic is returned unchanged.
 TetMesh ToQuadratic(const TetMesh& linear);

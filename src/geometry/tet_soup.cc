@@ -37,19 +37,11 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
 
 // Reorients the tetrahedra of negative volume and returns their number; refuses flat ones.
 Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
-  // Relative to the cubed edge length, a volume below this is a rounding error of the coordinates.
-  constexpr double kFlat = 1e-14;
+  if (const Eigen::Index flat = FindFlatTet(mesh); flat >= 0)
+    Fail(file, soup.lines[flat], fmt::format("tetrahedron {} has no volume", flat + 1));
   const Eigen::VectorXd volumes = TetVolumes(mesh);
   Eigen::Index turned = 0;
   for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
-    double longest = 0;
-    for (int k = 1; k < 4; ++k) {
-      longest = std::max(
-          longest, (mesh.nodes.col(mesh.tets(k, e)) - mesh.nodes.col(mesh.tets(0, e))).norm());
-    }
-    if (std::abs(volumes(e)) <= kFlat * std::pow(longest, 3)) {
-      Fail(file, soup.lines[e], fmt::format("tetrahedron {} has no volume", e + 1));
-    }
     if (volumes(e) > 0) continue;
     ++turned;
     auto tet = mesh.tets.col(e);

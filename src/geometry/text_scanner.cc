@@ -33,7 +33,7 @@ std::string LowerExtension(const std::filesystem::path& file) {
 }
 
 TextScanner::TextScanner(const std::filesystem::path& file, char comment)
-    : file_(file), content_(ReadWholeFile(file)), comment_(comment) {}
+    : file_(file), content_(ReadTextFile(file)), comment_(comment) {}
 
 bool TextScanner::NextLine() {
   while (next_line_ < content_.size()) {

@@ -1,68 +1,78 @@
-#include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
-#include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 
 #include <bit>
 #include <fstream>
-#include <functional>
 #include <map>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "geometry/mesh_io.h"
+#include "geometry/polygon_soup.h"
 #include "geometry/text_scanner.h"
 
 namespace lacuna {
 namespace {
 
-using Point = CGAL::Simple_cartesian<double>::Point_3;
-
-struct Soup {
-  std::vector<Point> points;
-  std::vector<std::vector<size_t>> polygons;
-};
-using Reader = std::function<bool(std::istream&, Soup&)>;
-
-const std::map<std::string, Reader>& Readers() {
-  static const std::map<std::string, Reader> readers{
-      {".ply",
-       [](std::istream& in, Soup& s) { return CGAL::IO::read_PLY(in, s.points, s.polygons); }},
-      {".obj",
-       [](std::istream& in, Soup& s) { return CGAL::IO::read_OBJ(in, s.points, s.polygons); }},
-      {".stl",
-       [](std::istream& in, Soup& s) { return CGAL::IO::read_STL(in, s.points, s.polygons); }},
-      {".off",
-       [](std::istream& in, Soup& s) { return CGAL::IO::read_OFF(in, s.points, s.polygons); }}};
-  return readers;
+PolygonSoup ReadPly(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file.string()}, "cannot be opened");
+  if (stream.peek() != 'p') throw InputError({file.string()}, "is not a PLY file");
+  std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
+  PolygonSoup soup;
+  const bool is_whole = CGAL::IO::read_PLY(stream, points, soup.polygons);
+  if (!is_whole && (points.empty() || !soup.polygons.empty() || stream.fail())) {
+    throw InputError({file.string()},
+                     fmt::format("is damaged or truncated, or has properties that are not read: "
+                                 "reading ended after {} vertices and {} faces",
+                                 points.size(), soup.polygons.size()));
+  }
+  for (const auto& point : points) soup.points.emplace_back(point.x(), point.y(), point.z());
+  return soup;
 }
 
-Soup ReadSoup(const std::filesystem::path& file) {
-  const auto reader = Readers().find(LowerExtension(file));
-  if (reader == Readers().end()) {
+// The text forms are read here, the binary one by CGAL.
+PolygonSoup ReadTextOrBinaryOff(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string first_line;
+  std::getline(stream, first_line);
+  if (first_line.find("BINARY") == std::string::npos) return ReadOff(file);
+  stream.seekg(0);
+  std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
+  PolygonSoup soup;
+  const bool is_whole = CGAL::IO::read_OFF(stream, points, soup.polygons);
+  if (!is_whole) throw InputError({file.string()}, "is a binary OFF file that is damaged");
+  for (const auto& point : points) soup.points.emplace_back(point.x(), point.y(), point.z());
+  return soup;
+}
+
+PolygonSoup ReadSoup(const std::filesystem::path& file) {
+  using Reader = PolygonSoup (*)(const std::filesystem::path&);
+  static const std::map<std::string, Reader> readers{
+      {".ply", &ReadPly}, {".obj", &ReadObj}, {".stl", &ReadStl}, {".off", &ReadTextOrBinaryOff}};
+  const auto reader = readers.find(LowerExtension(file));
+  if (reader == readers.end()) {
     throw InputError({file.string()},
                      fmt::format("\"{}\" is not a format of triangle meshes; expected .ply, .obj, "
                                  ".stl or .off",
                                  file.extension().string()));
   }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be opened");
-  Soup soup;
-  if (!reader->second(stream, soup) || soup.polygons.empty()) {
-    throw InputError({file.string()},
-                     fmt::format("is damaged or truncated: reading ended after {} vertices and {} "
-                                 "faces",
-                                 soup.points.size(), soup.polygons.size()));
+  PolygonSoup soup = reader->second(file);
+  if (soup.polygons.empty()) {
+    throw InputError(
+        {file.string()},
+        fmt::format("holds {} vertices and 0 faces; expected a surface{}", soup.points.size(),
+                    soup.points.empty() ? "" : " (points alone are kind: points)"));
   }
   return soup;
 }
 
-Eigen::Matrix3Xd FiniteVertices(const std::filesystem::path& file, const Soup& soup) {
+Eigen::Matrix3Xd FiniteVertices(const std::filesystem::path& file, const PolygonSoup& soup) {
   Eigen::Matrix3Xd vertices(3, soup.points.size());
   for (size_t v = 0; v < soup.points.size(); ++v) {
-    vertices.col(v) << soup.points[v].x(), soup.points[v].y(), soup.points[v].z();
+    vertices.col(v) = soup.points[v];
     if (!vertices.col(v).allFinite()) {
       throw InputError({file.string()},
                        fmt::format("vertex {} of {} is not finite", v + 1, soup.points.size()));
@@ -72,7 +82,7 @@ Eigen::Matrix3Xd FiniteVertices(const std::filesystem::path& file, const Soup& s
 }
 
 // Cuts each polygon into a fan of triangles around its first corner.
-Eigen::Matrix3Xi Triangles(const std::filesystem::path& file, const Soup& soup,
+Eigen::Matrix3Xi Triangles(const std::filesystem::path& file, const PolygonSoup& soup,
                            std::vector<std::string>& notes) {
   std::vector<int> corners;
   size_t larger = 0;
@@ -109,8 +119,9 @@ void AppendBytes(const T& value, std::string& bytes) {
 }  // namespace
 
 TriMeshFile ReadTriMesh(const std::filesystem::path& file) {
-  const Soup soup = ReadSoup(file);
+  const PolygonSoup soup = ReadSoup(file);
   TriMeshFile result;
+  result.notes = soup.notes;
   result.mesh.vertices = FiniteVertices(file, soup);
   result.mesh.triangles = Triangles(file, soup, result.notes);
   return result;

@@ -12,6 +12,7 @@
 #include "experiment/grip_tracks.h"
 #include "experiment/known_loads.h"
 #include "fit/step_force_fitter.h"
+#include "geometry/nearest.h"
 #include "geometry/surface_tracks.h"
 #include "reconstruction/followed_sensitivity.h"
 #include "reconstruction/force_model_choice.h"
@@ -155,6 +156,12 @@ class Follower {
     coefficients_ = fit.coefficients;
 
     frame.position = AsPoints(history_.position);
+    // Without fitted forces the distance is the result.
+    if (forces_.HasUnknowns() && state.tracked.cols() == 0) {
+      const TriMesh surface = BoundaryAt(body.boundary, frame.position);
+      const std::string problem = FarFromScan(surface, state.cloud.points);
+      if (!problem.empty()) return Fail("scan", problem, iterations, &frame);
+    }
     frame.force = AsPoints(fit.force + KnownForces());
     frame.residual = ResidualDisplacement(frame.position, state);
     frame.solver = {true, "converged", "", iterations};
@@ -313,6 +320,21 @@ class Follower {
 };
 
 }  // namespace
+
+std::string FarFromScan(const TriMesh& surface, const Eigen::Matrix3Xd& points) {
+  if (points.cols() == 0) return "";
+  const double size = BoundingBoxDiagonal(surface.vertices);
+  Eigen::VectorXd distances = SurfaceSearch(surface).Nearest(points).distance;
+  const auto middle = distances.begin() + distances.size() / 2;
+  std::nth_element(distances.begin(), middle, distances.end());
+  if (*middle <= kFarFromScan * size) return "";
+  return fmt::format(
+      "half of the scanned points are farther than {:.3g} mm from the model, which is {:.3g} mm "
+      "across; likely causes are a wrong length_unit, a reference shape in another coordinate "
+      "system, poses or intrinsics that do not belong to the images, and other objects in the scan "
+      "(`crop` and `keep_largest` leave them out)",
+      1e3 * *middle, 1e3 * size);
+}
 
 FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBody& reference,
                             const std::vector<FrameState>& states, Progress* progress,

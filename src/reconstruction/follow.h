@@ -56,6 +56,12 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
                             const TrackedFrames* tracked = nullptr,
                             const std::vector<int>& moduli = {});
 
+// What is wrong with a model whose surface lies far from the points (3 × n, m) that it was fitted
+// to: half of them are farther away than kFarFromScan times its size. Points beyond the reach of
+// the fit do not count in it, so that it may converge while it sees next to nothing. Empty
+// otherwise.
+std::string FarFromScan(const TriMesh& surface, const Eigen::Matrix3Xd& points);
+
 void SaveFollowedMotion(const FollowedMotion& motion, const std::filesystem::path& folder);
 FollowedMotion ReadFollowedMotion(const ReconstructionStudy& study, const ReferenceBody& reference,
                                   const std::filesystem::path& folder);

@@ -21,9 +21,9 @@ namespace lacuna {
 namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
-constexpr int kStatesVersion = 1;
+constexpr int kStatesVersion = 2;
 constexpr int kReferenceVersion = 1;
-constexpr int kMotionVersion = 2;
+constexpr int kMotionVersion = 3;
 constexpr int kResultsVersion = 3;
 
 // Hashes of the recording's files, by file name, so that changes of the input are noticed.

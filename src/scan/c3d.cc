@@ -3,6 +3,7 @@
 // (https://www.c3d.org).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -140,6 +141,30 @@ struct PointFormat {
   size_t analog_per_frame = 0;
 };
 
+// The number of frames by the fields that Vicon writes: two 16-bit words each, the lower one first.
+// 0 where they are absent.
+Eigen::Index FramesOfTrial(const Bytes& bytes, const std::map<std::string, Parameter>& parameters) {
+  const auto field = [&](const char* name) -> int64_t {
+    const auto found = parameters.find(name);
+    if (found == parameters.end() || found->second.type != 2) return 0;
+    if (found->second.extents != std::vector<size_t>{2}) return 0;
+    return bytes.Word(found->second.data) + 65536 * int64_t{bytes.Word(found->second.data + 2)};
+  };
+  const int64_t start = field("TRIAL:ACTUAL_START_FIELD"), end = field("TRIAL:ACTUAL_END_FIELD");
+  return start >= 1 && end >= start ? end - start + 1 : 0;
+}
+
+size_t FrameSize(const PointFormat& format) {
+  const size_t entry = format.scale < 0 ? 4 : 2;
+  return (4 * format.marker_count + format.analog_per_frame) * entry;
+}
+
+// The number of whole frames that the file has room for.
+Eigen::Index FramesHeld(const Bytes& bytes, const PointFormat& format) {
+  if (bytes.Size() < format.data) return 0;
+  return static_cast<Eigen::Index>((bytes.Size() - format.data) / FrameSize(format));
+}
+
 PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter>& parameters) {
   PointFormat format;
   const int first = bytes.Word(6), last = bytes.Word(8);
@@ -161,17 +186,24 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
   if (const Parameter* frames = find("POINT:LONG_FRAMES"); frames && frames->type == 4) {
     format.frame_count = static_cast<Eigen::Index>(bytes.Real(frames->data));
   }
+  const bool is_at_limit = last == 65535;
   const Parameter* used = find("POINT:USED");
   if (used && bytes.Word(used->data) != format.marker_count) {
     bytes.Fail(fmt::format("announces {} points in its header and {} in POINT:USED",
                            format.marker_count, bytes.Word(used->data)));
   }
   if (format.marker_count == 0) bytes.Fail("holds no 3-D points");
-  if (format.frame_count < 1) bytes.Fail("holds no frame");
   if (format.data < 2) bytes.Fail("does not state where its data begin");
   if (!std::isfinite(format.scale) || format.scale == 0) bytes.Fail("has no point scale factor");
   if (!(format.rate > 0 && std::isfinite(format.rate))) bytes.Fail("has no frame rate");
   format.data = (format.data - 1) * kBlock;
+  // Programs that cut a recording may leave the fields of the trial as they were, so they count
+  // only where the header is at its limit or the file is as long as they say.
+  if (const Eigen::Index of_trial = FramesOfTrial(bytes, parameters);
+      is_at_limit || of_trial <= FramesHeld(bytes, format)) {
+    format.frame_count = std::max(format.frame_count, of_trial);
+  }
+  if (format.frame_count < 1) bytes.Fail("holds no frame");
   return format;
 }
 
@@ -228,16 +260,22 @@ MarkerTracks ReadC3d(const std::filesystem::path& file) {
   const std::map<std::string, Parameter> parameters = ReadParameters(bytes, parameter_section);
   const PointFormat format = ReadFormat(bytes, parameters);
 
-  const size_t entry = format.scale < 0 ? 4 : 2;
-  const size_t point_size = 4 * entry;
-  const size_t frame_size = format.marker_count * point_size + format.analog_per_frame * entry;
-  if (bytes.Size() < format.data ||
-      (bytes.Size() - format.data) / frame_size < static_cast<size_t>(format.frame_count)) {
-    bytes.Fail(fmt::format(
-        "is truncated: it announces {} frames and ends within frame {}", format.frame_count,
-        bytes.Size() < format.data ? 0 : (bytes.Size() - format.data) / frame_size));
+  const size_t point_size = format.scale < 0 ? 16 : 8;
+  const size_t frame_size = FrameSize(format);
+  const Eigen::Index held = FramesHeld(bytes, format);
+  if (held < format.frame_count) {
+    bytes.Fail(fmt::format("is truncated: it announces {} frames and ends within frame {}",
+                           format.frame_count, held));
   }
   MarkerTracks tracks;
+  // The last block is filled up, by one block at most in the files of known programs.
+  const size_t filled = bytes.Size() - format.data - frame_size * format.frame_count;
+  if (bytes.Word(8) == 65535 && filled > kBlock + frame_size) {
+    tracks.warnings.push_back(fmt::format(
+        "{}: the 16-bit header ends at frame 65535, but the file has room for {} frames; {} are "
+        "read, because neither TRIAL:ACTUAL_END_FIELD nor POINT:LONG_FRAMES gives their number",
+        file.string(), held, format.frame_count));
+  }
   tracks.names = ReadNames(bytes, parameters, format.marker_count);
   if (const auto units = parameters.find("POINT:UNITS"); units != parameters.end()) {
     const std::vector<std::string> texts = Texts(bytes, units->second);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -28,18 +30,70 @@ std::string_view Unquote(std::string_view text) {
   return text;
 }
 
-char FindDelimiter(std::string_view line) {
-  for (const char candidate : {';', ',', '\t'}) {
-    if (line.find(candidate) != std::string_view::npos) return candidate;
-  }
-  return ' ';
+// A number with a decimal point or a decimal comma.
+std::optional<double> ParseEntry(std::string_view text) {
+  if (const std::optional<double> value = ParseNumber(text)) return value;
+  std::string with_point(text);
+  const size_t comma = with_point.find(',');
+  if (comma == std::string::npos || with_point.find('.') != std::string::npos) return std::nullopt;
+  with_point[comma] = '.';
+  return ParseNumber(with_point);
 }
 
-bool LooksLikeHeader(const std::vector<std::string_view>& fields) {
-  for (const std::string_view field : fields) {
-    if (!ParseNumber(field)) return true;
+bool AreNumbers(const std::vector<std::string_view>& fields) {
+  return std::all_of(fields.begin(), fields.end(),
+                     [](std::string_view field) { return ParseEntry(field).has_value(); });
+}
+
+char FindDelimiter(std::string_view line) {
+  const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
+  if (has(';')) return ';';
+  if (has(',')) {
+    // The commas are decimal ones where tabs or blanks cut the line into numbers.
+    for (const char candidate : {'\t', ' '}) {
+      const std::vector<std::string_view> fields = SplitFields(line, candidate);
+      if (has(candidate) && fields.size() > 1 && AreNumbers(fields)) return candidate;
+    }
+    return ',';
   }
-  return false;
+  return has('\t') ? '\t' : ' ';
+}
+
+// Notes a header in which most entries are numbers with decimals: its line may be a row of data of
+// which one entry cannot be read. Whole numbers are common names of channels.
+void DoubtHeader(DelimitedTable* table, int line) {
+  int numbers = 0, decimals = 0, words = 0;
+  std::string word;
+  for (const std::string& name : table->header) {
+    const std::optional<double> value = ParseEntry(name);
+    if (!value) word = name;
+    words += !value;
+    numbers += value && std::isfinite(*value);
+    decimals += value && std::isfinite(*value) && *value != std::floor(*value);
+  }
+  if (decimals == 0 || numbers <= words) return;
+  table->notes.push_back(fmt::format(
+      "{}:{}: the first line was taken for the names of the columns because of \"{}\", but {} of "
+      "its {} entries are numbers",
+      table->file.string(), line, word, numbers, table->header.size()));
+}
+
+// Notes a first row 0, 1, 2, … or 1, 2, 3, … above rows that are not whole numbers.
+void DoubtFirstRow(DelimitedTable* table) {
+  const Eigen::MatrixXd& values = table->values;
+  if (!table->header.empty() || values.cols() < 3 || values.rows() < 3) return;
+  const double first = values(0, 0);
+  if (first != 0 && first != 1) return;
+  for (Eigen::Index c = 0; c < values.cols(); ++c) {
+    if (values(0, c) != first + static_cast<double>(c)) return;
+  }
+  const auto below = values.bottomRows(values.rows() - 1).array();
+  if (((below - below.floor()) == 0).rowwise().all().any()) return;
+  table->notes.push_back(fmt::format(
+      "{}:{}: the first line, {:g}, {:g}, {:g}{}, was read as a row of data; if it numbers the "
+      "columns, remove it or put a # in front",
+      table->file.string(), table->line[0], first, first + 1, first + 2,
+      values.cols() > 3 ? ", …" : ""));
 }
 
 }  // namespace
@@ -57,7 +111,12 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
   }
   size_t at = 0;
   while (true) {
-    const size_t end = line.find(delimiter, at);
+    // A quoted entry may contain the delimiter.
+    size_t from = line.find_first_not_of(' ', at);
+    const bool is_quoted = from != std::string_view::npos && line[from] == '"';
+    if (is_quoted) from = line.find('"', from + 1);
+    const size_t end =
+        line.find(delimiter, is_quoted && from != std::string_view::npos ? from : at);
     fields.push_back(
         Unquote(Trim(line.substr(at, end == std::string_view::npos ? end : end - at))));
     if (end == std::string_view::npos) return fields;
@@ -80,8 +139,14 @@ std::string ReadFilledFile(const std::filesystem::path& file) {
   return content;
 }
 
+std::string ReadFilledText(const std::filesystem::path& file) {
+  std::string content = ReadTextFile(file);
+  if (content.empty()) throw InputError({file.string()}, "is empty");
+  return content;
+}
+
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
-  const std::string content = ReadFilledFile(file);
+  const std::string content = ReadFilledText(file);
   DelimitedTable table;
   table.file = file;
   std::vector<double> entries;
@@ -98,18 +163,21 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
     const std::vector<std::string_view> fields = SplitFields(line, delimiter);
     if (width == 0) {
       width = fields.size();
-      if (LooksLikeHeader(fields)) {
+      if (!AreNumbers(fields)) {
         table.header.assign(fields.begin(), fields.end());
+        DoubtHeader(&table, line_number);
         continue;
       }
     }
     if (fields.size() != width) {
+      const bool may_be_decimal = delimiter == ',' && fields.size() == 2 * width;
       throw InputError(
           {file.string(), line_number, 1},
-          fmt::format("has {} entries where the first line has {}", fields.size(), width));
+          fmt::format("has {} entries where the first line has {}{}", fields.size(), width,
+                      may_be_decimal ? "; decimal commas need another delimiter, such as ;" : ""));
     }
     for (const std::string_view field : fields) {
-      const std::optional<double> value = ParseNumber(field);
+      const std::optional<double> value = ParseEntry(field);
       if (!value) {
         const int column = static_cast<int>(field.data() - line.data()) + 1;
         throw InputError({file.string(), line_number, column},
@@ -122,6 +190,7 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
   if (table.line.empty()) throw InputError({file.string()}, "holds no row of numbers");
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   table.values = Eigen::Map<const RowMajor>(entries.data(), table.line.size(), width);
+  DoubtFirstRow(&table);
   return table;
 }
 
@@ -135,7 +204,18 @@ std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::s
       number <= table.values.cols()) {
     return number - 1;
   }
-  return std::nullopt;
+  const auto is_same_letter = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) ==
+           std::tolower(static_cast<unsigned char>(b));
+  };
+  std::optional<Eigen::Index> similar;
+  for (size_t column = 0; column < table.header.size(); ++column) {
+    const std::string& other = table.header[column];
+    if (!std::equal(name.begin(), name.end(), other.begin(), other.end(), is_same_letter)) continue;
+    if (similar) return std::nullopt;
+    similar = column;
+  }
+  return similar;
 }
 
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name) {

@@ -13,12 +13,16 @@ namespace lacuna {
 
 // Lines starting with '#' and empty lines are skipped. The first line is the header when one of
 // its entries is neither a number nor empty. The delimiter is the first of ';', ',' and tab that
-// occurs in the first line, and otherwise any run of blanks.
+// occurs in the first line, and otherwise any run of blanks. Where the delimiter is not ',', and in
+// quotes, numbers may have a decimal comma. A byte order mark is not part of the first entry
+// (ReadTextFile).
 struct DelimitedTable {
   std::filesystem::path file;
   std::vector<std::string> header;  // names of the columns; empty if the file has none
   Eigen::MatrixXd values;           // rows × columns; NaN for an empty entry and for "nan"
   std::vector<int> line;            // line of the file of each row, from 1
+  std::vector<std::string> notes;   // doubts about the first line, each of which begins with the
+                                    // name of the file
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number
@@ -26,22 +30,25 @@ struct DelimitedTable {
 DelimitedTable ReadDelimitedTable(const std::filesystem::path& file);
 
 // The column called `name` or, when the header has no such name, the column with the number `name`
-// counted from 1. Returns its index from 0, or nothing when there is no such column.
+// counted from 1, or else the only column whose name differs in the case of its letters alone.
+// Returns its index from 0, or nothing when there is no such column.
 std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::string& name);
 
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
 
 // Cuts `line` at the delimiter (' ' stands for any run of blanks) and trims blanks around each
-// entry. The entries refer to the memory of `line`.
+// entry. A delimiter between quotes does not count. The entries refer to the memory of `line`.
 std::vector<std::string_view> SplitFields(std::string_view line, char delimiter);
 
 // The number that `text` consists of (NaN for an empty text and for "nan"), or nothing when it is
 // not a number.
 std::optional<double> ParseNumber(std::string_view text);
 
-// The content of a file. Throws InputError when it cannot be read or is empty.
+// The content of a file: all of its bytes, or its text (ReadTextFile). Throw InputError when it
+// cannot be read or is empty.
 std::string ReadFilledFile(const std::filesystem::path& file);
+std::string ReadFilledText(const std::filesystem::path& file);
 
 }  // namespace lacuna
 

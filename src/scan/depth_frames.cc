@@ -5,8 +5,10 @@
 #include <glog/logging.h>
 
 #include <cmath>
+#include <map>
 
 #include "core/error.h"
+#include "scan/camera_doubts.h"
 #include "scan/camera_reader.h"
 #include "scan/frame_list.h"
 #include "scan/frame_points.h"
@@ -15,7 +17,7 @@
 namespace lacuna {
 namespace {
 
-constexpr double kMaxCount = 65535;  // the largest 16-bit number
+constexpr double kMaxCount = 65534;  // the largest 16-bit number but that of saturated pixels
 
 std::optional<AlignmentOptions> ReadAlignment(const Config& frames) {
   const auto config = frames.OptionalChild("refine_alignment");
@@ -97,10 +99,12 @@ void ReadSource(const Config& frames, const DataLocation& data, DepthFrames* sou
     }
     source->files.resize(own.size());
     for (size_t i = 0; i < own.size(); ++i) source->files[i].push_back(own[i]);
+    if (source->cameras.empty()) source->poses_are_inverse = item.Has("camera_from_world");
     source->cameras.push_back(ReadCamera(item, LengthOf(data.length_unit), source->cameras.size()));
   }
   if (source->cameras.empty()) frames.Fail("cameras", "expected at least one camera");
   source->alignment = ReadAlignment(frames);
+  ReadObjectChoice(frames, data, source);
 }
 
 void LoadPoints(const DepthFrames& source, Frame* frame) {
@@ -116,7 +120,6 @@ void LoadPoints(const DepthFrames& source, Frame* frame) {
     frame->row_count += (depth.array() > 0).count();
     total += views[c].Size();
   }
-  frame->dropped_count = frame->row_count - total;
   frame->cloud.points.resize(3, total);
   frame->cloud.normals.resize(3, 0);
   frame->sensors.seen_by.resize(total);
@@ -126,6 +129,16 @@ void LoadPoints(const DepthFrames& source, Frame* frame) {
     frame->sensors.seen_by.segment(at, views[c].Size()).setConstant(static_cast<int>(c));
     at += views[c].Size();
   }
+  ForgetOtherObjects(source, Eigen::Matrix3Xi(3, 0), &frame->cloud.points, frame);
+  if (frame->cropped_count + frame->separate_count > 0) {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index p = 0; p < total; ++p) {
+      if (frame->cloud.points.col(p).allFinite()) kept.push_back(p);
+    }
+    frame->cloud.points = frame->cloud.points(Eigen::all, kept).eval();
+    frame->sensors.seen_by = frame->sensors.seen_by(kept).eval();
+  }
+  frame->dropped_count = frame->row_count - frame->cloud.Size();
   RequirePoints(*frame, kFewestScannedPoints, "lies within min_depth and max_depth");
 }
 
@@ -147,6 +160,29 @@ bool RefineByFirstFrame(const Frame& first, DepthFrames* source,
     }
   }
   return true;
+}
+
+std::vector<std::string> DoubtsOfFirstFrame(const Frame& first, const DepthFrames& source) {
+  std::vector<std::string> doubts;
+  std::map<std::string, std::vector<std::string>> cameras_of_doubt;
+  for (size_t c = 0; c < source.cameras.size(); ++c) {
+    const Eigen::Vector2i size = DepthPngSize(source.files[first.index][c]);
+    const std::string doubt = DoubtOfIntrinsics(source.cameras[c].intrinsics, size[0], size[1]);
+    if (!doubt.empty()) cameras_of_doubt[doubt].push_back(source.cameras[c].name);
+  }
+  for (const auto& [doubt, names] : cameras_of_doubt)
+    doubts.push_back(fmt::format("{}: {}", fmt::join(names, ", "), doubt));
+  std::vector<Eigen::Matrix3Xd> views;
+  for (size_t c = 0; c < source.cameras.size(); ++c) {
+    std::vector<Eigen::Index> own;
+    for (Eigen::Index p = 0; p < first.cloud.Size(); ++p) {
+      if (first.sensors.seen_by[p] == static_cast<int>(c)) own.push_back(p);
+    }
+    views.push_back(first.cloud.points(Eigen::all, own));
+  }
+  const std::string doubt = DoubtOfPoses(views, source.cameras, source.poses_are_inverse);
+  if (!doubt.empty()) doubts.push_back(doubt);
+  return doubts;
 }
 
 std::string ExplainSize(const DepthFrames&, double, const std::string&) {

@@ -27,6 +27,7 @@ struct DepthFrames : FileFrames {
   double depth_unit = 0;                                       // m per count of the images
   double min_depth = 0;                                        // m; smaller depths are dropped
   double max_depth = std::numeric_limits<double>::infinity();  // m; larger depths are dropped
+  bool poses_are_inverse = false;             // given as camera_from_world (the first camera's)
   std::vector<Camera> cameras;                // poses are replaced by refined ones, if any
   std::optional<AlignmentOptions> alignment;  // options of the refinement; none: poses are kept
   std::vector<CameraCorrection> corrections;  // change of each pose; empty before refinement
@@ -41,6 +42,8 @@ void LoadPoints(const DepthFrames& source, Frame* frame);
 // set. Warns of each camera whose pose could not be refined.
 bool RefineByFirstFrame(const Frame& first, DepthFrames* source,
                         std::vector<std::string>* warnings);
+// Intrinsics that do not belong to images of this size, and views that lie apart.
+std::vector<std::string> DoubtsOfFirstFrame(const Frame& first, const DepthFrames& source);
 std::string ExplainSize(const DepthFrames& source, double size, const std::string& length_unit);
 // One line per camera: where it stands and what the refinement did to its pose.
 std::vector<InfoLine> DescribeSource(const DepthFrames& source);

@@ -91,9 +91,24 @@ DepthImage ReadDepthPng(const std::filesystem::path& file, double count_length) 
     png_read_end(reader.png, nullptr);
     DepthImage depth(height, width);
     for (Eigen::Index i = 0; i < width * height; ++i) {
-      depth.data()[i] = count_length * (bytes[2 * i] << 8 | bytes[2 * i + 1]);
+      const int count = bytes[2 * i] << 8 | bytes[2 * i + 1];
+      depth.data()[i] = count == kMaxCount ? 0 : count_length * count;
     }
     return depth;
+  } catch (const PngProblem& problem) {
+    throw InputError({file.string()},
+                     fmt::format("is not a whole 16-bit PNG: {}", problem.message));
+  }
+}
+
+Eigen::Vector2i DepthPngSize(const std::filesystem::path& file) {
+  Source source{ReadFilledFile(file)};
+  PngReader reader;
+  try {
+    png_set_read_fn(reader.png, &source, ReadBytes);
+    png_read_info(reader.png, reader.info);
+    return {static_cast<int>(png_get_image_width(reader.png, reader.info)),
+            static_cast<int>(png_get_image_height(reader.png, reader.info))};
   } catch (const PngProblem& problem) {
     throw InputError({file.string()},
                      fmt::format("is not a whole 16-bit PNG: {}", problem.message));

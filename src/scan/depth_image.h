@@ -31,9 +31,13 @@ struct Camera {
 // Depths in m; the row is v, the column u.
 using DepthImage = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Reads a 16-bit grey PNG; each count means `count_length` metres. Throws InputError naming
-// the file when it is absent, truncated or another kind of image.
+// Reads a 16-bit grey PNG; each count means `count_length` metres. The largest count, 65535, is
+// that of saturated pixels and is read as 0. Throws InputError naming the file when it is absent,
+// truncated or another kind of image.
 DepthImage ReadDepthPng(const std::filesystem::path& file, double count_length);
+
+// The width and the height of such a file, pixels. Throws InputError likewise.
+Eigen::Vector2i DepthPngSize(const std::filesystem::path& file);
 
 // Writes such a file atomically, with depths rounded to whole counts. All depths must fit in 16
 // bits. Throws InputError when the file cannot be written.

@@ -8,6 +8,15 @@
 
 namespace lacuna {
 
+void ReadObjectChoice(const Config& frames, const DataLocation& data, FileFrames* source) {
+  if (const auto crop = frames.OptionalChild("crop")) {
+    source->crop = ReadRegion(*crop, data.folder, "crop");
+    if (std::holds_alternative<NodeRegion>(source->crop->shape))
+      frames.Fail("crop", "expected box, sphere or half_space");
+  }
+  source->keep_largest = frames.Flag("keep_largest", false);
+}
+
 void KeepFrames(const std::vector<int>& chosen, FileFrames* source) {
   std::vector<std::vector<std::filesystem::path>> kept;
   for (const int i : chosen) kept.push_back(source->files[i]);

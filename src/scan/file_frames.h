@@ -11,15 +11,24 @@
 #include <utility>
 #include <vector>
 
+#include "core/config.h"
+#include "scan/data_location.h"
 #include "scan/frame.h"
 #include "scan/marker_tracks.h"
+#include "scan/region.h"
 
 namespace lacuna {
 
 struct FileFrames {
   // One entry per frame, and in it one file per camera (one file where there are no cameras).
   std::vector<std::vector<std::filesystem::path>> files;
+  std::optional<Region> crop;  // only points in it belong to the object; absent: all
+  bool keep_largest = false;   // only the largest component (components.h) belongs to it
 };
+
+// Reads `crop: {box: …}` (or sphere or half_space) and `keep_largest` from the mapping `frames`.
+// Throws InputError (file, line, column and field).
+void ReadObjectChoice(const Config& frames, const DataLocation& data, FileFrames* source);
 
 // A line of `lacuna info`: its label and its value.
 using InfoLine = std::pair<std::string, std::string>;
@@ -55,6 +64,9 @@ inline Markers NamedMarkers(const FileFrames&) { return {}; }
 inline bool RefineByFirstFrame(const Frame&, FileFrames*, std::vector<std::string>*) {
   return false;
 }
+
+// Doubts about the source that its first frame raises, one sentence each.
+inline std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const FileFrames&) { return {}; }
 
 // Why frame 0 may have an implausible size (m, the diagonal of its bounding box) and what to check,
 // as the end of a warning that begins "frame 0 is 114 m across".

@@ -26,9 +26,13 @@ struct Frame {
                                // empty for depth images, which have no rows
   Eigen::Matrix3Xi triangles;  // 3 × m, points of `cloud`; 3 × 0 without connectivity
   Sensors sensors;
-  Eigen::Index row_count = 0;      // points in the files
-  Eigen::Index dropped_count = 0;  // points not used: not finite, above 1e9 m or, in depth
-                                   // images, outside the depth range
+  Eigen::Index row_count = 0;       // points in the files
+  Eigen::Index dropped_count = 0;   // points not used: not finite, above 1e9 m or, in depth
+                                    // images, outside the depth range; and those below
+  Eigen::Index repeated_count = 0;  // of these, because they repeat exactly (frame_points.h)
+  Eigen::Index cropped_count = 0;   // because they lie outside the crop
+  Eigen::Index separate_count = 0;  // because they do not belong to the largest component
+  std::vector<std::string> notes;   // doubts about the files, which they name
 };
 
 }  // namespace lacuna

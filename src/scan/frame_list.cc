@@ -29,9 +29,23 @@ std::string WithoutLeadingZeros(const std::string& digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
 }
 
-std::vector<std::string> ExpandWildcards(const std::string& pattern) {
+// Puts a backslash before each of `special`, so that glob takes it literally.
+std::string Escaped(const std::string& text, const std::string& special) {
+  std::string escaped;
+  for (const char c : text) {
+    if (special.find(c) != std::string::npos) escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+// The files in `folder`, whose name is taken literally, that match the wildcards * and ?.
+std::vector<std::string> ExpandWildcards(const std::filesystem::path& folder,
+                                         const std::string& wildcards) {
   glob_t found{};
   std::vector<std::string> names;
+  const std::string pattern =
+      std::filesystem::path(Escaped(folder.string(), "*?[\\")) / Escaped(wildcards, "[\\");
   if (glob(pattern.c_str(), 0, nullptr, &found) == 0) {
     names.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   }
@@ -52,8 +66,9 @@ std::vector<std::vector<std::filesystem::path>> OneFilePerFrame(
 std::string FillPattern(const std::string& pattern, int number) {
   static const std::regex placeholder("%(0?)([0-9]?)d");
   std::smatch match;
-  if (!std::regex_search(pattern, match, placeholder) ||
-      std::count(pattern.begin(), pattern.end(), '%') != 1) {
+  const bool is_found = std::regex_search(pattern, match, placeholder);
+  const std::string behind = is_found ? match.suffix().str() : "";
+  if (!is_found || std::regex_search(behind, placeholder)) {
     throw std::invalid_argument(fmt::format(
         "got \"{}\"; expected one place for the number, e.g. frames/points_%02d.ply", pattern));
   }
@@ -124,7 +139,7 @@ std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
       }
     }
   } else if (given.size() == 1 && given[0].find_first_of("*?") != std::string::npos) {
-    const std::vector<std::string> names = ExpandWildcards((data_folder / given[0]).string());
+    const std::vector<std::string> names = ExpandWildcards(data_folder, given[0]);
     if (names.empty()) {
       config.Fail("files",
                   fmt::format("no file is named like {}", (data_folder / given[0]).string()));

@@ -11,7 +11,8 @@
 
 namespace lacuna {
 
-// Reads either `files` (a list, or one text with the wildcards * and ?) or `pattern`
+// Reads either `files` (a list, or one text with the wildcards * and ?; other characters, and those
+// of `data_folder`, stand for themselves) or `pattern`
 // ("frames/points_%02d.csv") with `first` and `count`. Names that match wildcards are sorted by the
 // numbers in them (scan_9 before scan_10); a gap in evenly spaced numbers means that a frame is
 // missing. Throws InputError (file, line, column and field) when a frame is missing, when a file
@@ -23,8 +24,8 @@ std::vector<std::filesystem::path> ReadFrameFiles(const Config& config,
 std::vector<std::vector<std::filesystem::path>> OneFilePerFrame(
     const std::vector<std::filesystem::path>& files);
 
-// Fills `number` into the one %d or %0Nd of `pattern`. Throws std::invalid_argument when there is
-// not exactly one.
+// Fills `number` into the one %d or %0Nd of `pattern`, in which another % stands for itself. Throws
+// std::invalid_argument when there is not exactly one.
 std::string FillPattern(const std::string& pattern, int number);
 
 // Orders texts such that runs of digits compare as numbers: "a9" comes before "a10".

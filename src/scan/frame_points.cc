@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+#include <tuple>
 #include <vector>
 
 #include "core/error.h"
+#include "scan/components.h"
 
 namespace lacuna {
 namespace {
 
 constexpr double kFarthest = 1e9;  // m
+constexpr double kForgotten = std::numeric_limits<double>::quiet_NaN();
 
 bool IsUsable(const PointCloud& raw, Eigen::Index row) {
   const bool has_normal = !raw.HasNormals() || raw.normals.col(row).allFinite();
@@ -17,6 +22,56 @@ bool IsUsable(const PointCloud& raw, Eigen::Index row) {
 }
 
 }  // namespace
+
+Eigen::Index ForgetRepeatedPoints(bool tracked, Eigen::Matrix3Xd* points) {
+  constexpr size_t kPlaceholder = 16;
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < points->cols(); ++i) {
+    if (points->col(i).allFinite()) order.push_back(i);
+  }
+  const auto key = [points](Eigen::Index i) {
+    const auto point = points->col(i);
+    return std::tuple(point.x(), point.y(), point.z());
+  };
+  std::sort(order.begin(), order.end(), [&key](Eigen::Index a, Eigen::Index b) {
+    const auto left = key(a), right = key(b);
+    return left < right || (left == right && a < b);
+  });
+  std::vector<Eigen::Index> forgotten;
+  for (size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && key(order[end]) == key(order[begin])) ++end;
+    const size_t count = end - begin;
+    if (count < 2) continue;
+    const bool is_placeholder =
+        points->col(order[begin]).isZero(0) ||
+        count >= std::max<size_t>(kPlaceholder, static_cast<size_t>(points->cols()) / 100);
+    if (tracked && !is_placeholder) continue;
+    forgotten.insert(forgotten.end(), order.begin() + begin + (is_placeholder ? 0 : 1),
+                     order.begin() + end);
+  }
+  for (const Eigen::Index i : forgotten) points->col(i).setConstant(kForgotten);
+  return static_cast<Eigen::Index>(forgotten.size());
+}
+
+void ForgetOtherObjects(const FileFrames& source, const Eigen::Matrix3Xi& triangles,
+                        Eigen::Matrix3Xd* points, Frame* frame) {
+  if (source.crop) {
+    for (Eigen::Index i = 0; i < points->cols(); ++i) {
+      auto point = points->col(i);
+      if (!point.allFinite() || Contains(*source.crop, point)) continue;
+      point.setConstant(kForgotten);
+      ++frame->cropped_count;
+    }
+  }
+  if (!source.keep_largest) return;
+  const Eigen::VectorXi component =
+      triangles.cols() > 0 ? ComponentsOfSurface({*points, triangles}) : ComponentsOfCloud(*points);
+  for (Eigen::Index i = 0; i < points->cols(); ++i) {
+    if (component[i] == 0 || !points->col(i).allFinite()) continue;
+    points->col(i).setConstant(kForgotten);
+    ++frame->separate_count;
+  }
+}
 
 void KeepUsablePoints(const PointCloud& raw, const Eigen::Matrix3Xi& triangles, Frame* frame) {
   std::vector<int> kept;
@@ -56,7 +111,12 @@ Eigen::Matrix3Xd UnitNormals(const Eigen::Matrix3Xd& normals, const Eigen::Matri
 void RequirePoints(const Frame& frame, Eigen::Index fewest, const std::string& condition) {
   if (frame.row_count == 0) throw InputError("holds no point");
   if (frame.cloud.Size() == 0) {
-    throw InputError(fmt::format("none of its {} points {}", frame.row_count, condition));
+    std::string message = fmt::format("none of its {} points {}", frame.row_count, condition);
+    if (frame.repeated_count > 0)
+      message += fmt::format(" and measured: {} repeat exactly", frame.repeated_count);
+    if (frame.cropped_count > 0)
+      message += fmt::format("; {} lie outside the crop", frame.cropped_count);
+    throw InputError(message);
   }
   if (frame.cloud.Size() < fewest) {
     throw InputError(fmt::format("holds {} usable point{}; expected at least {}",

@@ -19,6 +19,7 @@
 //   FilesOfFrame, AllFiles                      the files behind one frame and behind all of them
 //   IsTracked, ShowsSurface, NamedMarkers       what the frames can be used for
 //   RefineByFirstFrame                          improves the source once the first frame is known
+//   DoubtsOfFirstFrame                          warnings about the source itself
 //   ExplainSize, DescribeSource                 text for warnings and for `lacuna info`
 //
 // A kind that the virtual scanner or the sealed trials can make has its writer beside them.

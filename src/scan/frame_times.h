@@ -18,8 +18,8 @@ struct FrameTimes {
 };
 
 // Reads the times of `count` frames from one of `rate`, `times` and `times_file` of the mapping
-// `frames`. Without these it takes `file_times`, the times that the frame files themselves contain
-// (s; empty when they have none). Of the frames with `from` ≤ time ≤ `to` it chooses every
+// `frames`, which override `file_times`, the times that the frame files themselves contain (s;
+// empty when they have none). Of the frames with `from` ≤ time ≤ `to` it chooses every
 // `every`-th. A single frame needs no time. Throws InputError (file, line, column and field) when
 // there are no times or more than one source of them, when their number is not `count`, when they
 // do not ascend, and when no frame is chosen.

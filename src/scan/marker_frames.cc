@@ -63,7 +63,10 @@ void ReadSource(const Config& frames, const DataLocation& data, MarkerFrames* so
                 std::vector<std::string>* warnings) {
   source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
   source->file = data.folder / frames.Text("file");
-  source->tracks = ReadMarkerTracks(source->file, ReadMarkerColumns(frames));
+  const bool has_times = frames.Has("rate") || frames.Has("times") || frames.Has("times_file");
+  source->tracks = ReadMarkerTracks(source->file, ReadMarkerColumns(frames),
+                                    has_times ? FileTimes::kReplaced : FileTimes::kUsed);
+  warnings->insert(warnings->end(), source->tracks.warnings.begin(), source->tracks.warnings.end());
   const std::vector<std::string> names = frames.Texts("markers");
   if (!names.empty()) source->tracks = SelectMarkers(source->tracks, names, source->file);
   source->places = ReadPlaces(frames, source->tracks.names);

@@ -52,6 +52,7 @@ inline std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source) {
 }
 inline bool IsTracked(const MarkerFrames&) { return false; }
 inline bool ShowsSurface(const MarkerFrames&) { return false; }
+inline std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const MarkerFrames&) { return {}; }
 inline bool RefineByFirstFrame(const Frame&, MarkerFrames*, std::vector<std::string>*) {
   return false;
 }

@@ -29,12 +29,21 @@ std::string FillStar(std::string pattern, const std::string& name) {
   return pattern.replace(pattern.find('*'), 1, name);
 }
 
-void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times) {
+// `rate` is the rate in Hz that the file states; 0 if it states none.
+void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate) {
   for (Eigen::Index i = 0; i < times.size(); ++i) {
     if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1])) {
+      const bool is_equal = i > 0 && times[i] == times[i - 1];
+      const std::string remedy =
+          rate > 0 ? fmt::format(
+                         "; the file states {:g} Hz: `rate: {:g} Hz` in recording.yaml "
+                         "replaces its times",
+                         rate, rate)
+                   : "; `rate`, `times` or `times_file` in recording.yaml replace its times";
       throw InputError(
           {file.string()},
-          fmt::format("frame {}: the time {} s does not follow the one before", i, times[i]));
+          fmt::format("frame {}: the time {} s does not follow the one before{}{}", i, times[i],
+                      is_equal ? ", perhaps because it was rounded" : "", remedy));
     }
   }
 }
@@ -55,6 +64,7 @@ struct TrcHeader {
   Eigen::Index frame_count = 0;
   Eigen::Index marker_count = 0;
   std::string unit;
+  double rate = 0;  // Hz; 0 if it is not stated
 };
 
 TrcHeader ReadTrcHeader(const std::filesystem::path& file,
@@ -77,6 +87,7 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
     if (keys[i] == "NumFrames") header.frame_count = whole_number(keys[i], values[i]);
     if (keys[i] == "NumMarkers") header.marker_count = whole_number(keys[i], values[i]);
     if (keys[i] == "Units") header.unit = values[i];
+    if (keys[i] == "DataRate") header.rate = ParseNumber(values[i]).value_or(0);
   }
   if (header.frame_count == 0 || header.marker_count == 0) {
     throw InputError({file.string(), 2, 1}, "NumFrames or NumMarkers is missing");
@@ -86,17 +97,20 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
 
 }  // namespace
 
-MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns) {
+MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
+                              FileTimes times) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".c3d") return ReadC3d(file);
-  if (extension == ".trc") return ReadTrc(file);
-  return ReadMarkerCsv(file, columns);
+  if (extension == ".trc") return ReadTrc(file, times);
+  return ReadMarkerCsv(file, columns, times);
 }
 
-MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns) {
+MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
+                           FileTimes times) {
   const DelimitedTable table = ReadDelimitedTable(file);
   MarkerTracks tracks;
+  tracks.warnings = table.notes;
   for (const std::string& column : table.header) {
     const std::string name = MatchStar(column, columns.x);
     if (!name.empty()) tracks.names.push_back(name);
@@ -119,14 +133,17 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
     }
   }
   if (!columns.time.empty()) {
-    tracks.times = table.values.col(RequireColumn(table, columns.time));
-    CheckTimes(file, tracks.times);
+    const Eigen::Index time = RequireColumn(table, columns.time);
+    if (times == FileTimes::kUsed) {
+      tracks.times = table.values.col(time);
+      CheckTimes(file, tracks.times, 0);
+    }
   }
   return tracks;
 }
 
-MarkerTracks ReadTrc(const std::filesystem::path& file) {
-  const std::string content = ReadFilledFile(file);
+MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
+  const std::string content = ReadFilledText(file);
   const std::vector<std::string_view> lines = Lines(content);
   const TrcHeader header = ReadTrcHeader(file, lines);
   MarkerTracks tracks;
@@ -172,8 +189,9 @@ MarkerTracks ReadTrc(const std::filesystem::path& file) {
     throw InputError({file.string()}, fmt::format("holds {} frames where NumFrames says {}",
                                                   times.size(), header.frame_count));
   }
+  if (use == FileTimes::kReplaced) return tracks;
   tracks.times = Eigen::Map<const Eigen::VectorXd>(times.data(), times.size());
-  CheckTimes(file, tracks.times);
+  CheckTimes(file, tracks.times, header.rate);
   return tracks;
 }
 
@@ -188,7 +206,7 @@ MarkerTracks SelectMarkers(const MarkerTracks& tracks, const std::vector<std::st
     }
     chosen.push_back(found - tracks.names.begin());
   }
-  MarkerTracks selected{names, tracks.times, {}, tracks.length_unit};
+  MarkerTracks selected{names, tracks.times, {}, tracks.length_unit, tracks.warnings};
   for (const Eigen::Matrix3Xd& positions : tracks.positions) {
     selected.positions.push_back(positions(Eigen::all, chosen));
   }

@@ -16,6 +16,7 @@ struct MarkerTracks {
   std::vector<Eigen::Matrix3Xd> positions;  // f matrices 3 × m, in the file's length unit;
                                             // NaN where a marker was not seen
   std::string length_unit;                  // unit stated in the file ("mm"); empty if none
+  std::vector<std::string> warnings;        // doubts about the file, which they name
 };
 
 // Points of a recording that are identified by name, in its frames and in SI units.
@@ -31,16 +32,25 @@ struct MarkerColumns {
   std::string x = "*_x", y = "*_y", z = "*_z";
 };
 
+// Whether the times of a file are used, so that they have to ascend, or are replaced by others.
+enum class FileTimes { kUsed, kReplaced };
+
 // Reads a file in the format of its extension: .trc, .c3d, or else a CSV with a header. `columns`
 // applies to the CSV only. Throws InputError naming the file (and line) when it is absent,
-// truncated or malformed, when its counts contradict one another, or when its times do not ascend.
-MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns);
-MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns);
-MarkerTracks ReadTrc(const std::filesystem::path& file);
+// truncated or malformed, when its counts contradict one another, or when times that are used do
+// not ascend. Times that are replaced are left out.
+MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
+                              FileTimes times = FileTimes::kUsed);
+MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
+                           FileTimes times = FileTimes::kUsed);
+MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes times = FileTimes::kUsed);
 
 // Reads the 3-D points of a C3D file (The C3D File Format User Guide, https://www.c3d.org),
 // integers or floating-point numbers written on Intel, DEC or SGI/MIPS processors. A point with a
-// negative residual was not seen. Times start at 0.
+// negative residual was not seen. Times start at 0. Where the 16-bit frame numbers of the header
+// do not suffice, the parameters POINT:FRAMES, POINT:LONG_FRAMES or TRIAL:ACTUAL_START_FIELD and
+// ACTUAL_END_FIELD give the number of frames; without them a file that seems to hold more frames
+// than its header says leads to a warning.
 MarkerTracks ReadC3d(const std::filesystem::path& file);
 
 // The tracks of the markers `names`, in that order. Throws InputError naming `file` and listing its

@@ -13,6 +13,7 @@ void ReadSource(const Config& frames, const DataLocation& data, MeshFrames* sour
                 std::vector<std::string>*) {
   source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
   source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
+  ReadObjectChoice(frames, data, source);
   source->tracked = frames.Flag("tracked", false);
 }
 
@@ -20,8 +21,9 @@ void LoadPoints(const MeshFrames& source, Frame* frame) {
   const std::filesystem::path& path = source.files[frame->index][0];
   const TriMeshFile file = ReadTriMesh(path);
   for (const std::string& note : file.notes) LOG(INFO) << path.string() << ": " << note;
-  KeepUsablePoints({source.world_from_file * file.mesh.vertices, Eigen::Matrix3Xd(3, 0)},
-                   file.mesh.triangles, frame);
+  Eigen::Matrix3Xd vertices = source.world_from_file * file.mesh.vertices;
+  ForgetOtherObjects(source, file.mesh.triangles, &vertices, frame);
+  KeepUsablePoints({vertices, Eigen::Matrix3Xd(3, 0)}, file.mesh.triangles, frame);
   if (frame->triangles.cols() > 0) {
     frame->cloud.normals = UnitNormals(VertexNormals({frame->cloud.points, frame->triangles}),
                                        Eigen::Matrix3d::Identity());

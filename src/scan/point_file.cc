@@ -164,8 +164,10 @@ bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
   return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
 }
 
-PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& columns) {
+PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& columns,
+                     std::vector<std::string>* notes) {
   const DelimitedTable table = ReadDelimitedTable(file);
+  if (notes != nullptr) notes->insert(notes->end(), table.notes.begin(), table.notes.end());
   PointCloud cloud;
   cloud.normals.resize(3, 0);
   if (!columns.position[0].empty()) {
@@ -198,10 +200,11 @@ std::string LowerCaseExtension(const std::filesystem::path& file) {
 
 }  // namespace
 
-PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns) {
+PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
+                         std::vector<std::string>* notes) {
   const std::string extension = LowerCaseExtension(file);
   if (extension == ".ply" || extension == ".pcd") return ReadWithPcl(file, extension == ".ply");
-  return ReadTable(file, columns);
+  return ReadTable(file, columns, notes);
 }
 
 void WritePointFile(const std::filesystem::path& file, const PointCloud& cloud) {

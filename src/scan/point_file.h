@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "geometry/point_cloud.h"
 
@@ -22,7 +23,9 @@ struct PointColumns {
 // decides on the format: .ply and .pcd (text or binary, float or double, with or without normals);
 // everything else is a text table (delimited_table.h). Throws InputError naming the file when it is
 // absent, truncated or malformed, or when it is unclear which columns are the coordinates.
-PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns);
+// Doubts about the first line of a table are appended to `notes`, if it is given.
+PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
+                         std::vector<std::string>* notes = nullptr);
 
 // Writes a binary little-endian PLY of doubles, with normals if the cloud has them. Atomic. Throws
 // InputError when the file cannot be written.

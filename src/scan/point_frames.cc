@@ -46,6 +46,7 @@ void ReadSource(const Config& frames, const DataLocation& data, PointFrames* sou
                 std::vector<std::string>*) {
   source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
   source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
+  ReadObjectChoice(frames, data, source);
   source->tracked = frames.Flag("tracked", false);
   source->columns = ReadPointColumns(frames);
   const std::string triangles = frames.Text("triangles", "");
@@ -62,8 +63,10 @@ void ReadSource(const Config& frames, const DataLocation& data, PointFrames* sou
 }
 
 void LoadPoints(const PointFrames& source, Frame* frame) {
-  PointCloud raw = ReadPointFile(source.files[frame->index][0], source.columns);
+  PointCloud raw = ReadPointFile(source.files[frame->index][0], source.columns, &frame->notes);
+  frame->repeated_count = ForgetRepeatedPoints(source.tracked, &raw.points);
   raw.points = source.world_from_file * raw.points;
+  ForgetOtherObjects(source, source.connectivity, &raw.points, frame);
   KeepUsablePoints(raw, source.connectivity, frame);
   frame->cloud.normals = UnitNormals(frame->cloud.normals, source.world_from_file.rotation);
   frame->sensors.positions = source.sensors;

@@ -1,5 +1,9 @@
 #include "scan/recorded_object.h"
 
+#include <fmt/format.h>
+
+#include "scan/time_span.h"
+
 namespace lacuna {
 
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
@@ -20,6 +24,37 @@ std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
     add(force.file);
   }
   return files;
+}
+
+std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last) {
+  std::vector<std::string> doubts;
+  if (object.density) {
+    const std::string doubt = DoubtOfDensity(*object.density);
+    if (!doubt.empty()) doubts.push_back(doubt);
+  }
+  const auto check = [&](const std::string& name, const std::filesystem::path& file,
+                         const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values) {
+    if (file.empty()) return;
+    const std::string doubt = DoubtOfTimeSpan(times, values, first, last);
+    if (!doubt.empty()) doubts.push_back(fmt::format("{} ({}): {}", name, file.string(), doubt));
+  };
+  for (const RecordedGrip& grip : object.grips) {
+    check("the path of " + grip.region.name, grip.file, grip.times, grip.displacements);
+  }
+  for (const MeasuredForce& force : object.forces) {
+    check("the force " + force.name, force.file, force.times, force.forces);
+  }
+  return doubts;
+}
+
+std::string DoubtOfDensity(double density) {
+  constexpr double kAir = 1.2, kLightest = 4 * kAir, kHeaviest = 23000;  // kg/m³; osmium: 22590
+  if (density >= kLightest && density <= kHeaviest) return "";
+  if (density > kHeaviest)
+    return fmt::format("a density of {:g} kg/m³ is above that of all metals", density);
+  return fmt::format(
+      "a density of {:g} kg/m³ is like that of air ({} kg/m³); 1 g/cm^3 is 1000 kg/m^3", density,
+      kAir);
 }
 
 }  // namespace lacuna

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "scan/measured_force.h"
@@ -23,6 +24,13 @@ struct RecordedObject {
 
 // The files that the object's regions, paths and forces were read from.
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);
+
+// Doubts about the object, one sentence each: its density, and loads and paths whose times do not
+// belong to a recording from `first` to `last` (s).
+std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last);
+
+// A sentence about a density (kg/m³) that no soft object has; empty if there is no doubt.
+std::string DoubtOfDensity(double density);
 
 }  // namespace lacuna
 

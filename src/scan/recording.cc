@@ -1,6 +1,7 @@
 #include "scan/recording.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glog/logging.h>
 
 #include <algorithm>
@@ -31,6 +32,22 @@ void CheckRowCount(const Recording& recording, const Frame& frame) {
   throw InputError(fmt::format("frame {} of \"{}\": {}", frame.index, recording.name, message));
 }
 
+// Why points of the frame are not used.
+std::string DescribeDropped(const Frame& frame) {
+  const Eigen::Index others =
+      frame.dropped_count - frame.repeated_count - frame.cropped_count - frame.separate_count;
+  std::vector<std::string> reasons;
+  const auto add = [&reasons](Eigen::Index count, const char* reason) {
+    if (count > 0) reasons.push_back(fmt::format("{} {}", count, reason));
+  };
+  add(frame.repeated_count, "repeat exactly");
+  add(frame.cropped_count, "outside the crop");
+  add(frame.separate_count, "not of the largest component");
+  if (reasons.empty()) return "not finite or out of range";
+  add(others, "not finite or out of range");
+  return fmt::format("{}", fmt::join(reasons, ", "));
+}
+
 std::string DescribeFrame(const Frame& frame) {
   const Eigen::Vector3d size = 1e3 * BoundingBox(frame.cloud.points).sizes();
   std::string text = fmt::format("{} points, {:.4g} mm × {:.4g} mm × {:.4g} mm", frame.cloud.Size(),
@@ -38,8 +55,8 @@ std::string DescribeFrame(const Frame& frame) {
   if (frame.cloud.HasNormals()) text += ", with normals";
   if (frame.triangles.cols() > 0) text += fmt::format(", {} triangles", frame.triangles.cols());
   if (frame.dropped_count > 0) {
-    text += fmt::format(", {} of {} dropped (not finite or out of range)", frame.dropped_count,
-                        frame.row_count);
+    text += fmt::format(", {} of {} dropped ({})", frame.dropped_count, frame.row_count,
+                        DescribeDropped(frame));
   }
   return text;
 }
@@ -86,7 +103,7 @@ Frame LoadFrame(const Recording& recording, int i) {
       recording.frames);
   LOG_IF(INFO, frame.dropped_count > 0)
       << recording.name << ", frame " << i << ": " << frame.dropped_count << " of "
-      << frame.row_count << " points dropped (not finite or out of range)";
+      << frame.row_count << " points dropped (" << DescribeDropped(frame) << ")";
   return frame;
 }
 

@@ -1,6 +1,7 @@
 // recording.yaml → Recording.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -73,13 +74,47 @@ void WarnOfReferenceSize(const Frame& first, Recording* recording) {
                   size, frame_size));
 }
 
+// The first frame. Where it cannot be used, the error names the time of the first one that can.
+Frame LoadFirstFrame(const Recording& recording) {
+  try {
+    return LoadFrame(recording, 0);
+  } catch (const InputError& problem) {
+    constexpr int kMostTries = 2000;
+    for (int i = 1; i < std::min(recording.FrameCount(), kMostTries); ++i) {
+      try {
+        LoadFrame(recording, i);
+      } catch (const InputError&) {
+        continue;
+      }
+      throw InputError(fmt::format("{}; the first usable frame is {}: `from: {:g} s` begins there",
+                                   problem.what(), i, recording.times[i]));
+    }
+    throw;
+  }
+}
+
+void WarnOfDroppedPoints(const Frame& first, Recording* recording) {
+  if (first.repeated_count == 0) return;
+  recording->warnings.push_back(fmt::format(
+      "frame 0: {} of {} points repeat exactly, as where a camera measured nothing; they are not "
+      "used",
+      first.repeated_count, first.row_count));
+}
+
 void UseFirstFrame(Recording* recording) {
-  Frame first = LoadFrame(*recording, 0);
+  Frame first = LoadFirstFrame(*recording);
   const bool is_refined = std::visit(
       [&](auto& source) { return RefineByFirstFrame(first, &source, &recording->warnings); },
       recording->frames);
   if (is_refined) first = LoadFrame(*recording, 0);
   recording->row_count = first.row_count;
+  const auto add = [recording](const std::vector<std::string>& doubts) {
+    recording->warnings.insert(recording->warnings.end(), doubts.begin(), doubts.end());
+  };
+  add(first.notes);
+  WarnOfDroppedPoints(first, recording);
+  add(std::visit([&](const auto& source) { return DoubtsOfFirstFrame(first, source); },
+                 recording->frames));
   WarnOfFrameSize(first, recording);
   WarnOfReferenceSize(first, recording);
 }
@@ -102,6 +137,10 @@ Recording LoadRecording(const std::filesystem::path& path) {
   recording.data.length_unit = ReadLengthUnit(config, "");
   const std::vector<double> frame_times = ReadFrames(config, &recording);
   recording.object = ReadObject(config, recording, frame_times);
+  for (const std::string& doubt :
+       DoubtsOfObject(recording.object, frame_times.front(), frame_times.back())) {
+    recording.warnings.push_back(doubt);
+  }
   const bool shows_surface =
       std::visit([](const auto& source) { return ShowsSurface(source); }, recording.frames);
   recording.reference = ReadReference(config, recording.data, own_folder, shows_surface);

@@ -53,7 +53,7 @@ HalfSpaceRegion ReadHalfSpace(const Config& config) {
   return region;
 }
 
-struct Contains {
+struct ContainsPoint {
   Eigen::Vector3d x;
   bool operator()(const BoxRegion& region) const {
     return region.box.squaredExteriorDistance(x) <= kBorder * kBorder;
@@ -119,7 +119,7 @@ std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes
     }
   } else {
     for (int i = 0; i < nodes.cols(); ++i) {
-      if (std::visit(Contains{nodes.col(i)}, region.shape)) selected.push_back(i);
+      if (Contains(region, nodes.col(i))) selected.push_back(i);
     }
   }
   if (selected.empty()) {
@@ -127,6 +127,10 @@ std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes
                                  region.name, DescribeRegion(region)));
   }
   return selected;
+}
+
+bool Contains(const Region& region, const Eigen::Vector3d& point) {
+  return std::visit(ContainsPoint{point}, region.shape);
 }
 
 std::string DescribeRegion(const Region& region) {

@@ -49,6 +49,9 @@ Region ReadRegion(const Config& config, const std::filesystem::path& data_folder
 // InputError with the name of the region when there is none or a listed node does not exist.
 std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes);
 
+// Whether the point (m, world frame) lies in a region that is a shape; false for listed nodes.
+bool Contains(const Region& region, const Eigen::Vector3d& point);
+
 // The shape in words, e.g. "box from (0, 0, 0) to (0.03, 0.1, 0.03) m".
 std::string DescribeRegion(const Region& region);
 

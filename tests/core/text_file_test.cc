@@ -31,5 +31,34 @@ TEST(ReadWholeFile, ErrorNamesTheUnreadableFile) {
   }
 }
 
+std::string TextOf(const std::string& bytes) {
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder / "file", bytes);
+  try {
+    return ReadTextFile(folder / "file");
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+}
+
+TEST(ReadTextFile, LeavesOutTheByteOrderMarkAndReadsLatin1) {
+  EXPECT_EQ(TextOf("\xef\xbb\xbfx,y\r\n"), "x,y\r\n");
+  EXPECT_EQ(TextOf("u [\xb5m]\n"), "u [\xc2\xb5m]\n");
+  EXPECT_EQ(TextOf("u [\xc2\xb5m]\n"), "u [\xc2\xb5m]\n");
+  EXPECT_EQ(TextOf("x\r1\r2\r"), "x\n1\n2\n") << "lines that end as on old Macintoshes";
+}
+
+TEST(ReadTextFile, NamesWhatIsNoUtf8) {
+  EXPECT_THAT(TextOf(std::string("\xff\xfex\0,\0y\0\n\0", 10)),
+              testing::HasSubstr("is encoded as UTF-16 (little endian); save it as UTF-8"));
+  EXPECT_THAT(TextOf(std::string("x\0,\0y\0\n\0", 8)),
+              testing::HasSubstr("is encoded as UTF-16 (little endian)"));
+  EXPECT_THAT(TextOf(std::string("\0x\0,\0y\0\n", 8)),
+              testing::HasSubstr("is encoded as UTF-16 (big endian)"));
+  EXPECT_THAT(TextOf(std::string("\xff\xfe\0\0x\0\0\0", 8)), testing::HasSubstr("UTF-32"));
+  EXPECT_THAT(TextOf("PK\x03\x04..."), testing::HasSubstr("Excel workbook"));
+  EXPECT_THAT(TextOf(std::string("1,2\n\0", 5)), testing::HasSubstr("it is not a text"));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 
@@ -319,6 +321,90 @@ TEST_P(PublishedMesh, IsReadAndHasAClosedBoundary) {
   const SurfaceReport report = CheckSurface(ExtractBoundary(read.mesh).surface);
   EXPECT_TRUE(report.BoundsVolume()) << DescribeFaults(report);
   EXPECT_NEAR(report.volume, TetVolumes(read.mesh).sum(), 1e-12 * report.volume);
+}
+
+// A file's vertices and triangles: "4 2", or what is wrong with it.
+std::string Counts(const std::string& name, const std::string& content) {
+  const TemporaryFolder folder;
+  const auto file = Write(folder / name, content);
+  try {
+    const TriMesh mesh = ReadTriMesh(file).mesh;
+    return fmt::format("{} {}", mesh.vertices.cols(), mesh.triangles.cols());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(ReadTriMesh, ReadsObjAsItIsWritten) {
+  const std::string v = "v\t0\t0\t0\nv  1 0 0 \nv 1 1 0.5 0.2 0.3 0.4\r\nv 0 1 0\n";
+  for (const char* faces :
+       {"f\t1\t2\t3\nf\t1\t3\t4\n", "f 1/1 2/2 3/3\nf 1//1 3//2 4//1\n",
+        "f  1/1/1  2/2/1  3/3/1 \nf 1/1/1 3/3/1 4/4/1", "f -4 -3 -2\nf -4/1 -2//1 -1/2/3\n",
+        "g a\ns off\nusemtl m\nf 1 2 \\\n3\nf 1 3 4 # the other\n"}) {
+    EXPECT_EQ(Counts("a.obj", v + faces), "4 2") << faces;
+  }
+  EXPECT_EQ(Counts("a.obj", "\xef\xbb\xbf" + v + "f 1 2 3\n"), "4 1");
+  EXPECT_THAT(Counts("a.obj", v + "f 1 2 x\n"), HasSubstr("a.obj:5: got \"x\"; expected a corner"));
+  EXPECT_THAT(Counts("a.obj", v + "f 1 2 9\n"),
+              HasSubstr("a.obj:5: there is no vertex 9: they count from 1 to 4"));
+}
+
+std::string Capitals(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::string BinaryStl(const std::string& header, uint32_t announced, int written) {
+  std::string bytes = header + std::string(80 - header.size(), ' ');
+  bytes.append(reinterpret_cast<const char*>(&announced), 4);
+  for (int t = 0; t < written; ++t) {
+    const float numbers[12] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 1, static_cast<float>(t)};
+    bytes.append(reinterpret_cast<const char*>(numbers), sizeof(numbers));
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+TEST(ReadTriMesh, ReadsStlInAnyCaseAndBinaryStlThatBeginsWithSolid) {
+  EXPECT_EQ(Counts("a.stl", Capitals(kStl)), "4 2");
+  EXPECT_EQ(Counts("a.stl",
+                   "  solid\n facet normal 0 0 1 outer loop\n vertex 0 0 0 vertex 1 0 0\n"
+                   " vertex 0 1 0 endloop endfacet\nendsolid vertex 7\n"),
+            "3 1");
+  EXPECT_EQ(Counts("a.stl", BinaryStl("solid from a CAD program", 2, 2)), "4 2");
+  EXPECT_EQ(Counts("a.stl", BinaryStl("", 2, 2) + "tail"), "4 2");
+}
+
+TEST(ReadTriMesh, SaysTruncatedOnlyOfStlThatIs) {
+  EXPECT_THAT(
+      Counts("a.stl", BinaryStl("", 3, 2)),
+      HasSubstr("truncated, or not an STL file: it announces 3 triangles and has room for 2"));
+  EXPECT_THAT(Counts("a.stl", std::string(kStl).substr(0, std::string(kStl).find("endsolid"))),
+              HasSubstr("is truncated: it ends without endsolid after 2 facets"));
+  EXPECT_THAT(Counts("a.stl", "hello"), HasSubstr("is not an STL file"));
+  std::string comma(kStl);
+  comma.replace(comma.find("0.5"), 3, "0,5");
+  EXPECT_THAT(Counts("a.stl", comma), HasSubstr("a.stl:6: got \"0,5\"; expected a coordinate"));
+}
+
+TEST(ReadTriMesh, ReadsTheVariantsOfOff) {
+  const std::string v = "0 0 0\n1 0 0\n1 1 0.5\n0 1 0\n", f = "3 0 1 2\n3 0 2 3\n";
+  for (const std::string& head :
+       {std::string("OFF 4 2 0\n"), std::string("OFF4 2 0\n"),
+        std::string("# a comment\nOFF # another\n\n4 2\n"), std::string("off\n4 2 0\n"),
+        std::string("4 2 0\n"), std::string("\xef\xbb\xbfOFF\r\n4 2 0\r\n")}) {
+    EXPECT_EQ(Counts("a.off", head + v + f), "4 2") << head;
+  }
+  EXPECT_EQ(Counts("a.off",
+                   "COFF\n4 1 0\n0 0 0 255 0 0 255\n1 0 0 255 0 0 255\n1 1 0 9 9 9 9\n"
+                   "0 1 0 0.1 0.2 0.3 1 # grey\n4 0 1 2 3 0.5 0.5 0.5\n"),
+            "4 2");
+  EXPECT_EQ(Counts("a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"),
+            "3 1");
+  EXPECT_THAT(Counts("a.off", "4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("4OFF is not read"));
+  EXPECT_THAT(Counts("a.off", "OFF\n4 2 0\n" + v + "3 0 1 2\n"),
+              HasSubstr("the file ends where face 2 of 2 should follow"));
+  EXPECT_THAT(Counts("a.off", "ply\n"), HasSubstr("an OFF file begins with OFF"));
 }
 
 }  // namespace

@@ -20,6 +20,18 @@ TEST(TetMesh, VolumesArePositiveAndFillTheBox) {
   EXPECT_NEAR(volumes.sum(), kBoxVolume, 1e-14 * kBoxVolume);
 }
 
+TEST(TetMesh, FindsATetrahedronWithoutVolume) {
+  TetMesh box = Box();
+  EXPECT_EQ(FindFlatTet(box), -1);
+  // The last corner of tetrahedron 7 moves into the plane of the others.
+  const auto tet = box.tets.col(7);
+  box.nodes.col(tet[3]) =
+      (box.nodes.col(tet[0]) + box.nodes.col(tet[1]) + box.nodes.col(tet[2])) / 3;
+  const Eigen::Index flat = FindFlatTet(box);
+  ASSERT_GE(flat, 0);
+  EXPECT_LE(flat, 7) << "others at that corner may have become flat too";
+}
+
 TEST(ToQuadratic, PutsOneNodeOnTheMiddleOfEachEdge) {
   const TetMesh linear = Box(), quadratic = ToQuadratic(linear);
   EXPECT_EQ(quadratic.Order(), 2);

@@ -76,5 +76,18 @@ TEST(FrameList, ReportsMissingFrames) {
               HasSubstr("expected one place for the number"));
 }
 
+TEST(FrameList, TakesTheNamesOfFoldersLiterally) {
+  const TestFolder folder;
+  for (const std::string name : {"100% [a]*b?", "[1-3]", "back\\slash"}) {
+    for (const int i : {1, 2}) folder.Write(name + "/s" + std::to_string(i) + ".xyz", "1 2 3\n");
+    const Config config = Config::Parse("files: s*.xyz", "recording.yaml");
+    const auto files = ReadFrameFiles(config, folder.Path() / name);
+    ASSERT_EQ(files.size(), 2u) << name;
+    EXPECT_EQ(files[0], folder.Path() / name / "s1.xyz");
+  }
+  EXPECT_EQ(ReadFrom(folder, "{pattern: '100% [a]*b?/s%d.xyz', first: 1, count: 2}").size(), 2u);
+  EXPECT_EQ(ReadFrom(folder, "files: '[1-3]/s*.xyz'").size(), 2u);
+}
+
 }  // namespace
 }  // namespace lacuna

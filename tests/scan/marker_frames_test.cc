@@ -79,5 +79,18 @@ TEST_F(RecordingTest, WrittenMarkerFramesAreReadBack) {
   EXPECT_THAT(DescribeRecording(recording), HasSubstr("markers      a, b"));
 }
 
+TEST_F(RecordingTest, ARateReplacesTheTimesOfAMarkerFile) {
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  folder_.Write("m.csv", "t,a_x,a_y,a_z\n0.00,0,0,0\n0.00,1,0,0\n0.01,2,0,0\n");
+  const std::string reference = "reference: {from: mesh, file: box.ply, length_unit: m}\n";
+  const std::string frames = "  {kind: markers, file: m.csv, columns: {time: t}";
+  EXPECT_THAT(LoadError(Yaml(frames + "}\n", reference)),
+              HasSubstr("`rate`, `times` or `times_file` in recording.yaml replace its times"));
+  EXPECT_THAT(Load(Yaml(frames + ", rate: 200 Hz}\n", reference)).times,
+              ElementsAre(0, 0.005, 0.01));
+  EXPECT_THAT(Load(Yaml(frames + ", times: [1 s, 2 s, 3 s], from: 2 s}\n", reference)).times,
+              ElementsAre(2, 3));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -256,5 +256,80 @@ TEST(C3d, ReadsTheRecordingOfTheSiliconeBeamLikeItsCsv) {
   EXPECT_LT(largest, 2e-6);
 }
 
+// Two markers in `frames` frames of integers, of which a 16-bit header announces `last`. The last
+// frame is at (7, 7, 7) counts. With `has_trial` TRIAL:ACTUAL_END_FIELD has the true number.
+std::string MakeLongC3d(int frames, int last, bool has_trial) {
+  C3dWriter c3d(kIntel);
+  c3d.Byte(2), c3d.Byte(0x50);
+  c3d.Word(2), c3d.Word(0), c3d.Word(1), c3d.Word(last), c3d.Word(0);
+  c3d.Real(1.0f);
+  c3d.Word(3), c3d.Word(0);
+  c3d.Real(100.0f);
+  c3d.PadTo(512);
+  c3d.Byte(0), c3d.Byte(0), c3d.Byte(1), c3d.Byte(kIntel);
+  const auto words = [](int value) {
+    return std::string("\x02\x01\x02", 3) + static_cast<char>(value & 0xff) +
+           static_cast<char>(value >> 8 & 0xff) + static_cast<char>(value >> 16 & 0xff) + '\0';
+  };
+  if (has_trial) {
+    c3d.Group("TRIAL", 1);
+    c3d.Parameter("ACTUAL_START_FIELD", 1, words(1));
+    c3d.Parameter("ACTUAL_END_FIELD", 1, words(frames));
+  }
+  c3d.PadTo(1024);
+  std::string content = c3d.Content();
+  content.resize(1024 + 16 * static_cast<size_t>(frames), '\0');
+  for (const int at : {0, 2, 4}) content[content.size() - 16 + at] = 7;
+  return content;
+}
+
+TEST(C3d, ReadsMoreFramesThanA16BitHeaderHolds) {
+  const TestFolder folder;
+  constexpr int kFrames = 70000;
+  // Some programs stop at the largest number, others drop the higher bits.
+  for (const int last : {65535, kFrames - 65536}) {
+    const MarkerTracks tracks = ReadC3d(folder.Write("a.c3d", MakeLongC3d(kFrames, last, true)));
+    ASSERT_EQ(tracks.positions.size(), size_t{kFrames}) << last;
+    EXPECT_EQ(tracks.positions.back().col(0), Eigen::Vector3d(7, 7, 7));
+    EXPECT_NEAR(tracks.times[kFrames - 1], 699.99, 1e-9);
+    EXPECT_TRUE(tracks.warnings.empty());
+  }
+}
+
+TEST(C3d, WarnsOfFramesThatNothingAnnounces) {
+  const TestFolder folder;
+  const MarkerTracks tracks = ReadC3d(folder.Write("a.c3d", MakeLongC3d(70000, 65535, false)));
+  EXPECT_EQ(tracks.positions.size(), 65535u);
+  EXPECT_THAT(tracks.warnings,
+              ElementsAre(HasSubstr("the file has room for 70000 frames; 65535 are "
+                                    "read")));
+  EXPECT_TRUE(ReadC3d(folder.Write("b.c3d", MakeLongC3d(65535, 65535, false))).warnings.empty());
+}
+
+TEST(C3d, AShorterRecordingDoesNotFollowTheFieldsOfItsTrial) {
+  const TestFolder folder;
+  const std::string cut = MakeLongC3d(300, 200, true);  // the trial says 300
+  EXPECT_EQ(ReadC3d(folder.Write("a.c3d", cut.substr(0, 1024 + 16 * 200))).positions.size(), 200u);
+}
+
+TEST(Trc, TimesThatAreReplacedMayBeEqual) {
+  const TestFolder folder;
+  std::string content = MakeTrc("3", "2");
+  content.replace(content.find("0.01"), 4, "0.00");
+  const auto file = folder.Write("a.trc", content);
+  EXPECT_THAT(ErrorOf([&] { ReadTrc(file); }),
+              HasSubstr("a.trc: frame 1: the time 0 s does not follow the one before, perhaps "
+                        "because it was rounded; the file states 100 Hz: `rate: 100 Hz` in "
+                        "recording.yaml replaces its times"));
+  const MarkerTracks tracks = ReadTrc(file, FileTimes::kReplaced);
+  EXPECT_EQ(tracks.positions.size(), 3u);
+  EXPECT_EQ(tracks.times.size(), 0);
+}
+
+TEST(Trc, AByteOrderMarkIsRead) {
+  const TestFolder folder;
+  EXPECT_EQ(ReadTrc(folder.Write("a.trc", "\xef\xbb\xbf" + MakeTrc("3", "2"))).names[0], "Left");
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -1,5 +1,6 @@
 #include "scan/recording.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -177,6 +178,54 @@ TEST_F(RecordingTest, WarnsOfASizeThatSuggestsAnotherUnit) {
   EXPECT_THAT(Load(Yaml(frames, reference + "}\n", "m")).warnings, IsEmpty());
   EXPECT_THAT(Load(Yaml(frames, reference + ", length_unit: mm}\n", "m")).warnings,
               ElementsAre(HasSubstr("the reference shape is 0.000114 m across, frame 0 0.114 m")));
+}
+
+TEST_F(RecordingTest, NamesTheFirstUsableTimeWhereLeadingFramesAreEmpty) {
+  WriteClouds(5);
+  for (const int i : {0, 1, 2})
+    folder_.Write("f/p" + std::to_string(i) + ".csv", "x,y,z\n0,0,0\n0,0,0\n0,0,0\n0,0,0\n");
+  EXPECT_THAT(
+      LoadError(Yaml("  {kind: points, files: f/*.csv, rate: 20 Hz}\n")),
+      HasSubstr("4 repeat exactly; the first usable frame is 3: `from: 0.15 s` begins there"));
+  EXPECT_EQ(
+      Load(Yaml("  {kind: points, files: f/*.csv, rate: 20 Hz, from: 0.15 s}\n")).FrameCount(), 2);
+}
+
+TEST_F(RecordingTest, DoubtsADensityLikeThatOfAir) {
+  WriteClouds(1);
+  const std::string frames = "  {kind: points, files: f/*.csv}\n";
+  EXPECT_THAT(Load(Yaml(frames, "density: 1.07 kg/m^3\n")).warnings,
+              ElementsAre(HasSubstr("a density of 1.07 kg/m³ is like that of air")));
+  EXPECT_THAT(Load(Yaml(frames, "density: 20 kg/m^3\n")).warnings, IsEmpty()) << "a foam";
+  EXPECT_THAT(Load(Yaml(frames, "density: 1e6 kg/m^3\n")).warnings,
+              ElementsAre(HasSubstr("above that of all metals")));
+}
+
+TEST_F(RecordingTest, DoubtsLoadsInAnotherUnitOfTime) {
+  WriteClouds(11);
+  std::string load = "t,x,y,z\n";
+  for (int i = 0; i <= 20; ++i) load += fmt::format("{},0,0,{}\n", 25 * i, i);
+  folder_.Write("load.csv", load);
+  const std::string frames = "  {kind: points, files: f/*.csv, rate: 20 Hz}\n";
+  EXPECT_THAT(
+      Load(Yaml(frames, "forces: [{name: pull, file: load.csv, time: t, x: x, y: y, z: z}]\n"))
+          .warnings,
+      ElementsAre(testing::AllOf(HasSubstr("the force pull ("),
+                                 HasSubstr("divided by 1000 (milliseconds, not seconds?)"))));
+  EXPECT_THAT(
+      Load(Yaml(frames, "forces: [{file: load.csv, time: t, time_unit: ms, x: x, y: y, z: z}]\n"))
+          .warnings,
+      IsEmpty());
+  EXPECT_THAT(
+      Load(Yaml(frames, "gripped: [{nodes: [1], path: {file: load.csv, time: t}}]\n")).warnings,
+      ElementsAre(HasSubstr("the path of grip 1 (")));
+}
+
+TEST_F(RecordingTest, DoubtsATableWhoseFirstRowWasTakenForNames) {
+  folder_.Write("p.csv", "0.5,1.5,#N/A\n" + Cloud(12));
+  EXPECT_THAT(
+      Load(Yaml("  {kind: points, files: [p.csv], columns: {x: '1', y: '2', z: '3'}}\n")).warnings,
+      ElementsAre(HasSubstr("the first line was taken for the names of the columns")));
 }
 
 }  // namespace

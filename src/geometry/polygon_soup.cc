@@ -1,0 +1,254 @@
+#include "geometry/polygon_soup.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/text_file.h"
+#include "geometry/text_scanner.h"
+
+namespace lacuna {
+namespace {
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return lower;
+}
+
+// The vertex of a corner such as 7, 7/2, 7//3 or -1/2/3, as it stands there.
+long long CornerNumber(std::string_view corner, const TextScanner& scanner) {
+  const std::string_view number = corner.substr(0, corner.find('/'));
+  long long vertex = 0;
+  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), vertex);
+  if (problem != std::errc() || end != number.data() + number.size()) {
+    scanner.Fail(fmt::format("got \"{}\"; expected a corner such as 7, 7/2 or 7//3", corner));
+  }
+  return vertex;
+}
+
+// Merges vertices with equal coordinates.
+class VertexMerger {
+ public:
+  explicit VertexMerger(PolygonSoup* soup) : soup_(*soup) {}
+
+  size_t Add(const Eigen::Vector3d& point) {
+    // Adding 0 turns −0 into 0.
+    const std::array<double, 3> key{point.x() + 0.0, point.y() + 0.0, point.z() + 0.0};
+    const auto [entry, is_new] = known_.emplace(key, soup_.points.size());
+    if (is_new) soup_.points.push_back(point);
+    return entry->second;
+  }
+
+ private:
+  PolygonSoup& soup_;
+  std::map<std::array<double, 3>, size_t> known_;
+};
+
+constexpr size_t kStlHeader = 84, kStlTriangle = 50;
+
+size_t AnnouncedTriangles(const std::string& content) {
+  static_assert(std::endian::native == std::endian::little);
+  uint32_t count = 0;
+  if (content.size() >= kStlHeader) std::memcpy(&count, content.data() + 80, sizeof(count));
+  return count;
+}
+
+bool IsTextStl(const std::string& content) {
+  const size_t begin = content.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (begin == std::string::npos || LowerCase(content.substr(begin, 5)) != "solid") return false;
+  return content.find('\0') == std::string::npos;
+}
+
+PolygonSoup ReadBinaryStl(const std::filesystem::path& file, const std::string& content) {
+  const size_t count = AnnouncedTriangles(content);
+  PolygonSoup soup;
+  VertexMerger merger(&soup);
+  for (size_t t = 0; t < count; ++t) {
+    std::array<float, 12> numbers;  // the normal, then the corners
+    std::memcpy(numbers.data(), content.data() + kStlHeader + t * kStlTriangle, sizeof(numbers));
+    std::vector<size_t> polygon;
+    for (int corner = 1; corner <= 3; ++corner) {
+      const Eigen::Vector3d point(numbers[3 * corner], numbers[3 * corner + 1],
+                                  numbers[3 * corner + 2]);
+      if (!point.allFinite()) {
+        throw InputError({file.string()},
+                         fmt::format("a corner of triangle {} of {} is not finite", t + 1, count));
+      }
+      polygon.push_back(merger.Add(point));
+    }
+    soup.polygons.push_back(std::move(polygon));
+  }
+  const size_t rest = content.size() - kStlHeader - count * kStlTriangle;
+  if (rest > 0) soup.notes.push_back(fmt::format("skipped {} bytes behind the triangles", rest));
+  return soup;
+}
+
+PolygonSoup ReadTextStl(const std::filesystem::path& file) {
+  PolygonSoup soup;
+  VertexMerger merger(&soup);
+  TextScanner scanner(file);
+  std::vector<size_t> polygon;
+  bool is_open = false;
+  while (scanner.NextLine()) {
+    while (!scanner.AtLineEnd()) {
+      const std::string word = LowerCase(scanner.Word("a keyword"));
+      // The rest of these lines is a name.
+      if (word == "solid" || word == "endsolid") {
+        is_open = word == "solid";
+        break;
+      }
+      if (word == "vertex") polygon.push_back(merger.Add(scanner.Point("a coordinate")));
+      if (word != "endloop") continue;
+      if (polygon.size() < 3) {
+        scanner.Fail(fmt::format("a facet ends after {} of 3 vertices", polygon.size()));
+      }
+      soup.polygons.push_back(std::move(polygon));
+      polygon.clear();
+    }
+  }
+  if (is_open || !polygon.empty()) {
+    scanner.Fail(fmt::format("is truncated: it ends without endsolid after {} facets",
+                             soup.polygons.size()));
+  }
+  return soup;
+}
+
+struct OffHeader {
+  long long vertices = 0, faces = 0;
+};
+
+long long OffCount(std::string_view word, const char* what, const TextScanner& scanner) {
+  long long count = -1;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (problem != std::errc() || end != word.data() + word.size() || count < 0) {
+    scanner.Fail(fmt::format("got \"{}\"; expected {}", word, what));
+  }
+  return count;
+}
+
+OffHeader ReadOffHeader(TextScanner& scanner) {
+  scanner.ExpectLine("OFF");
+  std::string_view word = scanner.Word("OFF");
+  const std::string lower = LowerCase(word);
+  if (const size_t at = lower.find("off"); at != std::string::npos) {
+    const std::string_view variant = word.substr(0, at);
+    if (variant == "n" || variant.find_first_not_of("STCNstcn") != std::string_view::npos) {
+      scanner.Fail(fmt::format("{} is not read: its vertices do not have three coordinates", word));
+    }
+    // Some programs write the first count without a blank behind the keyword.
+    word.remove_prefix(at + 3);
+    if (word.empty()) word = scanner.WordAnywhere("the number of vertices");
+  } else if (std::isdigit(static_cast<unsigned char>(word[0])) == 0) {
+    scanner.Fail(fmt::format("got \"{}\"; an OFF file begins with OFF", word));
+  }
+  OffHeader header;
+  header.vertices = OffCount(word, "the number of vertices", scanner);
+  header.faces =
+      OffCount(scanner.WordAnywhere("the number of faces"), "the number of faces", scanner);
+  return header;
+}
+
+}  // namespace
+
+PolygonSoup ReadObj(const std::filesystem::path& file) {
+  PolygonSoup soup;
+  TextScanner scanner(file, '#');
+  std::vector<int> lines;
+  while (scanner.NextLine()) {
+    const std::string_view keyword = scanner.Word("a keyword");
+    if (keyword == "v") soup.points.push_back(scanner.Point("a coordinate"));
+    if (keyword != "f") continue;
+    lines.push_back(scanner.Line());
+    std::vector<size_t> polygon;
+    while (!scanner.AtLineEnd()) {
+      const std::string_view corner = scanner.Word("a corner");
+      if (corner == "\\") {
+        scanner.ExpectLine("the rest of a face");
+        continue;
+      }
+      const long long number = CornerNumber(corner, scanner);
+      const auto count = static_cast<long long>(soup.points.size());
+      if (number == 0 || number < -count) {
+        scanner.Fail(fmt::format("there is no vertex {}: {} stand above", number, count));
+      }
+      polygon.push_back(static_cast<size_t>(number > 0 ? number - 1 : count + number));
+    }
+    soup.polygons.push_back(std::move(polygon));
+  }
+  // A face may stand above its vertices.
+  for (size_t f = 0; f < soup.polygons.size(); ++f) {
+    for (const size_t vertex : soup.polygons[f]) {
+      if (vertex < soup.points.size()) continue;
+      throw InputError({file.string(), lines[f]},
+                       fmt::format("there is no vertex {}: they count from 1 to {}", vertex + 1,
+                                   soup.points.size()));
+    }
+  }
+  return soup;
+}
+
+PolygonSoup ReadStl(const std::filesystem::path& file) {
+  const std::string content = ReadWholeFile(file);
+  const size_t count = AnnouncedTriangles(content);
+  const size_t length = kStlHeader + kStlTriangle * count;
+  if (content.size() == length) return ReadBinaryStl(file, content);
+  if (IsTextStl(content)) return ReadTextStl(file);
+  if (content.size() < kStlHeader) {
+    throw InputError({file.string()},
+                     "is not an STL file: it does not begin with \"solid\", and "
+                     "is shorter than the header of a binary one");
+  }
+  if (content.size() < length) {
+    throw InputError({file.string()},
+                     fmt::format("is truncated, or not an STL file: it announces {} triangles and "
+                                 "has room for {}",
+                                 count, (content.size() - kStlHeader) / kStlTriangle));
+  }
+  return ReadBinaryStl(file, content);
+}
+
+PolygonSoup ReadOff(const std::filesystem::path& file) {
+  PolygonSoup soup;
+  TextScanner scanner(file, '#');
+  const OffHeader header = ReadOffHeader(scanner);
+  for (long long v = 0; v < header.vertices; ++v) {
+    scanner.ExpectLine(fmt::format("vertex {} of {}", v + 1, header.vertices));
+    Eigen::Vector3d point;
+    for (double& coordinate : point) {
+      if (scanner.AtLineEnd()) scanner.ExpectLine("a coordinate");
+      coordinate = scanner.Number("a coordinate");
+    }
+    soup.points.push_back(point);
+  }
+  for (long long f = 0; f < header.faces; ++f) {
+    scanner.ExpectLine(fmt::format("face {} of {}", f + 1, header.faces));
+    const long long corners =
+        OffCount(scanner.Word("the number of corners"), "the number of corners", scanner);
+    std::vector<size_t> polygon;
+    for (long long k = 0; k < corners; ++k) {
+      const long long vertex =
+          OffCount(scanner.WordAnywhere("a corner"), "the number of a vertex", scanner);
+      if (vertex >= header.vertices) {
+        scanner.Fail(fmt::format("there is no vertex {}: they count from 0 to {}", vertex,
+                                 header.vertices - 1));
+      }
+      polygon.push_back(static_cast<size_t>(vertex));
+    }
+    soup.polygons.push_back(std::move(polygon));
+  }
+  return soup;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,121 @@
+#include "scan/recording_check.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/interrupt.h"
+#include "scan/components.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kLarge = 0.1;  // of the points; less is debris
+
+bool AreEqual(const Frame& a, const Frame& b) {
+  return a.cloud.Size() == b.cloud.Size() && a.cloud.points == b.cloud.points &&
+         a.source_row.size() == b.source_row.size() && a.source_row == b.source_row;
+}
+
+// Up to five numbers.
+std::string Listed(const std::vector<int>& frames) {
+  constexpr size_t kShown = 5;
+  const size_t shown = std::min(kShown, frames.size());
+  return fmt::format("{}{}", fmt::join(frames.begin(), frames.begin() + shown, ", "),
+                     shown < frames.size() ? ", …" : "");
+}
+
+void AddRepeats(const std::vector<int>& repeats, int frame_count,
+                std::vector<std::string>* findings) {
+  if (repeats.empty()) return;
+  findings->push_back(
+      fmt::format("{} of {} frames repeat{} the one before exactly (frame{} {}): a camera that "
+                  "delivered a frame "
+                  "twice, or data without noise at rest",
+                  repeats.size(), frame_count, repeats.size() == 1 ? "s" : "",
+                  repeats.size() == 1 ? "" : "s", Listed(repeats)));
+}
+
+// Components of the frames' scans and surfaces.
+class ComponentSurvey {
+ public:
+  void Add(const Frame& frame) {
+    const bool is_surface = frame.triangles.cols() > 0;
+    const Eigen::VectorXi component =
+        is_surface ? ComponentsOfSurface({frame.cloud.points, frame.triangles})
+                   : ComponentsOfCloud(frame.cloud.points);
+    // Fewer points of a cloud are left to the outlier filter.
+    const size_t fewest =
+        is_surface ? 3 : std::max<size_t>(4, static_cast<size_t>(frame.cloud.Size()) / 500);
+    std::string text = DescribeSmallComponents(frame.cloud.points, component, fewest);
+    if (text.empty()) return;
+    if (frames_.empty()) {
+      first_ = std::move(text);
+      is_large_ = (component.array() > 0).count() > kLarge * static_cast<double>(component.size());
+    }
+    frames_.push_back(frame.index);
+  }
+  void AddTo(std::vector<std::string>* findings) const {
+    if (frames_.empty()) return;
+    findings->push_back(fmt::format(
+        "frame {}{}: beside the largest component there {}; {}", frames_.front(),
+        frames_.size() > 1 ? fmt::format(" (and {} others)", frames_.size() - 1) : "",
+        first_.starts_with("1 ") ? "is " + first_ : "are " + first_,
+        is_large_
+            ? "if they are views of one object, the cameras' poses or intrinsics are wrong; if "
+              "not, `crop` or `keep_largest: true` under `frames` leaves them out"
+            : "nothing holds them in a model; `keep_largest: true` under `frames` leaves them "
+              "out"));
+  }
+
+ private:
+  std::vector<int> frames_;
+  std::string first_;      // what the first of them shows
+  bool is_large_ = false;  // whether that is more than debris
+};
+
+void AddDoubtfulTables(const Recording& recording, std::vector<std::string>* findings) {
+  for (const std::filesystem::path& file : FilesOf(recording.object)) {
+    if (file.extension() == ".npy") continue;
+    const std::vector<std::string> notes = ReadDelimitedTable(file).notes;
+    findings->insert(findings->end(), notes.begin(), notes.end());
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> ExamineFrames(const Recording& recording, int64_t most_points) {
+  std::vector<std::string> findings;
+  const bool shows_surface =
+      std::visit([](const auto& source) { return ShowsSurface(source); }, recording.frames);
+  ComponentSurvey components;
+  std::vector<int> repeats, with_repeated_points;
+  Frame before;
+  int64_t rows = 0;
+  int i = 0;
+  for (; i < recording.FrameCount() && rows < most_points; ++i) {
+    ThrowIfInterrupted();
+    Frame frame = LoadFrame(recording, i);
+    rows += frame.row_count;
+    if (i > 0 && AreEqual(frame, before)) repeats.push_back(i);
+    if (i > 0 && frame.repeated_count > 0) with_repeated_points.push_back(i);
+    if (shows_surface) components.Add(frame);
+    before = std::move(frame);
+  }
+  AddRepeats(repeats, i, &findings);
+  components.AddTo(&findings);
+  if (!with_repeated_points.empty()) {
+    findings.push_back(
+        fmt::format("points that repeat exactly were left out of {} later frames ({})",
+                    with_repeated_points.size(), Listed(with_repeated_points)));
+  }
+  AddDoubtfulTables(recording, &findings);
+  if (i < recording.FrameCount())
+    findings.push_back(
+        fmt::format("only the first {} of {} frames were examined", i, recording.FrameCount()));
+  return findings;
+}
+
+}  // namespace lacuna

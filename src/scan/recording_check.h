@@ -1,0 +1,24 @@
+// What an examination of all frames of a recording finds, beyond the first frame.
+#ifndef LACUNA_SCAN_RECORDING_CHECK_H_
+#define LACUNA_SCAN_RECORDING_CHECK_H_
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "scan/recording.h"
+
+namespace lacuna {
+
+// Sentences about frames that repeat the one before exactly, about small components beside the
+// object in scans and meshes, about points that repeat within later frames, and about tables of
+// loads and paths whose first line is doubtful. Reads the frames one after the other until
+// `most_points` rows have been read, and says if it stopped there. Throws InputError when a frame
+// cannot be read, and Interrupted.
+std::vector<std::string> ExamineFrames(const Recording& recording,
+                                       int64_t most_points = std::numeric_limits<int64_t>::max());
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_RECORDING_CHECK_H_

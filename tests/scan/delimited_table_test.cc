@@ -1,0 +1,64 @@
+#include "scan/delimited_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scan/test_files.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+DelimitedTable Table(const std::string& content) {
+  const TestFolder folder;
+  return ReadDelimitedTable(folder.Write("t.csv", content));
+}
+
+TEST(DelimitedTable, AByteOrderMarkIsNoPartOfAName) {
+  const DelimitedTable table = Table("\xef\xbb\xbfx,y,z\r\n1,2,3\r\n");
+  EXPECT_THAT(table.header, ElementsAre("x", "y", "z"));
+  EXPECT_EQ(table.values(0, 2), 3);
+}
+
+TEST(DelimitedTable, ReadsDecimalCommasWhereAnotherDelimiterIsUsed) {
+  for (const char* content : {"x;y;z\n1,5;-2,25;3\n", "x\ty\tz\n1,5\t-2,25\t3\n", "1,5;-2,25;3\n",
+                              "1,5\t-2,25\t3\n", "1,5 -2,25 3\n", "x y z\n1,5 -2,25 3\n",
+                              "\"1,5\",\"-2,25\",\"3\"\n", "x,y,z\n\"1,5\",\"-2,25\",3\n"}) {
+    const DelimitedTable table = Table(content);
+    ASSERT_EQ(table.values.rows(), 1) << content;
+    ASSERT_EQ(table.values.cols(), 3) << content;
+    EXPECT_EQ(table.values.row(0), Eigen::RowVector3d(1.5, -2.25, 3)) << content;
+  }
+}
+
+TEST(DelimitedTable, NamesDecimalCommasThatCannotBeTold) {
+  EXPECT_THAT(ErrorOf([] { Table("x,y,z\n1,5,2,5,3,5\n"); }),
+              HasSubstr("t.csv:2:1: has 6 entries where the first line has 3; decimal commas need "
+                        "another delimiter"));
+  EXPECT_THAT(ErrorOf([] { Table("x;y\n1.234,5;2\n"); }), HasSubstr("got \"1.234,5\""));
+}
+
+TEST(DelimitedTable, FindsAColumnWhoseNameDiffersInCase) {
+  const DelimitedTable table = Table("X,Y,y\n1,2,3\n");
+  EXPECT_EQ(FindColumn(table, "x"), 0);
+  EXPECT_EQ(FindColumn(table, "y"), 2);
+  EXPECT_EQ(FindColumn(Table("X,Y,Y\n1,2,3\n"), "y"), std::nullopt) << "two are alike";
+}
+
+TEST(DelimitedTable, DoubtsAFirstLineOfNumbers) {
+  EXPECT_THAT(
+      Table("0.5,1.25,#N/A\n1,2,3\n").notes,
+      ElementsAre(HasSubstr("t.csv:1: the first line was taken for the names of the columns "
+                            "because of \"#N/A\", but 2 of its 3 entries are numbers")));
+  EXPECT_THAT(Table("0,1,2\n1.5,2.5,3.5\n1.5,2.5,3.25\n").notes,
+              ElementsAre(HasSubstr("the first line, 0, 1, 2, was read as a row of data")));
+  EXPECT_THAT(Table("t,1,2,3\n0.1,2,3,4\n").notes, IsEmpty()) << "numbers of channels";
+  EXPECT_THAT(Table("0,1,2\n3,4,5\n6,7,8\n").notes, IsEmpty()) << "a table of whole numbers";
+  EXPECT_THAT(Table("0.5,1,2\n1.5,2.5,3.5\n1.5,2.5,3.25\n").notes, IsEmpty());
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,56 @@
+#include "scan/recording_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scan/recording_fixture.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class RecordingCheckTest : public RecordingTest {
+ protected:
+  std::vector<std::string> Findings(int64_t most_points = 1'000'000'000) const {
+    return ExamineFrames(Load(Yaml("  {kind: points, files: f/*.csv, rate: 10 Hz}\n")),
+                         most_points);
+  }
+};
+
+TEST_F(RecordingCheckTest, TellsFramesThatRepeatTheOneBefore) {
+  WriteClouds(6);
+  EXPECT_THAT(Findings(), IsEmpty());
+  folder_.Write("f/p3.csv", "x,y,z\n" + Cloud(12, 2));
+  EXPECT_THAT(Findings(), ElementsAre(HasSubstr("1 of 6 frames repeats the one before exactly "
+                                                "(frame 3)")));
+  folder_.Write("f/p4.csv", "x,y,z\n" + Cloud(12, 2));
+  EXPECT_THAT(Findings(), ElementsAre(HasSubstr("2 of 6 frames repeat the one before exactly "
+                                                "(frames 3, 4)")));
+}
+
+TEST_F(RecordingCheckTest, TellsSmallComponentsWithSizeAndPlace) {
+  WriteClouds(3, 200);
+  std::string debris = "x,y,z\n" + Cloud(200);
+  for (int i = 0; i < 6; ++i) debris += std::to_string(300 + i) + ",0,0\n";
+  folder_.Write("f/p2.csv", debris);
+  EXPECT_THAT(Findings(),
+              ElementsAre(HasSubstr("frame 2: beside the largest component there is 1 separate "
+                                    "component: 6 points, 5 mm across, around (0.302, 0, 0) m")));
+}
+
+TEST_F(RecordingCheckTest, TellsPointsThatRepeatInLaterFrames) {
+  WriteClouds(3);
+  folder_.Write("f/p2.csv", "x,y,z\n" + Cloud(12, 2) + "0,0,0\n0,0,0\n");
+  EXPECT_THAT(Findings(), ElementsAre(HasSubstr("left out of 1 later frames (2)")));
+}
+
+TEST_F(RecordingCheckTest, SaysWhereItStopped) {
+  WriteClouds(5);
+  EXPECT_THAT(Findings(24), ElementsAre("only the first 2 of 5 frames were examined"));
+}
+
+}  // namespace
+}  // namespace lacuna

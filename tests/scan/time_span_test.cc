@@ -1,0 +1,37 @@
+#include "scan/time_span.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The doubt about a ramp that starts at `begin` and ends at `end`, for a recording of 0 s to 0.5 s.
+std::string OfRamp(double begin, double end) {
+  Eigen::Matrix3Xd values = Eigen::Matrix3Xd::Zero(3, 51);
+  values.row(2).setLinSpaced(0, 1);
+  return DoubtOfTimeSpan(Eigen::VectorXd::LinSpaced(51, begin, end), values, 0, 0.5);
+}
+
+TEST(TimeSpan, NamesTheLikelyUnit) {
+  EXPECT_THAT(OfRamp(0, 490), HasSubstr("its times are 0 s to 490 s, those of the recording 0 s to "
+                                        "0.5 s, in which it changes by 0.1 % of its range; they "
+                                        "would fit divided by 1000 (milliseconds, not seconds?)"));
+  EXPECT_THAT(OfRamp(0, 5.2e5), HasSubstr("microseconds"));
+  EXPECT_THAT(OfRamp(0, 0.0005), HasSubstr("multiplied by 1000 (seconds, not milliseconds?)"));
+  EXPECT_THAT(OfRamp(1000, 1000.5), HasSubstr("check their unit and their origin"));
+}
+
+TEST(TimeSpan, DoesNotDoubtASeriesThatCoversTheRecording) {
+  EXPECT_EQ(OfRamp(0, 0.5), "");
+  EXPECT_EQ(OfRamp(-0.2, 1), "");
+  EXPECT_EQ(OfRamp(0.1, 0.3), "") << "a pulse";
+  EXPECT_EQ(OfRamp(0.1, 0.104), "") << "a knock of a few milliseconds";
+  const Eigen::Matrix3Xd constant = Eigen::Matrix3Xd::Ones(3, 2);
+  EXPECT_EQ(DoubtOfTimeSpan(Eigen::Vector2d(0, 1), constant, 0, 0.5), "");
+}
+
+}  // namespace
+}  // namespace lacuna
