@@ -22,6 +22,7 @@ json ToJson(const Calibration& calibration) {
           {"message", calibration.message},
           {"parameters", std::vector<double>(parameters.begin(), parameters.end())},
           {"estimates", estimates},
+          {"predictions", calibration.predictions},
           {"rms", calibration.rms}};
 }
 
@@ -34,6 +35,7 @@ Calibration FromJson(const json& value) {
       parameters.data(), static_cast<Eigen::Index>(parameters.size()));
   for (const json& estimate : value.at("estimates"))
     calibration.estimates.push_back(EstimateFromJson(estimate));
+  calibration.predictions = value.at("predictions");
   calibration.rms = value.at("rms");
   return calibration;
 }

@@ -25,6 +25,7 @@ TEST(RefitStore, GivesBackWhatWasKeptToTheLastBit) {
   calibration.message = "one";
   calibration.parameters = Eigen::Vector2d(1.0 / 3, -1e-300);
   calibration.rms = std::sqrt(2);
+  calibration.predictions = 17;
   ParameterEstimate open;
   open.value = 0.1;
   open.verdict = ParameterEstimate::Verdict::kFlat;
@@ -39,6 +40,7 @@ TEST(RefitStore, GivesBackWhatWasKeptToTheLastBit) {
   EXPECT_EQ(kept->message, "one");
   EXPECT_EQ(kept->parameters, calibration.parameters);
   EXPECT_EQ(kept->rms, calibration.rms);
+  EXPECT_EQ(kept->predictions, 17);
   ASSERT_EQ(kept->estimates.size(), 1u);
   EXPECT_EQ(kept->estimates[0].value, 0.1);
   EXPECT_EQ(kept->estimates[0].deviation, std::numeric_limits<double>::infinity());
