@@ -155,10 +155,14 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
   diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
-  if (diagnosis.baseline_rms_over_sigma > kFarFromTruth)
+  // A refit that comes down to the noise shows that first order led to the right minimum.
+  const bool is_found =
+      WeighRefits(context, &ranked).least_rms_over_sigma <= kThresholds.refit.converged_rms;
+  if (diagnosis.baseline_rms_over_sigma > kFarFromTruth && !is_found) {
     RefitAsRankedEarly(context, RankEarly(problem, fitted, ranking, setting), options.refits,
                        &ranked);
-  WeighRefits(context, &ranked);
+    WeighRefits(context, &ranked);
+  }
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
   RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
