@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "record/fitted_reaction.h"
 #include "record/run_record.h"
 #include "record/unexplained_force_record.h"
 
@@ -129,6 +130,7 @@ struct ComparedRecording {
   Eigen::VectorXd grip_distance;         // m, undeformed object; empty: unknown
   NoiseFloor noise_floor;
   std::vector<ComparedPart> parts;  // in chronological order: fitted, then held-out frames
+  std::vector<FittedReaction> reactions;  // measured forces of the grips, as the fit predicts them
   // The following is known only if the model was run again.
   bool height_by_gravity = false;               // height is measured against gravity, else along z
   int field_frames = 0;                         // number of frames written for ParaView
