@@ -369,8 +369,7 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
     const size_t k = static_cast<size_t>(at);
     PredictionHints hints;
     if (same != nullptr) hints.observed = &same->PointsOf(fitted[k]).observed;
-    if (near != nullptr && near->usable)
-      hints.near_equilibrium = &near->PointsOf(fitted[k]).held;
+    if (near != nullptr && near->usable) hints.near_equilibrium = &near->PointsOf(fitted[k]).held;
     recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions, hints);
   });
   LinearisedMisfit all;

@@ -32,8 +32,8 @@ struct LinearisedMisfit {
     Eigen::Index first_row = 0;
     SeriesLayout layout;
     MeasurementErrors errors;
-    std::vector<char> fitted;        // for each frame: 1 where it was fitted, 0 where held out
-    Eigen::VectorXd speed;           // d(predicted)/dt, one entry per row, m/s or N/s
+    std::vector<char> fitted;  // for each frame: 1 where it was fitted, 0 where held out
+    Eigen::VectorXd speed;     // d(predicted)/dt, one entry per row, m/s or N/s
     // Of points only. For each frame: what the prediction was compared with.
     std::vector<Observed> observed;
     Eigen::VectorXd held;  // 3n, m: the equilibrium before the motion
@@ -119,8 +119,8 @@ class CalibrationProblem {
                      FitMemory* memory = nullptr) const;
 
   // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
-  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a similar
-  // model on the same mesh; the search for the equilibria starts from those there. Throws
+  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a
+  // similar model on the same mesh; the search for the equilibria starts from those there. Throws
   // Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                              const std::vector<MisfitDirection>& directions = {},

@@ -9,7 +9,7 @@
 #include "calibration/mesh_limit.h"
 #include "calibration/misfit_report.h"
 #include "calibration/prior_conflicts.h"
-#include "calibration/reaction_errors.h"
+#include "calibration/reaction_report.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "prediction/predicted_body.h"

@@ -183,9 +183,9 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
         return motion;
       }
     }
-    const StepEquation equation =
-        frame == 0 ? StepEquation(model, before, TimeScheme::kQuasiStatic, 0)
-                   : StepEquation(model, before, scene.step.scheme, time_step);
+    const StepEquation equation = frame == 0
+                                      ? StepEquation(model, before, TimeScheme::kQuasiStatic, 0)
+                                      : StepEquation(model, before, scene.step.scheme, time_step);
     motion.reactions.col(frame) = GripReactions(model, grips, equation, history.position, {});
     Eigen::Vector3d load = Eigen::Vector3d::Zero();
     for (const SceneLoad& each : scene.loads) load += each.profile.At(history.time) * each.force;
@@ -226,8 +226,8 @@ MeasuredReaction LoadCellReading(const Scene& scene, const SceneMotion& motion, 
   reading.labels = {"x", "y", "z"};
   reading.directions = Eigen::Matrix3d::Identity();
   reading.deviation = *grip.force_deviation;
-  reading.times = Eigen::Map<const Eigen::VectorXd>(
-      motion.times.data(), static_cast<Eigen::Index>(motion.times.size()));
+  reading.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
+                                                    static_cast<Eigen::Index>(motion.times.size()));
   reading.forces = motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(number));
   for (Eigen::Index k = 0; k < reading.forces.size(); ++k)
     reading.forces.reshaped()[k] +=
@@ -243,8 +243,7 @@ void AddGrips(const Scene& scene, const SceneMotion& motion, RecordedObject* obj
     for (size_t k = 0; k < scene.grips.size(); ++k) {
       const SceneGrip& grip = scene.grips[k];
       if (IsHeld(grip) == driven || (driven && !grip.force_deviation)) continue;
-      if (grip.force_deviation)
-        cells.emplace_back(k, object->fixed.size() + object->grips.size());
+      if (grip.force_deviation) cells.emplace_back(k, object->fixed.size() + object->grips.size());
       if (driven)
         object->grips.push_back(DrivenGrip(scene, grip));
       else

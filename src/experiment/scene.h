@@ -92,7 +92,8 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress);
 
 // Writes what the scanner sees as a recording into `folder`, and the true surfaces into its
 // subfolder truth (scan/scan_writer.h). The recording names the regions that are fixed but not
-// those that move, unless a load cell measures their force: it then has their path too. Throws InputError when it cannot be written.
+// those that move, unless a load cell measures their force: it then has their path too. Throws
+// InputError when it cannot be written.
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder);
 

@@ -44,8 +44,7 @@ struct EndState {
 };
 
 EndState EndOf(const MotionHistory& history, const TangentLinear& linear) {
-  return {
-      {history.position, history.velocity}, {linear.position(), linear.velocity()}, {}, {}};
+  return {{history.position, history.velocity}, {linear.position(), linear.velocity()}, {}, {}};
 }
 
 // The reactions at the end of the step of `equation`.
@@ -71,9 +70,9 @@ class Visits {
   // Visits the times up to `end`, the end of a step of that length between the two states; of
   // length 0 where they are the same.
   void Until(double end, double length, const EndState& from, const EndState& to) {
-    const Eigen::VectorXd rate =
-        length > 0 ? Eigen::VectorXd((to.reaction - from.reaction) / length)
-                   : Eigen::VectorXd::Zero(to.reaction.size());
+    const Eigen::VectorXd rate = length > 0
+                                     ? Eigen::VectorXd((to.reaction - from.reaction) / length)
+                                     : Eigen::VectorXd::Zero(to.reaction.size());
     while (AreLeft() && NextTime() <= end) {
       const double t = length > 0 ? 1 - (end - NextTime()) / length : 1;
       const auto state = length > 0 ? Interpolate(from.state, to.state, length, t) : to.state;
@@ -82,9 +81,9 @@ class Visits {
       const Eigen::VectorXd reaction = (1 - t) * from.reaction + t * to.reaction;
       const Eigen::MatrixXd reaction_jacobian =
           (1 - t) * from.reaction_jacobian + t * to.reaction_jacobian;
-      visit_(static_cast<int>(next_), {NextTime(), state.position, state.velocity,
-                                       jacobian.position, jacobian.velocity, reaction, rate,
-                                       reaction_jacobian});
+      visit_(static_cast<int>(next_),
+             {NextTime(), state.position, state.velocity, jacobian.position, jacobian.velocity,
+              reaction, rate, reaction_jacobian});
       summary_.states = static_cast<int>(++next_);
     }
   }
@@ -155,8 +154,8 @@ PredictionSummary Predict(
     history.time = end;
     ++summary.steps;
     EndState to = EndOf(history, linear);
-    AddReactions(model, options.reactions,
-                 StepEquation(model, before, options.step.scheme, length), {}, linear, &to);
+    AddReactions(model, options.reactions, StepEquation(model, before, options.step.scheme, length),
+                 {}, linear, &to);
     visits.Until(history.time, length, from, to);
     from = std::move(to);
   }

@@ -124,10 +124,9 @@ void CheckReactions(const Config& config, PredictedRecording* item) {
   for (MeasuredReaction& reaction : item->recording.object.reactions) {
     if (std::none_of(item->frames.begin(), item->frames.end(),
                      [&](int frame) { return reaction.Covers(times[frame]); }))
-      config.Fail("recording",
-                  fmt::format("{} covers {:g} s to {:g} s, in which no frame lies",
-                              reaction.file.string(), reaction.times[0],
-                              reaction.times[reaction.times.size() - 1]));
+      config.Fail("recording", fmt::format("{} covers {:g} s to {:g} s, in which no frame lies",
+                                           reaction.file.string(), reaction.times[0],
+                                           reaction.times[reaction.times.size() - 1]));
     if (reaction.deviation > 0) continue;
     reaction.deviation = WhiteNoise(reaction.forces);
     reaction.deviation_is_estimated = true;

@@ -62,7 +62,8 @@ MeasurementErrors ReadingErrors(const MeasuredReaction& reading) {
 
 Eigen::VectorXd TareOf(const ReactionMisfit& misfit, const MeasuredReaction& reading,
                        const std::vector<char>& among) {
-  return CommonError(misfit.residual, misfit.count, misfit.components, ReadingErrors(reading), among)
+  return CommonError(misfit.residual, misfit.count, misfit.components, ReadingErrors(reading),
+                     among)
       .transpose();
 }
 

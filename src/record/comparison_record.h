@@ -129,7 +129,7 @@ struct ComparedRecording {
   std::vector<std::string> point_names;  // numbers if the recording is not available
   Eigen::VectorXd grip_distance;         // m, undeformed object; empty: unknown
   NoiseFloor noise_floor;
-  std::vector<ComparedPart> parts;  // in chronological order: fitted, then held-out frames
+  std::vector<ComparedPart> parts;        // in chronological order: fitted, then held-out frames
   std::vector<FittedReaction> reactions;  // measured forces of the grips, as the fit predicts them
   // The following is known only if the model was run again.
   bool height_by_gravity = false;               // height is measured against gravity, else along z

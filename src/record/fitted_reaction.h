@@ -26,8 +26,8 @@ struct FittedReaction {
   std::vector<std::string> labels;  // of the components: "x", "y", "z", or "along"
   double deviation = 0;             // N, σ
   bool deviation_is_estimated = false;
-  double tare_deviation = 0;  // N, of the prior
-  std::vector<double> tare;   // N, for each component
+  double tare_deviation = 0;   // N, of the prior
+  std::vector<double> tare;    // N, for each component
   double largest_reading = 0;  // N
   ReactionMeasure in_fit, held_out;
 };

@@ -171,6 +171,11 @@ std::string ComparisonTable(const ComparisonRecord& record) {
                    part.worst_point < 0 ? "-" : recording.point_names[part.worst_point]);
     }
   }
+  for (const ComparedRecording& recording : record.recordings) {
+    if (recording.reactions.empty()) continue;
+    table += fmt::format("\n  measured forces of {}: rms error of a component\n", recording.name);
+    for (const FittedReaction& reaction : recording.reactions) table += ReactionLines(reaction);
+  }
   return table;
 }
 

@@ -31,9 +31,9 @@ std::string ReactionLines(const FittedReaction& reaction) {
 }
 
 std::string DescribeReactionFit(const FittedReaction& reaction, const std::string& recording) {
-  std::string text = fmt::format("{}, force on {} ({}; the largest reading is {:.3g} N):", recording,
-                                 reaction.name, fmt::join(reaction.labels, ", "),
-                                 reaction.largest_reading);
+  std::string text =
+      fmt::format("{}, force on {} ({}; the largest reading is {:.3g} N):", recording,
+                  reaction.name, fmt::join(reaction.labels, ", "), reaction.largest_reading);
   const auto add = [&](const char* frames, const ReactionMeasure& measure) {
     if (measure.values == 0) return;
     text += fmt::format(
@@ -54,7 +54,8 @@ std::string SharesText(const std::vector<FittedParameter>& parameters) {
           fmt::format("{} {:.0f} %", parameter.name, 100 * *parameter.share_of_forces));
   if (shares.empty()) return "";
   return fmt::format(
-      "share of the measured forces in what the data tell, the rest being that of markers or scans: "
+      "share of the measured forces in what the data tell, the rest being that of markers or "
+      "scans: "
       "{}",
       fmt::join(shares, "; "));
 }

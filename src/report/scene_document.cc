@@ -195,8 +195,7 @@ json SceneDocuments(const ReportedModel& model) {
   for (size_t r = 0; r < model.calibration.recordings.size(); ++r) {
     const RecordedResiduals residuals = ReadResiduals(misfit, static_cast<int>(r), file);
     if (!residuals.frames.empty())
-      scenes.push_back(
-          SceneOf(model, r, residuals, forces, LoadOf(reactions, r, reaction_file)));
+      scenes.push_back(SceneOf(model, r, residuals, forces, LoadOf(reactions, r, reaction_file)));
   }
   return scenes;
 }

@@ -44,8 +44,7 @@ MeasuredReaction ReadReaction(const Config& item, const DataLocation& data,
                               const std::vector<double>& frame_times) {
   MeasuredReaction reaction;
   const std::vector<std::string> columns = ReadComponents(item, &reaction);
-  const double sign =
-      item.Choice<double>("exerted_by", {{"grip", 1.0}, {"object", -1.0}}, "grip");
+  const double sign = item.Choice<double>("exerted_by", {{"grip", 1.0}, {"object", -1.0}}, "grip");
   const double unit = ReadUnit(item, "unit", kForce, "N");
   TimeSeries series = ReadColumns(item, data, frame_times, columns, sign * unit);
   reaction.times = std::move(series.times);

@@ -13,9 +13,9 @@
 namespace lacuna {
 
 struct TimeSeries {
-  DelimitedTable table;     // the file it was read from
-  Eigen::VectorXd times;    // k, s, ascending
-  Eigen::MatrixXd values;   // c × k, SI, finite
+  DelimitedTable table;    // the file it was read from
+  Eigen::VectorXd times;   // k, s, ascending
+  Eigen::MatrixXd values;  // c × k, SI, finite
 };
 
 // Reads `file` (.npy or text): the columns `names` (names, or numbers from 1) in multiples of

@@ -9,7 +9,7 @@
 #include "calibration/calibration_run.h"
 #include "calibration/held_out_misfit.h"
 #include "calibration/linear_misfit.h"
-#include "calibration/reaction_errors.h"
+#include "calibration/reaction_report.h"
 #include "effects/catalogue.h"
 #include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
@@ -69,8 +69,7 @@ TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
 
   // A prediction that is known is not made again.
   const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
-  const FittedReaction same =
-      MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0);
+  const FittedReaction same = MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0);
   EXPECT_NEAR(same.in_fit.rms, jaw.in_fit.rms, 1e-6 * jaw.in_fit.rms);
   EXPECT_NEAR(same.held_out.rms, jaw.held_out.rms, 1e-6 * jaw.held_out.rms);
 }
@@ -123,9 +122,11 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
     const auto rows = [&](const Eigen::VectorXd& all) {
       return all.segment(force.first_row, force.layout.Rows());
     };
-    // Equilibria are known to 1e-6 of the forces.
+    // Equilibria are known to 1e-6 of the forces. The rate, for the clock, is the mean over a step
+    // between two frames, in which the curve bends by 1 %.
+    const double tolerance = k == 2 ? 1e-2 : 1e-3;
     EXPECT_LT((rows(here.jacobian.col(k)) - rows(difference)).norm(),
-              1e-3 * rows(difference).norm() + 1e-9)
+              tolerance * rows(difference).norm() + 1e-9)
         << k;
     // The registration of the markers does not concern the load cell.
     if (k >= 3) EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;

@@ -14,7 +14,7 @@
 namespace lacuna {
 namespace {
 
-constexpr double kModulus = 2e5;                             // Pa
+constexpr double kModulus = 2e5;                               // Pa
 constexpr double kLength = 0.1, kWidth = 0.01, kDepth = 0.02;  // m
 
 Grip Displaced(const TetMesh& mesh, const Eigen::VectorXi& nodes, const Eigen::Vector3d& by) {
@@ -27,18 +27,16 @@ Grip Displaced(const TetMesh& mesh, const Eigen::VectorXi& nodes, const Eigen::V
 Eigen::VectorXd ReactionsOfBar(const std::array<int, 3>& cells, const Eigen::Vector3d& by,
                                bool along_middle_line) {
   Model model;
-  model.body = std::make_shared<const Body>(MakeBody(
-      BoxMesh({0, 0, -0.5 * kDepth}, {kLength, kWidth, 0.5 * kDepth}, cells, 2), 1000));
+  model.body = std::make_shared<const Body>(
+      MakeBody(BoxMesh({0, 0, -0.5 * kDepth}, {kLength, kWidth, 0.5 * kDepth}, cells, 2), 1000));
   const TetMesh& mesh = model.body->mesh;
   // Without lateral contraction, so that the clamps do not disturb the strain of a bar.
-  model.effects = {
-      MakeEffect("linear_elasticity", {{"young_modulus", kModulus}, {"poisson_ratio", 0}})};
+  model.effects = {MakeEffect("linear", {{"young_modulus", kModulus}, {"poisson_ratio", 0}})};
   const auto at_end = [&](const Eigen::Vector3d& at) {
     return at.x() > kLength - 1e-6 && (!along_middle_line || std::abs(at.z()) < 1e-6);
   };
-  model.grips = {
-      {NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() < 1e-6; }), {}},
-      Displaced(mesh, NodesWhere(mesh, at_end), by)};
+  model.grips = {{NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() < 1e-6; }), {}},
+                 Displaced(mesh, NodesWhere(mesh, at_end), by)};
   PredictionOptions options;
   options.step.scheme = TimeScheme::kQuasiStatic;
   options.step.refuse_inverted = false;
@@ -56,7 +54,8 @@ TEST(GripReaction, OfABarInTensionIsModulusTimesAreaTimesStrain) {
   const Eigen::VectorXd reaction =
       ReactionsOfBar({5, 2, 2}, {kStrain * kLength, 0, 0}, /*along_middle_line=*/false);
   const double force = kModulus * kWidth * kDepth * kStrain;  // 0.8 N
-  // The strain is uniform, which the elements represent exactly: only the solver's tolerance counts.
+  // The strain is uniform, which the elements represent exactly: only the solver's tolerance
+  // counts.
   EXPECT_NEAR(reaction[3], force, 1e-6 * force);   // the grip pulls the body outwards
   EXPECT_NEAR(reaction[0], -force, 1e-6 * force);  // so does the clamp
   for (const int other : {1, 2, 4, 5}) EXPECT_NEAR(reaction[other], 0, 1e-6 * force);
@@ -87,18 +86,19 @@ struct DrivenBar {
   double time_step = 0.004;
 
   DrivenBar() {
-    body = std::make_shared<const Body>(MakeBody(
-        Jittered(BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {4, 1, 1}), 0.02, 0.1, 3), 1000));
+    body = std::make_shared<const Body>(
+        MakeBody(Jittered(BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {4, 1, 1}), 0.02, 0.1, 3), 1000));
   }
 
   Model MakeModel() const {
-    Model model{body,
-                {MakeEffect("neo_hookean", {{"young_modulus", modulus}, {"poisson_ratio", 0.4}}),
-                 MakeEffect("gravity", {{"acceleration_z", -9.81}}),
-                 MakeEffect("mass_damping", {{"alpha", alpha}}),
-                 MakeEffect("viscoelastic_branch",
-                            {{"modulus", branch}, {"relaxation_time", 0.02}, {"poisson_ratio", 0.4}})},
-                {}};
+    Model model{
+        body,
+        {MakeEffect("neo_hookean", {{"young_modulus", modulus}, {"poisson_ratio", 0.4}}),
+         MakeEffect("gravity", {{"acceleration_z", -9.81}}),
+         MakeEffect("mass_damping", {{"alpha", alpha}}),
+         MakeEffect("viscoelastic_branch",
+                    {{"modulus", branch}, {"relaxation_time", 0.02}, {"poisson_ratio", 0.4}})},
+        {}};
     const Eigen::VectorXi nodes =
         NodesWhere(body->mesh, [](const Eigen::Vector3d& at) { return at.x() < 0.005; });
     const Eigen::Matrix3Xd rest = body->mesh.nodes(Eigen::all, nodes);
@@ -136,8 +136,8 @@ struct DrivenBar {
     const Eigen::Index rows = 3 * static_cast<Eigen::Index>(times.size());
     Eigen::VectorXd reaction(rows);
     if (by != nullptr) by->resize(rows, static_cast<Eigen::Index>(perturbations.size()));
-    const PredictionSummary summary = Predict(
-        model, options, times, perturbations, [&](int index, const PredictedState& state) {
+    const PredictionSummary summary =
+        Predict(model, options, times, perturbations, [&](int index, const PredictedState& state) {
           reaction.segment<3>(3 * index) = state.reaction;
           if (by != nullptr) by->middleRows<3>(3 * index) = state.reaction_jacobian;
         });
@@ -173,9 +173,9 @@ TEST(GripReaction, ChangesTheMomentum) {
       Predict(model, options, times, {}, [&](int index, const PredictedState& state) {
         const Eigen::Vector3d momentum = state.velocity.reshaped(3, mass.size()) * mass;
         const double weight = index == 0 || index == 200 ? 0.5 : 1;  // trapezoidal rule
-        impulse += weight * kSpacing *
-                   (state.reaction + Eigen::Vector3d(0, 0, -9.81 * mass.sum()) -
-                    bar.alpha * momentum);
+        impulse +=
+            weight * kSpacing *
+            (state.reaction + Eigen::Vector3d(0, 0, -9.81 * mass.sum()) - bar.alpha * momentum);
         (index == 0 ? first : last) = momentum;
       });
   ASSERT_TRUE(summary.IsUsable()) << summary.message;
@@ -188,9 +188,8 @@ TEST(GripReaction, SensitivitiesAgreeWithDifferences) {
   const std::vector<double> times{-0.01, 0.0004, 0.0125, 0.0301, 0.0498};
   DrivenBar bar;
   const Model model = bar.MakeModel();
-  std::vector<Perturbation> perturbations{{model.effects[0], 0},
-                                          {model.effects[2], 0},
-                                          {model.effects[3], 0}};
+  std::vector<Perturbation> perturbations{
+      {model.effects[0], 0}, {model.effects[2], 0}, {model.effects[3], 0}};
   Perturbation pull, lift;
   pull.held_force = bar.UnitPull();
   lift.grip = [&](double time, const Eigen::VectorXd&) {

@@ -61,9 +61,10 @@ TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesIts
 }
 
 TEST_F(MeasuredReactionTest, AFixedPartMayHaveALoadCellToo) {
-  const Recording recording = Load(Yaml(
-      kFrames, "fixed: [{nodes: [1]}, {name: base, nodes: [2], measured_force: {file: load.csv, "
-               "time: t, time_unit: ms, z: fz}}]\n"));
+  const Recording recording =
+      Load(Yaml(kFrames,
+                "fixed: [{nodes: [1]}, {name: base, nodes: [2], measured_force: {file: load.csv, "
+                "time: t, time_unit: ms, z: fz}}]\n"));
   EXPECT_EQ(recording.object.reactions.at(0).held, 1u);
   EXPECT_EQ(recording.object.reactions.at(0).name, "base");
 }
@@ -89,7 +90,8 @@ TEST_F(MeasuredReactionTest, MistakesAreNamedWithTheirPlace) {
               AllOf(HasSubstr("load.csv"), HasSubstr("force")));
   EXPECT_THAT(error("{file: load.csv, time: t, z: fz, deviation: -1 N}"),
               HasSubstr("measured_force.deviation"));
-  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, tare: 1 N}"), HasSubstr("tare_deviation"));
+  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, tare_deviaton: 1 N}"),
+              HasSubstr("tare_deviation"));
 }
 
 TEST_F(MeasuredReactionTest, WhatIsWrittenIsReadAgain) {

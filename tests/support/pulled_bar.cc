@@ -19,8 +19,8 @@ void WritePulledBar(const std::filesystem::path& folder, const PulledBarTruth& t
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(PulledBarMesh(), 1000));
   const TetMesh& mesh = model.body->mesh;
-  model.effects = {MakeEffect(
-      "neo_hookean", {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}})};
+  model.effects = {
+      MakeEffect("neo_hookean", {{"young_modulus", truth.young_modulus}, {"poisson_ratio", 0.4}})};
   model.effects.insert(model.effects.end(), truth.hidden.begin(), truth.hidden.end());
   const Eigen::VectorXi jaw =
       NodesWhere(mesh, [](const Eigen::Vector3d& at) { return at.x() > 0.078; });

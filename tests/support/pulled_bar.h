@@ -15,14 +15,14 @@
 namespace lacuna {
 
 struct PulledBarTruth {
-  double young_modulus = 1e5;  // Pa
-  double noise = 5e-5;         // m, of a marker's coordinate
-  double force_noise = 0.01;   // N
-  double tare = 0.08;          // N, of the load cell, along x
+  double young_modulus = 1e5;                              // Pa
+  double noise = 5e-5;                                     // m, of a marker's coordinate
+  double force_noise = 0.01;                               // N
+  double tare = 0.08;                                      // N, of the load cell, along x
   std::vector<std::shared_ptr<const Effect>> hidden = {};  // that a model may lack
 };
-inline constexpr int kPulledFrames = 16;     // at 1 Hz
-inline constexpr double kStretch = 0.0005;   // m per frame
+inline constexpr int kPulledFrames = 16;      // at 1 Hz
+inline constexpr double kStretch = 0.0005;    // m per frame
 inline constexpr double kPulledUntil = 11.5;  // s: the frames after it are held out
 
 // The mesh with which the data are made.
