@@ -129,7 +129,9 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
               tolerance * rows(difference).norm() + 1e-9)
         << k;
     // The registration of the markers does not concern the load cell.
-    if (k >= 3) EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;
+    if (k >= 3) {
+      EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;
+    }
   }
   // The weight of the bar is carried by both ends; a column of a candidate has the row of the jaw.
   const double mass = problem.body()->node_mass.sum();

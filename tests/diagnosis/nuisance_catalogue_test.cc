@@ -114,7 +114,9 @@ TEST(NuisanceCatalogue, OfARecordingWithALoadCellHaveItsRowsInTheClockOnly) {
   for (const NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual)) {
     const bool is_clock = nuisance.card.name == "clock";
     EXPECT_EQ(rows_of_force(nuisance.columns).norm() > 0, is_clock) << nuisance.card.name;
-    if (is_clock) EXPECT_EQ(rows_of_force(nuisance.columns), force.speed);
+    if (is_clock) {
+      EXPECT_EQ(rows_of_force(nuisance.columns), force.speed);
+    }
     ++recordings;
   }
   EXPECT_GE(recordings, 3);
