@@ -20,10 +20,11 @@ struct Arguments {
   std::string recording;
 };
 
-// Writes the trajectory for ParaView, and the loads as a table.
+// Writes the trajectory for ParaView, and the loads and the forces of the grips as a table.
 void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& folder) {
   std::vector<TimedFile> series;
-  Eigen::MatrixXd loads(static_cast<Eigen::Index>(motion.times.size()), 4);
+  const Eigen::Index frames = static_cast<Eigen::Index>(motion.times.size());
+  Eigen::MatrixXd loads(frames, 4);
   for (size_t k = 0; k < motion.times.size(); ++k) {
     TetMesh deformed = motion.body->mesh;
     deformed.nodes = motion.positions[k];
@@ -36,11 +37,14 @@ void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& fol
     loads.row(static_cast<Eigen::Index>(k)) << motion.times[k], motion.load[k].transpose();
   }
   WritePvd(folder / "body.pvd", series);
-  SaveCsv({{"time_s", loads.col(0)},
-           {"load_x_N", loads.col(1)},
-           {"load_y_N", loads.col(2)},
-           {"load_z_N", loads.col(3)}},
-          folder / "loads.csv");
+  CsvTable table{{"time_s", loads.col(0)},
+                 {"load_x_N", loads.col(1)},
+                 {"load_y_N", loads.col(2)},
+                 {"load_z_N", loads.col(3)}};
+  for (Eigen::Index row = 0; row < motion.reactions.rows(); ++row)
+    table.push_back({fmt::format("grip_{}_{}_N", row / 3 + 1, "xyz"[row % 3]),
+                     motion.reactions.row(row).head(frames)});
+  SaveCsv(table, folder / "loads.csv");
 }
 
 int Simulate(const Arguments& arguments) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -50,11 +51,37 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
       lost, misfit.frames.size());
 }
 
+// The rows of `more` appended to those of `all`.
+void AppendRows(const Eigen::MatrixXd& more, Eigen::MatrixXd* all) {
+  const Eigen::Index rows = all->rows();
+  all->conservativeResize(rows + more.rows(), more.cols());
+  all->bottomRows(more.rows()) = more;
+}
+
+// Appends whitened rows to a prediction. `series`: rows of one frame.
+void AppendWhitened(const Eigen::MatrixXd& residual, const Eigen::MatrixXd& jacobian,
+                    Eigen::Index series, Prediction* prediction) {
+  const Eigen::Index first = prediction->residual.size();
+  prediction->residual.conservativeResize(first + residual.rows());
+  prediction->residual.tail(residual.rows()) = residual.col(0);
+  AppendRows(jacobian, &prediction->jacobian);
+  for (Eigen::Index row = 0; row < residual.rows(); ++row)
+    prediction->before.push_back(row < series ? -1 : first + row - series);
+}
+
 bool HasTheSameMarkers(const Recording& a, const Recording& b) {
   return a.markers.names == b.markers.names && a.markers.places == b.markers.places;
 }
 
 }  // namespace
+
+const LinearisedMisfit::Part& LinearisedMisfit::PointsOf(size_t recording) const {
+  const auto found = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
+    return part.recording == recording && part.IsOfPoints();
+  });
+  CHECK(found != parts.end());
+  return *found;
+}
 
 CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMesh& mesh)
     : study_(study),
@@ -213,15 +240,23 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
     part.message = model.item().name + ": " + part.message;
     return part;
   }
+  const auto columns = [&](const Eigen::MatrixXd& by) {
+    return with_jacobian ? ColumnsOf(r, by, 0) : Eigen::MatrixXd(by.rows(), 0);
+  };
   const auto whitened = [&](const Eigen::MatrixXd& what) {
     return Whitened(what, misfit.count, model.PointCount(), ErrorsOf(model), misfit.deformation);
   };
-  part.residual = whitened(misfit.residual);
-  const Eigen::Index rows = part.residual.size();
-  const Eigen::Index series = rows / static_cast<Eigen::Index>(std::max<size_t>(1, frames.size()));
-  for (Eigen::Index row = 0; row < rows; ++row)
-    part.before.push_back(row < series ? -1 : row - series);
-  if (with_jacobian) part.jacobian = whitened(ColumnsOf(r, misfit.jacobian, 0));
+  AppendWhitened(whitened(misfit.residual), whitened(columns(misfit.jacobian)),
+                 model.observer().Components() * model.PointCount(), &part);
+  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
+    const ReactionMisfit& reaction = misfit.reactions[k];
+    const auto whitened_force = [&](const Eigen::MatrixXd& what) {
+      return Whitened(what, reaction.count, reaction.components,
+                      ReadingErrors(model.Reactions()[k]));
+    };
+    AppendWhitened(whitened_force(reaction.residual), whitened_force(columns(reaction.jacobian)),
+                   reaction.components, &part);
+  }
   return part;
 }
 
@@ -285,7 +320,10 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     linearised.message = item.name + ": " + misfit.summary.message;
     return linearised;
   }
-  LinearisedMisfit::Part& part = linearised.part;
+  const auto columns = [&](const Eigen::MatrixXd& by) {
+    return ColumnsOf(r, by.leftCols(by.cols() - 1), static_cast<Eigen::Index>(directions.size()));
+  };
+  LinearisedMisfit::Part part;
   part.recording = r;
   part.errors = ErrorsOf(model);
   const Eigen::Index components = model.observer().Components();
@@ -300,10 +338,23 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
   part.observed = std::move(misfit.observed);
   part.held = std::move(misfit.summary.held);
   part.speed = -misfit.jacobian.rightCols<1>();
-  if (with_jacobian)
-    linearised.jacobian = ColumnsOf(r, misfit.jacobian.leftCols(misfit.jacobian.cols() - 1),
-                                    static_cast<Eigen::Index>(directions.size()));
+  if (with_jacobian) linearised.jacobian = columns(misfit.jacobian);
   linearised.residual = std::move(misfit.residual);
+  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
+    const ReactionMisfit& reaction = misfit.reactions[k];
+    LinearisedMisfit::Part& of_force = linearised.parts.emplace_back();
+    of_force.recording = r;
+    of_force.reaction = k;
+    of_force.first_row = linearised.residual.size();
+    of_force.errors = ReadingErrors(model.Reactions()[k]);
+    of_force.layout = {reaction.components, part.layout.times, reaction.count, {}};
+    of_force.fitted = part.fitted;
+    of_force.speed = -reaction.jacobian.rightCols<1>();
+    linearised.residual.conservativeResize(of_force.first_row + reaction.residual.size());
+    linearised.residual.tail(reaction.residual.size()) = reaction.residual;
+    if (with_jacobian) AppendRows(columns(reaction.jacobian), &linearised.jacobian);
+  }
+  linearised.parts.insert(linearised.parts.begin(), std::move(part));
   return linearised;
 }
 
@@ -317,8 +368,8 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
   ParallelFor(static_cast<int64_t>(fitted.size()), 1, [&](int64_t at) {
     const size_t k = static_cast<size_t>(at);
     PredictionHints hints;
-    if (same != nullptr) hints.observed = &same->parts[k].observed;
-    if (near != nullptr && near->usable) hints.near_equilibrium = &near->parts[k].held;
+    if (same != nullptr) hints.observed = &same->PointsOf(fitted[k]).observed;
+    if (near != nullptr && near->usable) hints.near_equilibrium = &near->PointsOf(fitted[k]).held;
     recordings[k] = LineariseRecording(fitted[k], values, with_jacobian, directions, hints);
   });
   LinearisedMisfit all;
@@ -326,17 +377,18 @@ LinearisedMisfit CalibrationProblem::Linearise(const Eigen::VectorXd& values, bo
   for (LinearisedRecording& recording : recordings) {
     all.message = recording.message;
     if (!all.message.empty()) return all;
-    recording.part.first_row = rows;
+    for (LinearisedMisfit::Part& part : recording.parts) part.first_row += rows;
     rows += recording.residual.size();
   }
   all.residual.resize(rows);
   if (with_jacobian)
     all.jacobian.resize(rows, static_cast<Eigen::Index>(parameters_.size() + directions.size()));
   for (LinearisedRecording& recording : recordings) {
-    const Eigen::Index first = recording.part.first_row, count = recording.residual.size();
+    const Eigen::Index first = recording.parts.front().first_row;
+    const Eigen::Index count = recording.residual.size();
     all.residual.segment(first, count) = recording.residual;
     if (with_jacobian) all.jacobian.middleRows(first, count) = recording.jacobian;
-    all.parts.push_back(std::move(recording.part));
+    std::move(recording.parts.begin(), recording.parts.end(), std::back_inserter(all.parts));
   }
   all.usable = true;
   return all;

@@ -2,8 +2,8 @@
 //
 // The unknowns are the fitted parameters of the model and the nuisance parameters of each fitted
 // recording (its holding force, its clock, its registration). The residual is predicted minus
-// measured over the fitted frames, whitened by the measurement errors. calibration_fits.h minimises
-// it.
+// measured over the fitted frames, whitened by the measurement errors: of markers or scans, and of
+// the reactions of the grips where these are measured. calibration_fits.h minimises it.
 #ifndef LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 #define LACUNA_CALIBRATION_CALIBRATION_PROBLEM_H_
 
@@ -23,18 +23,26 @@ namespace lacuna {
 
 // The misfit of the fitted recordings over all of their frames, held-out frames included, and its
 // derivatives at some parameter values. The rows of the recordings follow one another; they are in
-// metres and not whitened.
+// m, those of reactions in N, and not whitened.
 struct LinearisedMisfit {
+  // The points of one recording, or one of its measured reactions; the latter follow the former.
   struct Part {
-    size_t recording = 0;  // its index in the study
+    size_t recording = 0;            // its index in the study
+    std::optional<size_t> reaction;  // its index in RecordingModel::Reactions(); none for points
     Eigen::Index first_row = 0;
     SeriesLayout layout;
     MeasurementErrors errors;
-    std::vector<char> fitted;        // for each frame: 1 where it was fitted, 0 where held out
-    Eigen::VectorXd speed;           // d(predicted)/dt, one entry per row, m/s
-    std::vector<Observed> observed;  // for each frame: what the prediction was compared with
-    Eigen::VectorXd held;            // 3n, m: the equilibrium before the motion
+    std::vector<char> fitted;  // for each frame: 1 where it was fitted, 0 where held out
+    Eigen::VectorXd speed;     // d(predicted)/dt, one entry per row, m/s or N/s
+    // Of points only. For each frame: what the prediction was compared with.
+    std::vector<Observed> observed;
+    Eigen::VectorXd held;  // 3n, m: the equilibrium before the motion
+
+    bool IsOfPoints() const { return !reaction.has_value(); }
   };
+  // The points of a recording (CHECKed to be there).
+  const Part& PointsOf(size_t recording) const;
+
   bool usable = false;
   std::string message;
   Eigen::VectorXd residual;
@@ -111,8 +119,8 @@ class CalibrationProblem {
                      FitMemory* memory = nullptr) const;
 
   // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
-  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a similar
-  // model on the same mesh; the search for the equilibria starts from those there. Throws
+  // the same for each recording. `same`, if given, provides the correspondences. `near`: of a
+  // similar model on the same mesh; the search for the equilibria starts from those there. Throws
   // Interrupted.
   LinearisedMisfit Linearise(const Eigen::VectorXd& values, bool with_jacobian,
                              const std::vector<MisfitDirection>& directions = {},
@@ -132,13 +140,13 @@ class CalibrationProblem {
                             Eigen::Index further) const;
 
   std::vector<size_t> FittedRecordings() const;
-  // The parts of Predict() and Linearise() for one recording; recordings are predicted side by
+  // The results of Predict() and Linearise() for one recording; recordings are predicted side by
   // side. `misfit` receives the misfit that the prediction was made from.
   Prediction PredictRecording(size_t recording, const Eigen::VectorXd& values, bool with_jacobian,
                               double horizon, const PredictionHints& hints, Misfit* misfit) const;
   struct LinearisedRecording {
     std::string message;  // the reason why it is not usable; empty where it is
-    LinearisedMisfit::Part part;
+    std::vector<LinearisedMisfit::Part> parts;  // first_row counts from that of the recording
     Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
   };

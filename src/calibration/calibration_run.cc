@@ -9,6 +9,7 @@
 #include "calibration/mesh_limit.h"
 #include "calibration/misfit_report.h"
 #include "calibration/prior_conflicts.h"
+#include "calibration/reaction_report.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "prediction/predicted_body.h"
@@ -22,7 +23,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 16;
+constexpr int kCalibrationVersion = 17;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -51,7 +52,7 @@ std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
 
 struct CalibrationStage {
   CalibrationRecord record;
-  CsvTable misfit;
+  CsvTable misfit, reactions;
 };
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
@@ -91,6 +92,7 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
     record.recordings.push_back({misfits[r].name, item.fitted,
                                  EstimateRecordingNoise(item, item.frames), misfits[r].in_fit,
                                  misfits[r].held_out, std::nullopt});
+    record.recordings.back().reactions = misfits[r].reactions;
     const auto& own = problem.models()[r].nuisances();
     for (size_t k = 0; k < own.size() && !item.fitted; ++k)
       record.recordings.back().own.push_back(
@@ -101,6 +103,9 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   }
   record.prior_conflicts = FindPriorConflicts(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);
+  stage.reactions = ReactionTable(problem, misfits);
+  const std::vector<double> shares = SharesOfForces(problem, calibration.parameters);
+  for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].share_of_forces = shares[k];
   progress->End();
   if (calibration.rms <= kFarFromTruth) {
     progress->Begin("finer elements", 0);
@@ -163,9 +168,10 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
       [](const CalibrationStage& value, const std::filesystem::path& folder) {
         WriteCalibrationFile(value.record, folder / "calibration.json");
         if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
+        if (!value.reactions.empty()) SaveCsv(value.reactions, folder / "reactions.csv");
       },
       [](const std::filesystem::path& folder) {
-        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}};
+        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}};
       });
   run.Finish();
   stage.record.mesh = reference.quality;

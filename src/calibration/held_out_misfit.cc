@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "calibration/reaction_errors.h"
 #include "core/parallel.h"
 #include "prediction/recording_nuisances.h"
 
@@ -40,8 +41,16 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
 std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
                                   const LinearisedMisfit* known) {
   if (known == nullptr || model.Markers() == nullptr) return std::nullopt;
+  std::optional<Misfit> found;
   for (const LinearisedMisfit::Part& part : known->parts) {
     if (part.recording != recording) continue;
+    if (part.reaction) {
+      found->reactions.push_back({part.layout.series,
+                                  known->residual.segment(part.first_row, part.layout.Rows()),
+                                  {},
+                                  part.layout.count});
+      continue;
+    }
     const Eigen::Index components = model.observer().Components();
     Misfit misfit;
     misfit.frames = model.item().frames;
@@ -52,9 +61,9 @@ std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
     misfit.deformation = part.layout.deformation;
     misfit.observed = part.observed;
     misfit.summary.status = PredictionSummary::Status::kReached;
-    return misfit;
+    found = std::move(misfit);
   }
-  return std::nullopt;
+  return found;
 }
 
 // `places` are the offsets of the markers, where another recording has determined them.
@@ -84,6 +93,9 @@ RecordingMisfit MisfitOf(const CalibrationProblem& problem, const Eigen::VectorX
                                   : CommonError(recording.misfit.residual, recording.misfit.count,
                                                 recording.misfit.points, errors, tells_places,
                                                 recording.misfit.deformation);
+  for (size_t k = 0; k < recording.misfit.reactions.size(); ++k)
+    recording.reactions.push_back(MeasureReaction(
+        model.Reactions()[k], recording.misfit.reactions[k], recording.fitted, tells_places));
   recording.in_fit = Measure(recording, true, errors.noise);
   recording.held_out = Measure(recording, false, errors.noise);
   return recording;

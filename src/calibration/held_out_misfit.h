@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
+#include "record/fitted_reaction.h"
 #include "record/model_errors.h"
 
 namespace lacuna {
@@ -21,6 +22,7 @@ struct RecordingMisfit {
   Eigen::MatrixXd place_offset;    // components × points, m: the errors of the points' places
   bool has_own_places = true;      // false: the offsets are taken from a fitted recording
   MisfitMeasure in_fit, held_out;  // held out: later frames, or the whole recording
+  std::vector<FittedReaction> reactions;  // one per reading of RecordingModel::Reactions()
 };
 
 // The misfits of all recordings at these values of the problem's parameters. For a recording that

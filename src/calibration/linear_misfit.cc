@@ -52,10 +52,14 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
   NoiseLevel level;
   const auto pooled = [&](const Eigen::VectorXd& rows) {
     SeriesStatistics mean{0, 0, 0};
+    const auto recordings =
+        std::count_if(misfit.parts.begin(), misfit.parts.end(),
+                      [](const LinearisedMisfit::Part& part) { return part.IsOfPoints(); });
     for (const LinearisedMisfit::Part& part : misfit.parts) {
+      if (!part.IsOfPoints()) continue;
       const SeriesStatistics own =
           Statistics(rows.segment(part.first_row, part.layout.Rows()), part.layout);
-      const double share = 1.0 / static_cast<double>(misfit.parts.size());
+      const double share = 1.0 / static_cast<double>(recordings);
       mean.lag_one += share * own.lag_one;
       mean.spacing += share * own.spacing;
       mean.long_run += share * own.long_run;

@@ -34,8 +34,8 @@ struct NoiseLevel {
   double variance = 1;          // variance of the whitened rows
 };
 
-// The noise level that the residual `left` (rows, m) implies if all of it is noise: its correlation
-// time and its variance, which is at least `least` times that of the study.
+// The noise level that the residual `left` implies if all of it is noise: its correlation time,
+// that of the points, and its variance, which is at least `least` times that of the study.
 NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
                    Eigen::Index parameters, double least);
 

@@ -75,6 +75,7 @@ ComparedRecording DescribeRecording(const FittedRecording& fitted, const Calibra
   ComparedRecording recording;
   recording.name = fitted.name;
   recording.noise = record.noise;
+  recording.reactions = fitted.reactions;
   if (fitted.scan) {
     // The measured places of a patch also scatter along the surface, which is not noise. The noise
     // floor of a patch is therefore derived from the noise of its points.

@@ -47,6 +47,10 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
     };
     fitted_squares += squares(in_fit);
     held_out_squares += squares(out);
+    for (const FittedReaction& reaction : misfits[r].reactions) {
+      fitted_squares += reaction.in_fit.values * std::pow(reaction.in_fit.rms_over_sigma, 2);
+      held_out_squares += reaction.held_out.values * std::pow(reaction.held_out.rms_over_sigma, 2);
+    }
     fitted += in_fit.rms * in_fit.rms * in_fit.points;
     fitted_noise += in_fit.rms_over_sigma * in_fit.rms_over_sigma * in_fit.points;
     fitted_points += in_fit.points;

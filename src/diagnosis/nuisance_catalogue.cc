@@ -104,7 +104,7 @@ std::vector<NuisanceCandidate> RecordingNuisances(const CalibrationProblem& prob
   std::vector<NuisanceCandidate> candidates;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     const std::vector<double>& times = part.layout.times;
-    if (times.size() < 3) continue;
+    if (!part.IsOfPoints() || times.size() < 3) continue;
     const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
     const RecordingContext context{problem, misfit, part, whitened_residual, spacing, centre};
     ForEach<RecordingNuisance>([&](const NuisanceCard& card, RecordingNuisance make) {

@@ -32,14 +32,14 @@ struct NuisanceContext {
 struct RecordingContext {
   const CalibrationProblem& problem;
   const LinearisedMisfit& misfit;
-  const LinearisedMisfit::Part& part;        // the rows of this recording
+  const LinearisedMisfit::Part& part;        // the rows of its points
   const Eigen::VectorXd& whitened_residual;  // all rows, in σ
   double spacing = 0;                        // s, mean time between frames
   Eigen::Vector3d centre;                    // m, of the object at rest
 
   const std::string& Name() const { return problem.models()[part.recording].item().name; }
   Eigen::Index Frames() const { return static_cast<Eigen::Index>(part.layout.times.size()); }
-  // A column with value(frame, series) in the rows of this recording and 0 elsewhere.
+  // A column with value(frame, series) in the rows of the points and 0 elsewhere.
   Eigen::VectorXd Column(const std::function<double(Eigen::Index frame, int series)>& value) const;
   // The change of a row if the frame moves rigidly: by a shift along axis 0, 1 or 2 (per m), or a
   // rotation about axis 3, 4 or 5 through the centre (per rad). 0 if the row was not observed.

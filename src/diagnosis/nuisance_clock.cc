@@ -22,9 +22,11 @@ std::optional<NuisanceCandidate> Make(const RecordingContext& at) {
   if (at.problem.models()[at.part.recording].item().clock_deviation != 0) return std::nullopt;
   NuisanceCandidate candidate;
   candidate.what = "the clock of " + at.Name();
-  candidate.columns = at.Column([&](Eigen::Index frame, int series) {
-    return at.part.speed[frame * at.part.layout.series + series];
-  });
+  candidate.columns = Eigen::MatrixXd::Zero(at.misfit.residual.size(), 1);
+  // The load cells of a recording share its clock.
+  for (const LinearisedMisfit::Part& part : at.misfit.parts)
+    if (part.recording == at.part.recording)
+      candidate.columns.middleRows(part.first_row, part.layout.Rows()) = part.speed;
   candidate.priors = {{0, at.spacing, false}};
   return candidate;
 }

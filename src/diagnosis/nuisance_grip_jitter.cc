@@ -55,20 +55,24 @@ Eigen::MatrixXd StrainJitter(const Eigen::Matrix3Xd& places, double noise) {
   return jitter;
 }
 
-// Appends `shaken`, the change of all rows by an error that lasts, once for each frame of a
-// recording and in its rows only.
-void AppendFrameByFrame(const LinearisedMisfit::Part& part, const std::vector<int>& markers,
-                        Eigen::MatrixXd shaken, Eigen::MatrixXd* columns) {
-  const Eigen::Index series = part.layout.series;
-  const Eigen::Index frames = static_cast<Eigen::Index>(part.layout.times.size());
+// Appends `shaken`, the change of all rows by an error that lasts, once for each frame of the
+// recording of `points` and in its rows only.
+void AppendFrameByFrame(const LinearisedMisfit& misfit, const LinearisedMisfit::Part& points,
+                        const std::vector<int>& markers, Eigen::MatrixXd shaken,
+                        Eigen::MatrixXd* columns) {
+  const Eigen::Index frames = static_cast<Eigen::Index>(points.layout.times.size());
   const Eigen::Index first = columns->cols(), width = shaken.cols();
   columns->conservativeResize(Eigen::NoChange, first + frames * width);
   columns->rightCols(frames * width).setZero();
   for (Eigen::Index f = 0; f < frames; ++f) {
-    const Eigen::Index row = part.first_row + f * series;
     // The grip follows the errors of its own markers, so it does not miss these.
-    for (const int marker : markers) shaken.middleRows<3>(row + 3 * marker).setZero();
-    columns->block(row, first + f * width, series, width) = shaken.middleRows(row, series);
+    for (const int marker : markers)
+      shaken.middleRows<3>(points.first_row + f * points.layout.series + 3 * marker).setZero();
+    for (const LinearisedMisfit::Part& part : misfit.parts) {
+      if (part.recording != points.recording) continue;
+      const Eigen::Index series = part.layout.series, row = part.first_row + f * series;
+      columns->block(row, first + f * width, series, width) = shaken.middleRows(row, series);
+    }
   }
 }
 
@@ -79,6 +83,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   candidate.columns.resize(at.misfit.residual.size(), 0);
   for (const LinearisedMisfit::Part& part : at.misfit.parts) {
     const Recording& recording = at.problem.models()[part.recording].item().recording;
+    if (!part.IsOfPoints()) continue;
     if (part.layout.times.size() > kThresholds.nuisances.most_single_frames) continue;
     for (const GripMotions::Grip& own : at.grips.grips) {
       const RecordedGrip* grip = RecordedAs(recording, own.grip);
@@ -86,11 +91,11 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
       const std::vector<int> markers = MarkersOf(*grip, recording);
       const Eigen::Matrix3Xd places = recording.markers.places(Eigen::all, markers);
       AppendFrameByFrame(
-          part, markers,
+          at.misfit, part, markers,
           at.grip_columns.middleCols(own.rigid, 6) * RigidJitter(places, grip->deforms, noise),
           &candidate.columns);
       if (own.strain < 0 || !grip->deforms) continue;
-      AppendFrameByFrame(part, markers,
+      AppendFrameByFrame(at.misfit, part, markers,
                          at.grip_columns.middleCols(own.strain, 9) * StrainJitter(places, noise),
                          &candidate.columns);
     }

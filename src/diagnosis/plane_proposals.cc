@@ -137,12 +137,15 @@ void AddBody(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
 std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
                                          const Eigen::VectorXd& values,
                                          const LinearisedMisfit& misfit) {
+  std::vector<const LinearisedMisfit::Part*> parts;
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    if (part.IsOfPoints()) parts.push_back(&part);
   std::vector<Eigen::Matrix3Xd> displacements;
   Eigen::Vector3d largest = Eigen::Vector3d::Zero();
   double noise = 0;
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    displacements.push_back(Displacements(misfit, part));
-    noise = std::max(noise, part.errors.noise);
+  for (const LinearisedMisfit::Part* part : parts) {
+    displacements.push_back(Displacements(misfit, *part));
+    noise = std::max(noise, part->errors.noise);
     for (const auto& displacement : displacements.back().colwise())
       if (displacement.norm() > largest.norm()) largest = displacement;
   }
@@ -153,9 +156,9 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
 
   // A direction in which not even the measured points cross needs no simulation.
   Reach of_points(DirectionsToTry(problem.study(), largest));
-  for (size_t p = 0; p < misfit.parts.size(); ++p) {
+  for (size_t p = 0; p < parts.size(); ++p) {
     Eigen::Index column = 0;
-    for (const Observed& seen : misfit.parts[p].observed)
+    for (const Observed& seen : parts[p]->observed)
       for (Eigen::Index i = 0; i < seen.count.size(); ++i, ++column)
         if (seen.count[i] > 0)
           of_points.Add(seen.measured.col(i) + displacements[p].col(column),
@@ -169,8 +172,8 @@ std::vector<ProposedPlane> ProposePlanes(const CalibrationProblem& problem,
   if (crossed.empty()) return planes;
 
   Reach of_body(of_points.directions(Eigen::all, crossed));
-  for (size_t p = 0; p < misfit.parts.size(); ++p) {
-    const size_t recording = misfit.parts[p].recording;
+  for (size_t p = 0; p < parts.size(); ++p) {
+    const size_t recording = parts[p]->recording;
     AddBody(problem.ModelAt(recording, values), problem.NuisanceOf(recording, values),
             displacements[p], &of_body);
   }

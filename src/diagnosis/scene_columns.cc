@@ -14,14 +14,17 @@ SceneColumns SceneColumns::ForOtherStep() const {
 
 SceneColumns SceneColumns::ForFirstFrames(const std::vector<LinearisedMisfit::Part>& whole,
                                           const std::vector<PredictedRecording>& beginnings) const {
-  CHECK_EQ(whole.size(), beginnings.size());
   std::vector<Eigen::Index> rows;
-  for (size_t k = 0; k < whole.size(); ++k) {
-    CHECK_LE(beginnings[k].frames.size(), whole[k].layout.times.size());
-    const Eigen::Index count =
-        static_cast<Eigen::Index>(beginnings[k].frames.size()) * whole[k].layout.series;
-    for (Eigen::Index row = 0; row < count; ++row) rows.push_back(whole[k].first_row + row);
+  size_t recordings = 0;
+  for (const LinearisedMisfit::Part& part : whole) {
+    if (part.IsOfPoints()) ++recordings;
+    CHECK_LE(recordings, beginnings.size());
+    const size_t frames = beginnings[recordings - 1].frames.size();
+    CHECK_LE(frames, part.layout.times.size());
+    const Eigen::Index count = static_cast<Eigen::Index>(frames) * part.layout.series;
+    for (Eigen::Index row = 0; row < count; ++row) rows.push_back(part.first_row + row);
   }
+  CHECK_EQ(recordings, beginnings.size());
   SceneColumns first{nuisances, std::nullopt};
   for (NuisanceCandidate& nuisance : first.nuisances) {
     nuisance.columns = Eigen::MatrixXd(nuisance.columns(rows, Eigen::all));

@@ -24,8 +24,8 @@ struct SceneColumns {
   // without the pilots.
   SceneColumns ForOtherStep() const;
   // For the beginnings of the recordings: the rows of so many first frames as each recording of
-  // `beginnings` has, without the pilots. `whole`: the layout of the columns, with one part for
-  // each of them. CHECKs the numbers of recordings and frames.
+  // `beginnings` has, without the pilots. `whole`: the layout of the columns, with the parts of
+  // each of them in the same order. CHECKs the numbers of recordings and frames.
   SceneColumns ForFirstFrames(const std::vector<LinearisedMisfit::Part>& whole,
                               const std::vector<PredictedRecording>& beginnings) const;
 };

@@ -83,6 +83,7 @@ Eigen::MatrixXd UnknownForceColumns(const CalibrationProblem& problem,
                                     const Eigen::VectorXd& values, const LinearisedMisfit& misfit) {
   Eigen::MatrixXd all(misfit.residual.size(), 0);
   for (const LinearisedMisfit::Part& part : misfit.parts) {
+    if (!part.IsOfPoints()) continue;
     const RecordingModel recording = problem.ModelAt(part.recording, values);
     if (recording.Markers() == nullptr) continue;
     const ReplayedMotion motion = Replay(recording, problem.NuisanceOf(part.recording, values));

@@ -4,11 +4,15 @@
 #include <glog/logging.h>
 
 #include <Eigen/Geometry>
+#include <numeric>
+#include <utility>
 
 #include "core/interrupt.h"
 #include "effects/gravity.h"
+#include "fem/grip_reaction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
+#include "scan/random_bits.h"
 #include "scan/scan_writer.h"
 
 namespace lacuna {
@@ -52,6 +56,11 @@ SceneGrip ReadGrip(const Config& config, int index) {
   grip.centre = config.Vector("centre", kLength, grip.centre);
   grip.angle = config.Quantity("angle", kAngle, kAnyValue, grip.angle);
   grip.profile = ReadProfile(config);
+  if (const auto cell = config.OptionalChild("measured_force")) {
+    grip.force_deviation = cell->Quantity("deviation", kForce, kPositive);
+    if (grip.angle != 0)
+      config.Fail("measured_force", "is implemented for grips that do not rotate");
+  }
   return grip;
 }
 
@@ -154,7 +163,11 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
         [&load](double time) -> Eigen::Vector3d { return load.profile.At(time) * load.force; }));
   }
 
-  MotionHistory history = RestHistory(model);
+  std::vector<size_t> grips(model.grips.size());
+  std::iota(grips.begin(), grips.end(), 0);
+  motion.reactions.resize(3 * static_cast<Eigen::Index>(grips.size()), scene.frames);
+
+  MotionHistory history = RestHistory(model), before = history;
   history.velocity = scene.bar.velocity.replicate(body->NodeCount(), 1);
   Stepper stepper(model, scene.step);
   const double time_step = 1 / (scene.frame_rate * scene.steps_per_frame);
@@ -162,6 +175,7 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   for (int frame = 0; frame < scene.frames; ++frame) {
     for (int k = 0; frame > 0 && k < scene.steps_per_frame; ++k) {
       ThrowIfInterrupted();
+      if (k + 1 == scene.steps_per_frame) before = history;
       const StepSummary step = stepper.Step(time_step, {}, &history);
       if (!step.IsUsable()) {
         motion.status = SceneMotion::Status::kStepFailed;
@@ -169,6 +183,10 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
         return motion;
       }
     }
+    const StepEquation equation = frame == 0
+                                      ? StepEquation(model, before, TimeScheme::kQuasiStatic, 0)
+                                      : StepEquation(model, before, scene.step.scheme, time_step);
+    motion.reactions.col(frame) = GripReactions(model, grips, equation, history.position, {});
     Eigen::Vector3d load = Eigen::Vector3d::Zero();
     for (const SceneLoad& each : scene.loads) load += each.profile.At(history.time) * each.force;
     motion.times.push_back(frame / scene.frame_rate);
@@ -182,13 +200,68 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   return motion;
 }
 
+namespace {
+
+// The driven grip as a recording names it, with its path at the ends of the steps.
+RecordedGrip DrivenGrip(const Scene& scene, const SceneGrip& grip) {
+  RecordedGrip driven;
+  driven.region = grip.region;
+  driven.motion = GripMotion::kGiven;
+  const Eigen::Index steps = (scene.frames - 1) * scene.steps_per_frame;
+  driven.times.setLinSpaced(steps + 1, 0, (scene.frames - 1) / scene.frame_rate);
+  driven.displacements.resize(3, steps + 1);
+  for (Eigen::Index k = 0; k <= steps; ++k)
+    driven.displacements.col(k) = grip.profile.At(driven.times[k]) * grip.translation;
+  return driven;
+}
+
+// What the load cell of grip `number` of the scene reads in each frame.
+MeasuredReaction LoadCellReading(const Scene& scene, const SceneMotion& motion, size_t number,
+                                 size_t held) {
+  constexpr uint64_t kStream = 80;
+  const SceneGrip& grip = scene.grips[number];
+  MeasuredReaction reading;
+  reading.name = grip.region.name;
+  reading.held = held;
+  reading.labels = {"x", "y", "z"};
+  reading.directions = Eigen::Matrix3d::Identity();
+  reading.deviation = *grip.force_deviation;
+  reading.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
+                                                    static_cast<Eigen::Index>(motion.times.size()));
+  reading.forces = motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(number));
+  for (Eigen::Index k = 0; k < reading.forces.size(); ++k)
+    reading.forces.reshaped()[k] +=
+        reading.deviation * Normal(RandomBits({scene.scanner->options.seed, kStream, number,
+                                               static_cast<uint64_t>(k)}));
+  return reading;
+}
+
+// Adds the grips that the recording names, and their load cells.
+void AddGrips(const Scene& scene, const SceneMotion& motion, RecordedObject* object) {
+  std::vector<std::pair<size_t, size_t>> cells;  // grip of the scene, held part of the recording
+  for (const bool driven : {false, true}) {
+    for (size_t k = 0; k < scene.grips.size(); ++k) {
+      const SceneGrip& grip = scene.grips[k];
+      if (IsHeld(grip) == driven || (driven && !grip.force_deviation)) continue;
+      if (grip.force_deviation) cells.emplace_back(k, object->fixed.size() + object->grips.size());
+      if (driven)
+        object->grips.push_back(DrivenGrip(scene, grip));
+      else
+        object->fixed.push_back(grip.region);
+    }
+  }
+  for (const auto& [grip, held] : cells)
+    object->reactions.push_back(LoadCellReading(scene, motion, grip, held));
+}
+
+}  // namespace
+
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder) {
   CHECK(motion.IsUsable() && scene.scanner.has_value());
   RecordedObject object;
   object.density = scene.density;
-  for (const SceneGrip& grip : scene.grips)
-    if (IsHeld(grip)) object.fixed.push_back(grip.region);
+  AddGrips(scene, motion, &object);
   object.gravity = GravityOf(scene.effects);
   for (const SceneLoad& load : scene.loads) {
     if (!load.measured) continue;

@@ -47,6 +47,8 @@ struct SceneGrip {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
   double angle = 0;                                  // rad
   Profile profile;
+  // N, noise of a component of the load cell that measures its reaction; absent: there is none.
+  std::optional<double> force_deviation;
 };
 
 struct Scene {
@@ -81,6 +83,7 @@ struct SceneMotion {
   std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, one per frame
   std::vector<Eigen::Matrix3Xd> velocities;  // m/s
   std::vector<Eigen::Vector3d> load;         // N, total of the loads, one per frame
+  Eigen::MatrixXd reactions;  // 3·grips × frames, N, force of each grip on the body
   bool IsUsable() const { return status == Status::kFinished; }
 };
 
@@ -89,7 +92,8 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress);
 
 // Writes what the scanner sees as a recording into `folder`, and the true surfaces into its
 // subfolder truth (scan/scan_writer.h). The recording names the regions that are fixed but not
-// those that move. Throws InputError when it cannot be written.
+// those that move, unless a load cell measures their force: it then has their path too. Throws
+// InputError when it cannot be written.
 void WriteSceneRecording(const Scene& scene, const SceneMotion& motion,
                          const std::filesystem::path& folder);
 

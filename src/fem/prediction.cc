@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/interrupt.h"
+#include "fem/grip_reaction.h"
 #include "geometry/hermite.h"
 
 namespace lacuna {
@@ -33,6 +35,66 @@ StepSummary Hold(const PredictionOptions& options, Stepper* stepper, MotionHisto
   return stepper->Equilibrium(options.held_force, history, kHoldTolerance);
 }
 
+// The end of a step.
+struct EndState {
+  Knot<Eigen::VectorXd> state;
+  Knot<Eigen::MatrixXd> jacobian;
+  Eigen::VectorXd reaction;
+  Eigen::MatrixXd reaction_jacobian;
+};
+
+EndState EndOf(const MotionHistory& history, const TangentLinear& linear) {
+  return {{history.position, history.velocity}, {linear.position(), linear.velocity()}, {}, {}};
+}
+
+// The reactions at the end of the step of `equation`.
+void AddReactions(const Model& model, const std::vector<size_t>& grips,
+                  const StepEquation& equation, const Eigen::VectorXd& external_force,
+                  const TangentLinear& linear, EndState* end) {
+  if (grips.empty()) return;
+  end->reaction = GripReactions(model, grips, equation, end->state.position, external_force);
+  end->reaction_jacobian = SumOverGrips(model, grips, linear.reaction());
+}
+
+// The requested times, which are visited in their order.
+class Visits {
+ public:
+  using Visit = std::function<void(int index, const PredictedState& state)>;
+  // The references must outlive this.
+  Visits(const std::vector<double>& times, const Visit& visit, PredictionSummary* summary)
+      : times_(times), visit_(visit), summary_(*summary) {}
+
+  bool AreLeft() const { return next_ < times_.size(); }
+  double NextTime() const { return times_[next_]; }
+
+  // Visits the times up to `end`, the end of a step of that length between the two states; of
+  // length 0 where they are the same.
+  void Until(double end, double length, const EndState& from, const EndState& to) {
+    const Eigen::VectorXd rate = length > 0
+                                     ? Eigen::VectorXd((to.reaction - from.reaction) / length)
+                                     : Eigen::VectorXd::Zero(to.reaction.size());
+    while (AreLeft() && NextTime() <= end) {
+      const double t = length > 0 ? 1 - (end - NextTime()) / length : 1;
+      const auto state = length > 0 ? Interpolate(from.state, to.state, length, t) : to.state;
+      const auto jacobian =
+          length > 0 ? Interpolate(from.jacobian, to.jacobian, length, t) : to.jacobian;
+      const Eigen::VectorXd reaction = (1 - t) * from.reaction + t * to.reaction;
+      const Eigen::MatrixXd reaction_jacobian =
+          (1 - t) * from.reaction_jacobian + t * to.reaction_jacobian;
+      visit_(static_cast<int>(next_),
+             {NextTime(), state.position, state.velocity, jacobian.position, jacobian.velocity,
+              reaction, rate, reaction_jacobian});
+      summary_.states = static_cast<int>(++next_);
+    }
+  }
+
+ private:
+  const std::vector<double>& times_;
+  const Visit& visit_;
+  PredictionSummary& summary_;
+  size_t next_ = 0;
+};
+
 constexpr double kFirstStep = 0.1;  // length of the first step relative to the others
 // Relative excess over the requested length that a quasi-static step may have by rounding.
 constexpr double kRounding = 1e-9;
@@ -59,7 +121,7 @@ PredictionSummary Predict(
   CHECK_GT(options.time_step, 0);
   PredictionSummary summary;
   Stepper stepper(model, options.step);
-  TangentLinear linear(model, perturbations);
+  TangentLinear linear(model, perturbations, !options.reactions.empty());
   MotionHistory history = RestHistory(model);
   history.time = options.start_time;
 
@@ -75,39 +137,27 @@ PredictionSummary Predict(
       linear.Advance(before, TimeScheme::kQuasiStatic, 0, history.position);
   if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
 
-  const size_t wanted = times.size();
-  size_t next = 0;
-  const auto visit_next = [&](const Knot<Eigen::VectorXd>& state,
-                              const Knot<Eigen::MatrixXd>& jacobian) {
-    visit(static_cast<int>(next),
-          {times[next], state.position, state.velocity, jacobian.position, jacobian.velocity});
-    ++next;
-    summary.states = static_cast<int>(next);
-  };
-  Knot<Eigen::VectorXd> state{history.position, history.velocity};
-  Knot<Eigen::MatrixXd> jacobian{linear.position(), linear.velocity()};
-  while (next < wanted && times[next] <= options.start_time) visit_next(state, jacobian);
-
-  while (next < wanted) {
+  Visits visits(times, visit, &summary);
+  EndState from = EndOf(history, linear);
+  AddReactions(model, options.reactions, StepEquation(model, before, TimeScheme::kQuasiStatic, 0),
+               options.held_force, linear, &from);
+  visits.Until(options.start_time, 0, from, from);
+  while (visits.AreLeft()) {
     ThrowIfInterrupted();
     before = history;
-    const auto [length, end] =
-        NextStep(options.step.scheme, options.time_step, summary.steps, history.time, times[next]);
+    const auto [length, end] = NextStep(options.step.scheme, options.time_step, summary.steps,
+                                        history.time, visits.NextTime());
     const StepSummary step = stepper.Step(length, {}, &history);
     if (!step.IsUsable()) return Stopped(summary, step.message);
     linearised = linear.Advance(before, options.step.scheme, length, history.position);
     if (!linearised.IsUsable()) return Stopped(summary, linearised.message);
     history.time = end;
     ++summary.steps;
-    const Knot<Eigen::VectorXd> now{history.position, history.velocity};
-    const Knot<Eigen::MatrixXd> jacobian_now{linear.position(), linear.velocity()};
-    while (next < wanted && times[next] <= history.time) {
-      const double t = 1 - (history.time - times[next]) / length;
-      visit_next(Interpolate(state, now, length, t),
-                 Interpolate(jacobian, jacobian_now, length, t));
-    }
-    state = now;
-    jacobian = jacobian_now;
+    EndState to = EndOf(history, linear);
+    AddReactions(model, options.reactions, StepEquation(model, before, options.step.scheme, length),
+                 {}, linear, &to);
+    visits.Until(history.time, length, from, to);
+    from = std::move(to);
   }
   summary.status = PredictionSummary::Status::kReached;
   return summary;

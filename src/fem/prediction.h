@@ -38,6 +38,8 @@ struct PredictionOptions {
   Eigen::VectorXd held_guess = {};
   double time_step = 0.005;  // s, upper limit; a smaller one is slower and more accurate (OrderOf)
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
+  // The grips whose reactions are wanted (grip_reaction.h), by their indices in Model::grips.
+  std::vector<size_t> reactions = {};
 };
 
 // The motion at a requested time. The Jacobians with respect to the perturbations are 3n ×
@@ -48,6 +50,11 @@ struct PredictedState {
   const Eigen::VectorXd& velocity;
   const Eigen::MatrixXd& position_jacobian;
   const Eigen::MatrixXd& velocity_jacobian;
+  // The force that each grip of PredictionOptions::reactions exerts on the body (three rows per
+  // grip, N), its rate (N/s) and its Jacobian (N per unit).
+  const Eigen::VectorXd& reaction;
+  const Eigen::VectorXd& reaction_rate;
+  const Eigen::MatrixXd& reaction_jacobian;
 };
 
 struct PredictionSummary {
@@ -62,7 +69,8 @@ struct PredictionSummary {
 
 // Predicts the motion and calls `visit` at each of `times` (s, ascending, CHECKed) from the calling
 // thread. Between the ends of steps the motion is interpolated by cubic Hermite polynomials, whose
-// error is of higher order than that of the step. A step that fails ends the prediction with
+// error is of higher order than that of the step; reactions are interpolated linearly, because
+// their rates at the ends of steps are not known. A step that fails ends the prediction with
 // kStopped; states that have been visited before are valid. In a quasi-static prediction the body
 // is always in equilibrium, and velocities are mean values over the step. Throws Interrupted.
 PredictionSummary Predict(const Model& model, const PredictionOptions& options,

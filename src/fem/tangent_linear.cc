@@ -45,13 +45,16 @@ struct TangentLinear::Implementation {
   BlockMatrix tangent, skew, rate_tangent;
   std::vector<Eigen::Index> of_grips;  // perturbations of the motion of grips
   double element_size;                 // m
+  bool with_reactions;
   // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
+  Eigen::MatrixXd reaction;     // at the current time
   std::vector<Memory> inside;   // one per effect of the model
   std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
 
-  Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations)
+  Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations,
+                 bool wants_reactions)
       : model(the_model),
         perturbations(std::move(the_perturbations)),
         fixed(GrippedNodes(model)),
@@ -60,9 +63,10 @@ struct TangentLinear::Implementation {
         tangent(model.body->pattern),
         skew(model.body->pattern),
         rate_tangent(model.body->pattern),
-        element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())) {
+        element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())),
+        with_reactions(wants_reactions) {
     const Eigen::Index size = 3 * model.body->NodeCount();
-    position = velocity = Eigen::MatrixXd::Zero(size, Count());
+    position = velocity = reaction = Eigen::MatrixXd::Zero(size, Count());
     for (const auto& effect : model.effects) {
       inside.push_back(
           {effect, {}, Eigen::MatrixXd::Zero(effect->StateSize(*model.body), Count())});
@@ -305,6 +309,7 @@ struct TangentLinear::Implementation {
       AddTangentForces(equation, end, {.velocity = rate}, position_history, &right);
       AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
     }
+    if (with_reactions) reaction = -right;
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
     if (!of_grips.empty()) {
       const Eigen::MatrixXd moved = gripped(Eigen::all, of_grips);
@@ -325,6 +330,8 @@ struct TangentLinear::Implementation {
     const Eigen::MatrixXd moved = *solution + gripped;
     const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
                                                 : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
+    if (with_reactions) reaction += tangent * moved;
+    if (with_reactions && has_skew) reaction += skew * moved;
     AdvanceMemories(equation, end, moved, speed);
     previous_position = std::move(position);
     previous_velocity = std::move(velocity);
@@ -337,8 +344,10 @@ struct TangentLinear::Implementation {
   }
 };
 
-TangentLinear::TangentLinear(const Model& model, std::vector<Perturbation> perturbations)
-    : implementation_(std::make_unique<Implementation>(model, std::move(perturbations))) {}
+TangentLinear::TangentLinear(const Model& model, std::vector<Perturbation> perturbations,
+                             bool with_reactions)
+    : implementation_(
+          std::make_unique<Implementation>(model, std::move(perturbations), with_reactions)) {}
 TangentLinear::~TangentLinear() = default;
 TangentLinear::TangentLinear(TangentLinear&&) noexcept = default;
 TangentLinear& TangentLinear::operator=(TangentLinear&&) noexcept = default;
@@ -350,5 +359,6 @@ TangentLinearSummary TangentLinear::Advance(const MotionHistory& before, TimeSch
 
 const Eigen::MatrixXd& TangentLinear::position() const { return implementation_->position; }
 const Eigen::MatrixXd& TangentLinear::velocity() const { return implementation_->velocity; }
+const Eigen::MatrixXd& TangentLinear::reaction() const { return implementation_->reaction; }
 
 }  // namespace lacuna

@@ -53,8 +53,10 @@ struct TangentLinearSummary {
 // Not thread-safe: one object per simulation.
 class TangentLinear {
  public:
-  // All sensitivities are 0 at first.
-  TangentLinear(const Model& model, std::vector<Perturbation> perturbations);
+  // All sensitivities are 0 at first. `with_reactions`: reaction() is computed too, for one product
+  // with the tangent per step.
+  TangentLinear(const Model& model, std::vector<Perturbation> perturbations,
+                bool with_reactions = false);
   ~TangentLinear();
   TangentLinear(TangentLinear&&) noexcept;
   TangentLinear& operator=(TangentLinear&&) noexcept;
@@ -69,6 +71,10 @@ class TangentLinear {
   // dx/dp and dv/dp at the end of the last step (3n × perturbations, m and m/s per unit).
   const Eigen::MatrixXd& position() const;
   const Eigen::MatrixXd& velocity() const;
+  // dr/dp there (3n × perturbations, N per unit), less the derivative of an external force: at
+  // gripped nodes that of the force by which the grip holds the node, at free nodes 0 up to the
+  // accuracy of the solution. Zero before the first step, and without `with_reactions`.
+  const Eigen::MatrixXd& reaction() const;
 
  private:
   struct Implementation;

@@ -275,6 +275,7 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
                                const std::vector<MisfitDirection>& directions,
                                const PredictionHints& hints) const {
   PredictionOptions options = Options(nuisance);
+  options.reactions = MeasuredGrips(Reactions());
   if (hints.near_equilibrium != nullptr) options.held_guess = *hints.near_equilibrium;
   const double late = Delay(nuisance);
   std::vector<double> times;
@@ -300,6 +301,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
         const int frame = frames[index];
         const Eigen::Index begin = rows_of_frame * index;
+        AppendReactions(Reactions(), item_.recording.times[frame], state, options.start_time,
+                        directions, &misfit.reactions);
         Observed seen = hints.observed != nullptr ? (*hints.observed)[index]
                                                   : observer_->Observe(frame, state.position);
         Eigen::VectorXd predicted = *seen.rows * state.position;

@@ -11,7 +11,9 @@
 #include "experiment/observer.h"
 #include "experiment/reference_body.h"
 #include "fem/prediction.h"
+#include "prediction/misfit_direction.h"
 #include "prediction/prediction_study.h"
+#include "prediction/reaction_misfit.h"
 
 namespace lacuna {
 
@@ -28,6 +30,8 @@ struct Misfit {
   // coordinates; empty for scans.
   std::vector<Eigen::Matrix3d> deformation;
   std::vector<Observed> observed;  // for each frame: what the prediction was compared with
+  // The reaction of each grip that is measured, over the same frames and by the same directions.
+  std::vector<ReactionMisfit> reactions;
   PredictionSummary summary;
 
   Eigen::Index Components() const {
@@ -36,16 +40,6 @@ struct Misfit {
   // The residual without the contribution of errors in the points' places on the object
   // (components × points, m).
   Eigen::VectorXd ResidualWithout(const Eigen::MatrixXd& place_offset) const;
-};
-
-// The variable by which one column of a Misfit's Jacobian is the derivative.
-struct MisfitDirection {
-  // A parameter of the model, or a nuisance parameter of the recording: the delay, s, of its clock,
-  // or the translation, m, or rotation, rad, of its coordinate system along or about an axis.
-  enum class Kind { kModel, kClock, kShift, kTurn };
-  Kind kind = Kind::kModel;
-  int axis = 0;
-  Perturbation perturbation = {};  // for kModel
 };
 
 // Results of similar predictions, which save time.
@@ -74,6 +68,10 @@ class RecordingModel {
   const Model& model() const { return model_; }
   const Observer& observer() const { return *observer_; }
   int PointCount() const { return observer_->PointCount(); }
+  // The measured reactions of the grips.
+  const std::vector<MeasuredReaction>& Reactions() const {
+    return item_.recording.object.reactions;
+  }
   // Null for a recording of scans.
   const MarkerObserver* Markers() const {
     return dynamic_cast<const MarkerObserver*>(observer_.get());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "analysis/residual_statistics.h"
 #include "effects/catalogue.h"
 #include "experiment/tracked_points.h"
 
@@ -117,6 +118,26 @@ void RequireGripPaths(const Config& config, const PredictedRecording& item) {
   }
 }
 
+// Estimates the noise of readings that do not say it, and requires that each covers a frame.
+void CheckReactions(const Config& config, PredictedRecording* item) {
+  const std::vector<double>& times = item->recording.times;
+  for (MeasuredReaction& reaction : item->recording.object.reactions) {
+    if (std::none_of(item->frames.begin(), item->frames.end(),
+                     [&](int frame) { return reaction.Covers(times[frame]); }))
+      config.Fail("recording", fmt::format("{} covers {:g} s to {:g} s, in which no frame lies",
+                                           reaction.file.string(), reaction.times[0],
+                                           reaction.times[reaction.times.size() - 1]));
+    if (reaction.deviation > 0) continue;
+    reaction.deviation = WhiteNoise(reaction.forces);
+    reaction.deviation_is_estimated = true;
+    if (!(reaction.deviation > 0))
+      config.Fail("recording",
+                  fmt::format("measured_force of {}: deviation: cannot be estimated from {} (few "
+                              "values, or the same in most rows); give it",
+                              reaction.name, reaction.file.string()));
+  }
+}
+
 }  // namespace
 
 PredictedRecording ReadRecordingEntry(const Config& config, const Effect* material,
@@ -160,6 +181,7 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
     RequireStartAtRest(config, item);
   }
   RequireGripPaths(config, item);
+  CheckReactions(config, &item);
   for (const MeasuredForce& force : item.recording.object.forces) {
     const double first = item.recording.times[item.frames.front()];
     const double last = item.recording.times[item.frames.back()];

@@ -69,6 +69,8 @@ json ToJson(const CalibrationRecord& record) {
     parameters.back().update(EstimateToJson(parameter.estimate));
     if (parameter.with_finest_mesh)
       parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
+    if (parameter.share_of_forces)
+      parameters.back()["share_of_forces"] = *parameter.share_of_forces;
     if (const auto& near = parameter.near_bound)
       parameters.back()["near_bound"] = {{"side", near->is_upper ? "upper" : "lower"},
                                          {"bound", near->bound}};
@@ -87,6 +89,8 @@ json ToJson(const CalibrationRecord& record) {
     if (recording.scan) entry["scan"] = ScanToJson(*recording.scan);
     for (const OwnValue& own : recording.own)
       entry["own"].push_back({{"name", own.name}, {"unit", own.unit}, {"value", own.value}});
+    for (const FittedReaction& reaction : recording.reactions)
+      entry["reactions"].push_back(ReactionToJson(reaction));
     recordings.push_back(entry);
   }
   json conflicts = json::array();
@@ -129,6 +133,7 @@ CalibrationRecord FromJson(const json& value) {
     parameter.log_scale = entry.at("log_scale");
     parameter.estimate = EstimateFromJson(entry);
     if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
+    if (entry.contains("share_of_forces")) parameter.share_of_forces = entry["share_of_forces"];
     if (entry.contains("near_bound"))
       parameter.near_bound = {entry["near_bound"].at("side") == "upper",
                               entry["near_bound"].at("bound")};
@@ -144,6 +149,8 @@ CalibrationRecord FromJson(const json& value) {
     if (entry.contains("scan")) record.recordings.back().scan = ScanFromJson(entry.at("scan"));
     for (const json& own : entry.value("own", json::array()))
       record.recordings.back().own.push_back({own.at("name"), own.at("unit"), own.at("value")});
+    for (const json& reaction : entry.value("reactions", json::array()))
+      record.recordings.back().reactions.push_back(ReactionFromJson(reaction));
   }
   for (const json& conflict : value.at("prior_conflicts"))
     record.prior_conflicts.push_back(PriorConflictFromJson(conflict));

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "record/fitted_reaction.h"
 #include "record/model_errors.h"
 #include "record/parameter_estimate.h"
 #include "record/prior_conflict.h"
@@ -38,6 +39,9 @@ struct FittedParameter {
   // error. Absent where the extrapolation was not possible.
   std::optional<double> with_finest_mesh;
   std::optional<NearBound> near_bound = {};
+  // The share of the measured forces in what the fitted data tell about the parameter if all others
+  // are known, Σ (∂r/∂θ)² over their whitened rows. Absent where no force is measured.
+  std::optional<double> share_of_forces = {};
 };
 
 // A parameter of the model that is not fitted: one value, or the components of a vector.
@@ -68,6 +72,7 @@ struct FittedRecording {
   // Estimated from the first tenth of the recording. Empty for a fitted recording, whose nuisance
   // parameters are among CalibrationRecord::parameters.
   std::vector<OwnValue> own = {};
+  std::vector<FittedReaction> reactions = {};  // measured forces of its grips
 };
 
 struct CalibrationRecord {

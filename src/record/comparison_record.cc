@@ -185,7 +185,9 @@ NoiseFloor NoiseFloorFromJson(const json& object) {
 }
 
 json RecordingToJson(const ComparedRecording& recording) {
-  json parts = json::array();
+  json parts = json::array(), reactions = json::array();
+  for (const FittedReaction& reaction : recording.reactions)
+    reactions.push_back(ReactionToJson(reaction));
   for (const ComparedPart& part : recording.parts) parts.push_back(PartToJson(part));
   const bool has_distances = recording.grip_distance.size() > 0;
   return {
@@ -196,6 +198,7 @@ json RecordingToJson(const ComparedRecording& recording) {
       {"grip_distance_m", has_distances ? VectorToJson(recording.grip_distance) : json()},
       {"noise_floor", NoiseFloorToJson(recording.noise_floor)},
       {"parts", parts},
+      {"reactions", reactions},
       {"height_along", recording.height_by_gravity ? "against gravity" : "z"},
       {"field_frames", recording.field_frames},
       {"unexplained_force", recording.force ? UnexplainedForceToJson(*recording.force) : json()}};
@@ -210,6 +213,8 @@ ComparedRecording RecordingFromJson(const json& object) {
     recording.grip_distance = VectorFromJson(distances);
   recording.noise_floor = NoiseFloorFromJson(object.at("noise_floor"));
   for (const json& part : object.at("parts")) recording.parts.push_back(PartFromJson(part));
+  for (const json& reaction : object.value("reactions", json::array()))
+    recording.reactions.push_back(ReactionFromJson(reaction));
   recording.height_by_gravity = object.at("height_along") == "against gravity";
   recording.field_frames = object.at("field_frames");
   if (const json& force = object.at("unexplained_force"); !force.is_null())

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "record/fitted_reaction.h"
 #include "record/run_record.h"
 #include "record/unexplained_force_record.h"
 
@@ -128,7 +129,8 @@ struct ComparedRecording {
   std::vector<std::string> point_names;  // numbers if the recording is not available
   Eigen::VectorXd grip_distance;         // m, undeformed object; empty: unknown
   NoiseFloor noise_floor;
-  std::vector<ComparedPart> parts;  // in chronological order: fitted, then held-out frames
+  std::vector<ComparedPart> parts;        // in chronological order: fitted, then held-out frames
+  std::vector<FittedReaction> reactions;  // measured forces of the grips, as the fit predicts them
   // The following is known only if the model was run again.
   bool height_by_gravity = false;               // height is measured against gravity, else along z
   int field_frames = 0;                         // number of frames written for ParaView

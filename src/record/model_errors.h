@@ -28,7 +28,8 @@ struct ModelErrors {
   double without_nuisances = 0;
   double unfitted_rms_over_sigma = 0;  // recordings that were not fitted; 0 if there are none
   bool has_held_out = false;           // if nothing was held out, the fitted frames are used
-  // The sum of the squares of which rms_over_sigma² is the mean. Not in files.
+  // The sum of the squares of which rms_over_sigma² is the mean, and of those of measured forces.
+  // Not in files.
   double squares_over_sigma = 0;
 };
 

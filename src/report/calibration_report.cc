@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/text_layout.h"
+#include "report/reaction_text.h"
 
 namespace lacuna {
 namespace {
@@ -121,6 +122,7 @@ std::string RecordingText(const FittedRecording& recording) {
                               is_small ? 1e3 * value.value : value.value,
                               is_small ? "m" + value.unit : value.unit));
   }
+  for (const FittedReaction& reaction : recording.reactions) text += ReactionLines(reaction);
   const std::string margin(17, ' ');
   if (!own.empty())
     text += Wrapped(fmt::format("estimated from its first tenth: {}", fmt::join(own, ", ")), margin,
@@ -190,6 +192,7 @@ std::string CalibrationSummary(const CalibrationRecord& record) {
   for (const FittedRecording& recording : record.recordings) {
     text += fmt::format("  {:14} fitted    {}\n", recording.name, Describe(recording.in_fit));
     text += fmt::format("  {:14} held out  {}\n", "", Describe(recording.held_out));
+    for (const FittedReaction& reaction : recording.reactions) text += ReactionLines(reaction);
   }
   std::vector<std::string> more;
   if (const size_t others = record.parameters.size() - static_cast<size_t>(shown); others > 0)
@@ -201,8 +204,10 @@ std::string CalibrationSummary(const CalibrationRecord& record) {
 }
 
 std::string CalibrationReport(const CalibrationRecord& record) {
-  std::string text =
-      ParameterTable(record) + HeldText(record) + NoiseText(record) + TimeStepText(record);
+  std::string text = ParameterTable(record);
+  if (const std::string shares = SharesText(record.parameters); !shares.empty())
+    text += Wrapped(shares, "  ", "    ");
+  text += HeldText(record) + NoiseText(record) + TimeStepText(record);
   for (const FittedRecording& recording : record.recordings) text += RecordingText(recording);
   for (const PriorConflict& conflict : record.prior_conflicts)
     text += Wrapped("prior conflict: " + DescribePriorConflict(conflict), "  ", "    ");

@@ -7,6 +7,7 @@
 #include "core/text_layout.h"
 #include "report/error_trend_text.h"
 #include "report/quantity_text.h"
+#include "report/reaction_text.h"
 #include "report/unexplained_force_report.h"
 
 namespace lacuna {
@@ -170,6 +171,11 @@ std::string ComparisonTable(const ComparisonRecord& record) {
                    part.worst_point < 0 ? "-" : recording.point_names[part.worst_point]);
     }
   }
+  for (const ComparedRecording& recording : record.recordings) {
+    if (recording.reactions.empty()) continue;
+    table += fmt::format("\n  measured forces of {}: rms error of a component\n", recording.name);
+    for (const FittedReaction& reaction : recording.reactions) table += ReactionLines(reaction);
+  }
   return table;
 }
 
@@ -179,6 +185,8 @@ std::vector<std::string> DescribeComparison(const ComparisonRecord& record) {
     for (const ComparedPart& part : recording.parts)
       paragraphs.push_back(DescribePart(recording, part));
     if (!recording.is_scan) paragraphs.push_back(DescribeNoise(recording));
+    for (const FittedReaction& reaction : recording.reactions)
+      paragraphs.push_back(DescribeReactionFit(reaction, recording.name));
     if (recording.force)
       paragraphs.push_back(DescribeUnexplainedForce(*recording.force, recording.name));
   }

@@ -12,8 +12,9 @@
 namespace lacuna {
 
 // The scenes of all recordings of a fitted model: its points and errors from misfit.csv, the
-// surface from MotionFile() and the unexplained force from comparison/unexplained_force.csv, where
-// these are of this fit. Throws InputError when one of the files is damaged.
+// surface from MotionFile(), the unexplained force from comparison/unexplained_force.csv, where
+// these are of this fit, and the load from reactions.csv. Throws InputError when one of the files
+// is damaged.
 nlohmann::json SceneDocuments(const ReportedModel& model);
 
 // The scene of a reconstruction, from results/shown_motion.json; null where it has none.

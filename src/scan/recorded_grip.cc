@@ -37,7 +37,7 @@ void ReadPath(const Config& path, const DataLocation& data, const std::vector<do
   if (!turn) return;
   const double radian = ReadUnit(*turn, "unit", kAngle, "rad");
   grip->rotations =
-      VectorColumns(series.table, {turn->Text("x"), turn->Text("y"), turn->Text("z")}, radian);
+      ColumnsOf(series.table, {turn->Text("x"), turn->Text("y"), turn->Text("z")}, radian);
   if (!grip->rotations.allFinite()) {
     turn->Fail("x", grip->file.string() + ": a row of the turn is not finite");
   }

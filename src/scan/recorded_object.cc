@@ -23,7 +23,15 @@ std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
     if (force.region) add_region(*force.region);
     add(force.file);
   }
+  for (const MeasuredReaction& reaction : object.reactions) add(reaction.file);
   return files;
+}
+
+std::vector<std::string> HeldParts(const RecordedObject& object) {
+  std::vector<std::string> names;
+  for (const Region& region : object.fixed) names.push_back(region.name);
+  for (const RecordedGrip& grip : object.grips) names.push_back(grip.region.name);
+  return names;
 }
 
 std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last) {
@@ -33,7 +41,8 @@ std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double fir
     if (!doubt.empty()) doubts.push_back(doubt);
   }
   const auto check = [&](const std::string& name, const std::filesystem::path& file,
-                         const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values) {
+                         const Eigen::VectorXd& times,
+                         const Eigen::Ref<const Eigen::MatrixXd>& values) {
     if (file.empty()) return;
     const std::string doubt = DoubtOfTimeSpan(times, values, first, last);
     if (!doubt.empty()) doubts.push_back(fmt::format("{} ({}): {}", name, file.string(), doubt));
@@ -43,6 +52,9 @@ std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double fir
   }
   for (const MeasuredForce& force : object.forces) {
     check("the force " + force.name, force.file, force.times, force.forces);
+  }
+  for (const MeasuredReaction& reaction : object.reactions) {
+    check("the force on " + reaction.name, reaction.file, reaction.times, reaction.forces);
   }
   return doubts;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scan/measured_force.h"
+#include "scan/measured_reaction.h"
 #include "scan/recorded_grip.h"
 #include "scan/region.h"
 
@@ -20,9 +21,13 @@ struct RecordedObject {
   std::vector<Region> fixed;               // parts that do not move
   std::vector<RecordedGrip> grips;         // parts that are moved from outside
   std::vector<MeasuredForce> forces;
+  std::vector<MeasuredReaction> reactions;  // forces that the grips exert
 };
 
-// The files that the object's regions, paths and forces were read from.
+// The names of the held parts: the fixed regions, then the gripped ones.
+std::vector<std::string> HeldParts(const RecordedObject& object);
+
+// The files that the object's regions, paths, forces and reactions were read from.
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);
 
 // Doubts about the object, one sentence each: its density, and loads and paths whose times do not

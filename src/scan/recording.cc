@@ -78,6 +78,9 @@ std::vector<InfoLine> DescribeObject(const Recording& recording) {
   for (const MeasuredForce& force : object.forces) {
     lines.emplace_back("force", DescribeForce(force));
   }
+  for (const MeasuredReaction& reaction : object.reactions) {
+    lines.emplace_back("reaction", DescribeReaction(reaction));
+  }
   return lines;
 }
 

@@ -47,6 +47,7 @@ RecordedObject ReadObject(const Config& config, const Recording& recording,
   }
   object.grips = ReadGrips(config, recording.data, frame_times, recording.markers.names);
   object.forces = ReadForces(config, recording.data, frame_times, recording.times.front());
+  object.reactions = ReadReactions(config, recording.data, frame_times, HeldParts(object));
   return object;
 }
 

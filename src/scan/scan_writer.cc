@@ -20,12 +20,19 @@ std::string FormatTimes(const std::vector<double>& times) {
 // The entries for what is fixed, gripped and loaded; writes the files with paths and forces.
 std::string WriteConstraints(const std::filesystem::path& folder, const RecordedObject& object) {
   std::string yaml;
+  const auto held = [&](std::string item, size_t part) {
+    for (size_t i = 0; i < object.reactions.size(); ++i) {
+      if (object.reactions[i].held != part) continue;
+      item.pop_back();
+      item += ", " + WriteReaction(folder, object.reactions[i], i + 1) + "}";
+    }
+    return "  - " + item + "\n";
+  };
   if (!object.fixed.empty()) yaml += "fixed:\n";
-  for (const Region& region : object.fixed) yaml += "  - " + FormatRegion(region) + "\n";
+  for (size_t i = 0; i < object.fixed.size(); ++i) yaml += held(FormatRegion(object.fixed[i]), i);
   if (!object.grips.empty()) yaml += "gripped:\n";
-  for (size_t i = 0; i < object.grips.size(); ++i) {
-    yaml += "  - " + WriteGrip(folder, object.grips[i], i + 1) + "\n";
-  }
+  for (size_t i = 0; i < object.grips.size(); ++i)
+    yaml += held(WriteGrip(folder, object.grips[i], i + 1), object.fixed.size() + i);
   if (!object.forces.empty()) yaml += "forces:\n";
   for (size_t i = 0; i < object.forces.size(); ++i) {
     yaml += "  - " + WriteForce(folder, object.forces[i], i + 1) + "\n";

@@ -1,6 +1,7 @@
 #include "scan/time_series.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,23 +49,31 @@ double ReadUnit(const Config& config, const std::string& key, const Dimension& d
   }
 }
 
-Eigen::Matrix3Xd VectorColumns(const DelimitedTable& table, const std::array<std::string, 3>& names,
-                               double unit) {
-  Eigen::Matrix3Xd vectors(3, table.values.rows());
-  for (int axis = 0; axis < 3; ++axis)
-    vectors.row(axis) = unit * table.values.col(RequireColumn(table, names[axis])).transpose();
-  return vectors;
+Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,
+                          double unit) {
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(names.size()), table.values.rows());
+  for (size_t k = 0; k < names.size(); ++k)
+    columns.row(static_cast<Eigen::Index>(k)) =
+        unit * table.values.col(RequireColumn(table, names[k])).transpose();
+  return columns;
 }
 
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
                           const std::vector<double>& frame_times, double unit) {
+  return ReadColumns(config, data, frame_times,
+                     {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
+}
+
+TimeSeries ReadColumns(const Config& config, const DataLocation& data,
+                       const std::vector<double>& frame_times,
+                       const std::vector<std::string>& names, double unit) {
   const std::filesystem::path file = data.folder / config.Text("file");
+  if (!std::filesystem::exists(file)) config.Fail("file", "there is no file " + file.string());
   TimeSeries series;
   series.table = ReadTableOrArray(file);
   const DelimitedTable& table = series.table;
   const std::string time = config.Text("time", "");
-  series.values = VectorColumns(
-      table, {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
+  series.values = ColumnsOf(table, names, unit);
   if (!time.empty()) {
     series.times =
         ReadUnit(config, "time_unit", kTime, "s") * table.values.col(RequireColumn(table, time));
@@ -85,8 +94,8 @@ TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
   return series;
 }
 
-Eigen::Vector3d InterpolateLinearly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                                    double time) {
+Eigen::VectorXd InterpolateLinearly(const Eigen::VectorXd& times,
+                                    const Eigen::Ref<const Eigen::MatrixXd>& values, double time) {
   const auto [left, right, t] = FindInterval(times, time);
   return (1 - t) * values.col(left) + t * values.col(right);
 }
@@ -109,10 +118,14 @@ Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::M
 }
 
 void WriteTimeSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,
-                     const Eigen::Matrix3Xd& values) {
-  std::string csv = "time,x,y,z\n";
-  for (Eigen::Index k = 0; k < times.size(); ++k)
-    csv += fmt::format("{},{},{},{}\n", times[k], values(0, k), values(1, k), values(2, k));
+                     const Eigen::Ref<const Eigen::MatrixXd>& values,
+                     const std::vector<std::string>& names) {
+  std::string csv = fmt::format("time,{}\n", fmt::join(names, ","));
+  for (Eigen::Index k = 0; k < times.size(); ++k) {
+    csv += fmt::format("{}", times[k]);
+    for (const double value : values.col(k)) csv += fmt::format(",{}", value);
+    csv += "\n";
+  }
   WriteFileAtomically(file, csv);
 }
 

@@ -1,9 +1,8 @@
-// Vectors that change with time, as files give them: the path of a grip, a measured force.
+// Quantities that change with time, as files give them: the path of a grip, a measured force.
 #ifndef LACUNA_SCAN_TIME_SERIES_H_
 #define LACUNA_SCAN_TIME_SERIES_H_
 
 #include <Eigen/Core>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -14,15 +13,20 @@
 namespace lacuna {
 
 struct TimeSeries {
-  DelimitedTable table;     // the file it was read from
-  Eigen::VectorXd times;    // k, s, ascending
-  Eigen::Matrix3Xd values;  // 3 × k, SI, finite
+  DelimitedTable table;    // the file it was read from
+  Eigen::VectorXd times;   // k, s, ascending
+  Eigen::MatrixXd values;  // c × k, SI, finite
 };
 
-// Reads `file` (.npy or text), the columns `x`, `y`, `z` (names or numbers from 1; default 1, 2, 3)
-// in multiples of `unit` (SI) and the column `time` in `time_unit` (default s). Without `time` the
-// file must have one row for each of `frame_times`, the times of all frames in the files (s).
-// Throws InputError naming file and row when a value is not finite or the times do not ascend.
+// Reads `file` (.npy or text): the columns `names` (names, or numbers from 1) in multiples of
+// `unit` (SI), and the column `time` in `time_unit` (default s). Without `time` the file must have
+// one row for each of `frame_times`, the times of all frames in the files (s). Throws InputError
+// naming file and row when a value is not finite or the times do not ascend.
+TimeSeries ReadColumns(const Config& config, const DataLocation& data,
+                       const std::vector<double>& frame_times,
+                       const std::vector<std::string>& names, double unit);
+
+// The same for the components of a vector, the columns named by `x`, `y`, `z` (default 1, 2, 3).
 TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
                           const std::vector<double>& frame_times, double unit);
 
@@ -30,22 +34,23 @@ TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
                 const std::string& default_unit);
 
-// Three columns of a table, multiplied by `unit`: 3 × rows.
-Eigen::Matrix3Xd VectorColumns(const DelimitedTable& table, const std::array<std::string, 3>& names,
-                               double unit);
+// Columns of a table, multiplied by `unit`: names × rows.
+Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::string>& names,
+                          double unit);
 
-// Both interpolate `values` (3 × k) given at `times` (k, ascending) and stay constant before the
+// Both interpolate `values` (c × k) given at `times` (k, ascending) and stay constant before the
 // first time and after the last. The first is piecewise linear. The second is a cubic Hermite
 // spline whose velocity at each time is that of the parabola through it and its two neighbours, so
 // that the velocity is continuous.
-Eigen::Vector3d InterpolateLinearly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                                    double time);
+Eigen::VectorXd InterpolateLinearly(const Eigen::VectorXd& times,
+                                    const Eigen::Ref<const Eigen::MatrixXd>& values, double time);
 Eigen::Vector3d InterpolateSmoothly(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
                                     double time);
 
-// Writes a CSV with the columns time, x, y, z in SI.
+// Writes a CSV with the column time and those of `values` (one row for each of `names`), in SI.
 void WriteTimeSeries(const std::filesystem::path& file, const Eigen::VectorXd& times,
-                     const Eigen::Matrix3Xd& values);
+                     const Eigen::Ref<const Eigen::MatrixXd>& values,
+                     const std::vector<std::string>& names = {"x", "y", "z"});
 
 }  // namespace lacuna
 

@@ -33,14 +33,14 @@ const UnitMistake* LikelyMistake(double end, double last) {
   return nullptr;
 }
 
-double Range(const Eigen::Matrix3Xd& values) {
+double Range(const Eigen::Ref<const Eigen::MatrixXd>& values) {
   return (values.rowwise().maxCoeff() - values.rowwise().minCoeff()).maxCoeff();
 }
 
 // The values within the recording, those at its ends included.
-Eigen::Matrix3Xd Within(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values, double first,
-                        double last) {
-  Eigen::Matrix3Xd within(3, values.cols() + 2);
+Eigen::MatrixXd Within(const Eigen::VectorXd& times,
+                       const Eigen::Ref<const Eigen::MatrixXd>& values, double first, double last) {
+  Eigen::MatrixXd within(values.rows(), values.cols() + 2);
   Eigen::Index count = 0;
   for (const double end : {first, last})
     within.col(count++) = InterpolateLinearly(times, values, end);
@@ -52,8 +52,9 @@ Eigen::Matrix3Xd Within(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& va
 
 }  // namespace
 
-std::string DoubtOfTimeSpan(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                            double first, double last) {
+std::string DoubtOfTimeSpan(const Eigen::VectorXd& times,
+                            const Eigen::Ref<const Eigen::MatrixXd>& values, double first,
+                            double last) {
   const double duration = last - first;
   if (times.size() < 2 || !(duration > 0)) return "";
   const double begin = times[0], end = times[times.size() - 1];

@@ -7,13 +7,14 @@
 
 namespace lacuna {
 
-// A sentence about a series of `values` (3 × k) at `times` (k, s, ascending) beside a recording
+// A sentence about a series of `values` (c × k) at `times` (k, s, ascending) beside a recording
 // from `first` to `last` (s): its times end more than four durations of the recording after it, or
 // it goes on outside the recording and changes by less than a twentieth of its range within it, or
 // it covers less than a hundredth of the recording and another unit would make it end with the
 // recording. Names that unit. Empty if there is no doubt.
-std::string DoubtOfTimeSpan(const Eigen::VectorXd& times, const Eigen::Matrix3Xd& values,
-                            double first, double last);
+std::string DoubtOfTimeSpan(const Eigen::VectorXd& times,
+                            const Eigen::Ref<const Eigen::MatrixXd>& values, double first,
+                            double last);
 
 }  // namespace lacuna
 

@@ -144,7 +144,8 @@ double Detectable(const TrialCase& trial, const HiddenEffect& hidden,
   if (!misfit.usable) throw InputError(trial.name + ": " + misfit.message);
   // The noise of a depth camera is that along its rays and stays as estimated.
   if (!trial.is_scanned)
-    for (LinearisedMisfit::Part& part : misfit.parts) part.errors.noise = trial.noise;
+    for (LinearisedMisfit::Part& part : misfit.parts)
+      if (part.IsOfPoints()) part.errors.noise = trial.noise;
   const Eigen::Index known = values.size();
   Eigen::MatrixXd columns = misfit.jacobian.leftCols(known);
   std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);

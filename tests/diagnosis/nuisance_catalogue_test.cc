@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "calibration/calibration_problem.h"
-#include "support/held_bar.h"
+#include "diagnosis/grip_motions.h"
+#include "prediction/prediction_study_reader.h"
+#include "support/pulled_bar.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -90,6 +92,42 @@ TEST(NuisanceCatalogue, MakesTheNuisancesOfARecordingFromItsFrames) {
   const Eigen::MatrixXd& drift = made.at("registration_drift").columns;
   EXPECT_EQ(drift.topRows(part.layout.series).norm(), 0);
   EXPECT_DOUBLE_EQ(drift(drift.rows() - 3, 0), 1);
+}
+
+// A load cell shares the clock of its recording, but is no point that may be misplaced.
+TEST(NuisanceCatalogue, OfARecordingWithALoadCellHaveItsRowsInTheClockOnly) {
+  const TemporaryFolder folder;
+  WritePulledBar(folder.Path(), {});
+  const PredictionStudy study = ReadPredictionStudy(
+      Config::Parse(PulledBarExperiment(folder.Path()), (folder / "study.yaml").string()));
+  const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 2));
+  const GripMotions grips = MakeGripMotions(problem);
+  const LinearisedMisfit misfit =
+      problem.Linearise(problem.Start(), /*with_jacobian=*/true, grips.directions);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  ASSERT_EQ(misfit.parts.size(), 2u);
+  const LinearisedMisfit::Part& force = misfit.parts[1];
+  const auto rows_of_force = [&](const Eigen::MatrixXd& columns) {
+    return columns.middleRows(force.first_row, force.layout.Rows()).eval();
+  };
+  int recordings = 0;
+  for (const NuisanceCandidate& nuisance : RecordingNuisances(problem, misfit, misfit.residual)) {
+    const bool is_clock = nuisance.card.name == "clock";
+    EXPECT_EQ(rows_of_force(nuisance.columns).norm() > 0, is_clock) << nuisance.card.name;
+    if (is_clock) {
+      EXPECT_EQ(rows_of_force(nuisance.columns), force.speed);
+    }
+    ++recordings;
+  }
+  EXPECT_GE(recordings, 3);
+  // A jaw that yields to its force reads less.
+  bool any = false;
+  const Eigen::MatrixXd by_grips =
+      misfit.jacobian.rightCols(static_cast<Eigen::Index>(grips.directions.size()));
+  for (const NuisanceCandidate& nuisance : GripNuisances(grips, by_grips))
+    any = any || (nuisance.card.name == "grip_compliance" &&
+                  rows_of_force(nuisance.columns)(force.layout.Rows() - 1, 0) < 0);
+  EXPECT_TRUE(any);
 }
 
 }  // namespace

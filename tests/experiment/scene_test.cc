@@ -132,6 +132,51 @@ TEST(TwistScene, TurnsTheChuckByTheStatedAngleAndTheMiddleByHalf) {
   EXPECT_TRUE(recording.object.grips.empty());
 }
 
+// A bar that is stretched between two load cells.
+TEST(TwistScene, ItsLoadCellsReadTheForcesOfTheGrips) {
+  const TemporaryFolder folder;
+  Edits edits = kCoarserHeldBar;
+  edits.push_back(
+      {"normal: [-1, 0, 0]}}\n", "normal: [-1, 0, 0]}}\n    measured_force: {deviation: 20 mN}\n"});
+  edits.push_back({"    angle: 90 deg\n",
+                   "    translation: [4 mm, 0, 0]\n    measured_force: {deviation: 20 mN}\n"});
+  const Scene scene = ReadEdited("twist.yaml", edits);
+  const SceneMotion motion = Simulate(scene);
+  ASSERT_TRUE(motion.IsUsable()) << motion.message;
+  ASSERT_EQ(motion.reactions.rows(), 6);
+  ASSERT_EQ(motion.reactions.cols(), scene.frames);
+  EXPECT_LT(motion.reactions.col(0).norm(), 1e-9) << "nothing is deformed at first";
+  // At rest again both pull with the same force, to the last of the vibration: E A ε, and more
+  // where the grips hinder the lateral contraction.
+  const Eigen::VectorXd last = motion.reactions.rightCols<1>();
+  EXPECT_GT(last[3], 0);
+  EXPECT_NEAR(last[0], -last[3], 0.05 * last[3]);
+  EXPECT_LT(std::abs(last[4]) + std::abs(last[5]), 0.05 * last[3]);
+
+  const Recording recording = ExpectReadable(scene, motion, folder / "stretch");
+  ASSERT_EQ(recording.object.fixed.size(), 1u);
+  ASSERT_EQ(recording.object.grips.size(), 1u) << "the chuck is told, as its force is measured";
+  EXPECT_LT((MotionAt(recording.object.grips[0], 0.3).translation() - Eigen::Vector3d(0.002, 0, 0))
+                .norm(),
+            1e-6);
+  ASSERT_EQ(recording.object.reactions.size(), 2u);
+  double squares = 0, count = 0;
+  for (size_t k = 0; k < 2; ++k) {
+    const MeasuredReaction& reading = recording.object.reactions[k];
+    EXPECT_EQ(reading.held, k);
+    EXPECT_EQ(reading.name, scene.grips[k].region.name);
+    const Eigen::MatrixXd noise =
+        reading.forces - motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+    squares += noise.squaredNorm();
+    count += static_cast<double>(noise.size());
+  }
+  EXPECT_NEAR(std::sqrt(squares / count), 0.02, 0.004);  // 96 draws
+  Edits turning = kCoarserHeldBar;
+  turning.push_back(
+      {"    angle: 90 deg\n", "    angle: 90 deg\n    measured_force: {deviation: 20 mN}\n"});
+  EXPECT_THROW(ReadEdited("twist.yaml", turning), InputError);
+}
+
 // What a body that falls has, J.
 struct MechanicalEnergy {
   double kinetic = 0, elastic = 0, gravity = 0;

@@ -27,8 +27,11 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.estimate.low = 1;
   parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
   parameter.near_bound = {true, 2.5};
+  parameter.share_of_forces = 0.75;
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"a", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
+  record.recordings[0].reactions.push_back(
+      {"jaw", {"x", "z"}, 0.02, true, 0.1, {0.05, -0.03}, 3, {4, 8, 0.03, 0.06, 1.5}, {}});
   record.prior_conflicts = {NuisanceParameterConflict{"a.delay", 4},
                             MarkerConflict{"a", "tip", Eigen::Vector3d(1, 2, 3), 1e-4},
                             MarkerConflictCount{"a", 7, 8},
@@ -54,6 +57,10 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read.held[1].values, (std::vector<double>{0, 0, -9.81}));
   ASSERT_EQ(read.recordings.size(), 1u);
   EXPECT_EQ(read.recordings[0].in_fit.rms_over_sigma, 1.5);
+  EXPECT_EQ(read.parameters[0].share_of_forces, 0.75);
+  ASSERT_EQ(read.recordings[0].reactions.size(), 1u);
+  EXPECT_EQ(ReactionToJson(read.recordings[0].reactions[0]),
+            ReactionToJson(record.recordings[0].reactions[0]));
   ASSERT_EQ(read.prior_conflicts.size(), record.prior_conflicts.size());
   for (size_t k = 0; k < read.prior_conflicts.size(); ++k)
     EXPECT_EQ(PriorConflictToJson(read.prior_conflicts[k]),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "core/error.h"
 #include "record/packed_array.h"
@@ -87,6 +88,31 @@ TEST(ReportDocument, ScenesHaveTheFramesOfTheMotionAndAllFramesAsSeries) {
   // The second recording has no motion: its points are shown alone.
   EXPECT_TRUE(scenes.at(1).at("surface").is_null());
   EXPECT_EQ(scenes.at(1).at("times").size(), 40u);
+}
+
+TEST(ReportDocument, AMeasuredForceIsACurveOverTheDisplacementOfItsGrip) {
+  const TemporaryFolder folder;
+  WriteFit(folder / "bar", {});
+  const auto load = [&] {
+    return ReportDocument({folder / "bar"})
+        .at("runs")
+        .at(0)
+        .at("models")
+        .at(0)
+        .at("scenes")
+        .at(0)
+        .at("load");
+  };
+  EXPECT_TRUE(load().is_null());
+  // The second component varies most; its second frame has no reading.
+  std::ofstream(folder / "bar/calibration/reactions.csv")
+      << "recording,reaction,component,frame,time_s,fitted,displacement_m,measured_N,difference_N\n"
+         "0,0,0,0,0,1,0,0.1,0\n0,0,1,0,0,1,0,0,0.01\n0,0,0,1,1,1,0,0.1,0\n"
+         "0,0,1,1,1,1,0.001,nan,nan\n0,0,0,2,2,0,0,0.1,0\n0,0,1,2,2,0,0.002,3,-0.5\n"
+         "1,0,0,0,0,1,0,7,0\n1,0,0,1,1,1,0,9,0\n";
+  EXPECT_EQ(load(), json({{"displacement_m", {0.0, 0.002}},
+                          {"force_N", {0.0, 3.0}},
+                          {"model_force_N", {0.01, 2.5}}}));
 }
 
 TEST(ReportDocument, WhatIsOfAnEarlierFitIsLeftOutWithANote) {

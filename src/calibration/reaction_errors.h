@@ -1,0 +1,20 @@
+// How well a model predicts the measured reaction of a grip.
+#ifndef LACUNA_CALIBRATION_REACTION_ERRORS_H_
+#define LACUNA_CALIBRATION_REACTION_ERRORS_H_
+
+#include <vector>
+
+#include "prediction/reaction_misfit.h"
+#include "record/fitted_reaction.h"
+
+namespace lacuna {
+
+// The errors of one reading without its tare, which is determined from the frames `tells_tare`.
+// Both lists have one flag per frame of the misfit.
+FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMisfit& misfit,
+                               const std::vector<char>& fitted,
+                               const std::vector<char>& tells_tare);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_CALIBRATION_REACTION_ERRORS_H_

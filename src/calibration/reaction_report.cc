@@ -1,0 +1,100 @@
+#include "calibration/reaction_report.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
+#include "calibration/linear_misfit.h"
+
+namespace lacuna {
+namespace {
+
+// The mean displacement of the nodes of a grip, m, at a time of the model.
+Eigen::Vector3d GripDisplacement(const Model& model, size_t grip, double time) {
+  const Grip& held = model.grips[grip];
+  if (!held.motion || held.nodes.size() == 0) return Eigen::Vector3d::Zero();
+  const Eigen::Matrix3Xd rest = model.body->mesh.nodes(Eigen::all, held.nodes);
+  return (held.motion(time) - rest).rowwise().mean();
+}
+
+// The same relative to the mean over the other grips, if there are any: a load cell on a fixed grip
+// then shows the motion of the one that is driven.
+Eigen::Vector3d RelativeDisplacement(const Model& model, size_t grip, double time) {
+  Eigen::Vector3d others = Eigen::Vector3d::Zero();
+  for (size_t other = 0; other < model.grips.size(); ++other)
+    if (other != grip)
+      others += GripDisplacement(model, other, time) / static_cast<double>(model.grips.size() - 1);
+  return GripDisplacement(model, grip, time) - others;
+}
+
+}  // namespace
+
+CsvTable ReactionTable(const CalibrationProblem& problem,
+                       const std::vector<RecordingMisfit>& misfits) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const char* names[] = {"recording", "reaction",       "component",  "frame",       "time_s",
+                         "fitted",    "displacement_m", "measured_N", "difference_N"};
+  std::vector<std::vector<double>> columns(std::size(names));
+  for (size_t r = 0; r < misfits.size(); ++r) {
+    const RecordingModel& model = problem.models()[r];
+    const Misfit& misfit = misfits[r].misfit;
+    const std::vector<double>& times = model.item().recording.times;
+    const double delay = model.Delay(misfits[r].nuisance);
+    for (size_t k = 0; k < misfit.reactions.size(); ++k) {
+      const MeasuredReaction& reading = model.Reactions()[k];
+      for (size_t f = 0; f < misfit.frames.size(); ++f) {
+        const double time = times[misfit.frames[f]];
+        const Eigen::VectorXd moved =
+            reading.directions.transpose() *
+            RelativeDisplacement(model.model(), reading.held, time - delay);
+        for (int c = 0; c < reading.Components(); ++c) {
+          const size_t row = f * static_cast<size_t>(reading.Components()) + static_cast<size_t>(c);
+          const bool seen = misfit.reactions[k].count[row] > 0;
+          const double row_of_table[] = {
+              static_cast<double>(r),
+              static_cast<double>(k),
+              static_cast<double>(c),
+              static_cast<double>(misfit.frames[f]),
+              time,
+              static_cast<double>(misfits[r].fitted[f]),
+              moved[c],
+              seen ? ReadingAt(reading, time)[c] : kNone,
+              seen ? misfit.reactions[k].residual[static_cast<Eigen::Index>(row)] -
+                         misfits[r].reactions[k].tare[static_cast<size_t>(c)]
+                   : kNone};
+          for (size_t n = 0; n < columns.size(); ++n) columns[n].push_back(row_of_table[n]);
+        }
+      }
+    }
+  }
+  CsvTable table;
+  for (size_t n = 0; n < columns.size() && !columns[n].empty(); ++n)
+    table.push_back(
+        {names[n], Eigen::Map<Eigen::VectorXd>(columns[n].data(),
+                                               static_cast<Eigen::Index>(columns[n].size()))});
+  return table;
+}
+
+std::vector<double> SharesOfForces(const CalibrationProblem& problem,
+                                   const Eigen::VectorXd& values) {
+  const auto& models = problem.models();
+  if (std::none_of(models.begin(), models.end(), [](const RecordingModel& model) {
+        return model.item().fitted && !model.Reactions().empty();
+      }))
+    return {};
+  const LinearisedMisfit misfit = problem.Linearise(values, true);
+  if (!misfit.usable) return {};
+  const Eigen::MatrixXd squares =
+      WhitenedRows(misfit.jacobian, misfit, 0, /*fitted_only=*/true).cwiseAbs2();
+  Eigen::RowVectorXd of_forces = Eigen::RowVectorXd::Zero(squares.cols());
+  for (const LinearisedMisfit::Part& part : misfit.parts)
+    if (!part.IsOfPoints())
+      of_forces += squares.middleRows(part.first_row, part.layout.Rows()).colwise().sum();
+  const Eigen::RowVectorXd all = squares.colwise().sum();
+  std::vector<double> shares;
+  for (Eigen::Index k = 0; k < all.size(); ++k)
+    shares.push_back(all[k] > 0 ? of_forces[k] / all[k] : 0);
+  return shares;
+}
+
+}  // namespace lacuna

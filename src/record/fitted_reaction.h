@@ -1,0 +1,41 @@
+// The fit of a model to the measured reaction of one grip, as plain data.
+//
+// The reaction is the force that the grip exerts on the object, N. σ is the standard deviation of
+// the noise of one reading of one component. The tare is the offset of a component that is the same
+// at all times, predicted minus measured; the errors do not contain it.
+#ifndef LACUNA_RECORD_FITTED_REACTION_H_
+#define LACUNA_RECORD_FITTED_REACTION_H_
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+// The errors over some frames.
+struct ReactionMeasure {
+  int frames = 0;
+  int values = 0;             // components that were read, summed over the frames
+  double rms = 0;             // N, of a component
+  double largest = 0;         // N
+  double rms_over_sigma = 0;  // 1 is noise alone
+};
+
+struct FittedReaction {
+  std::string name;                 // of the grip
+  std::vector<std::string> labels;  // of the components: "x", "y", "z", or "along"
+  double deviation = 0;             // N, σ
+  bool deviation_is_estimated = false;
+  double tare_deviation = 0;   // N, of the prior
+  std::vector<double> tare;    // N, for each component
+  double largest_reading = 0;  // N
+  ReactionMeasure in_fit, held_out;
+};
+
+nlohmann::json ReactionToJson(const FittedReaction& reaction);
+// Throws nlohmann::json::exception.
+FittedReaction ReactionFromJson(const nlohmann::json& value);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_FITTED_REACTION_H_

@@ -1,0 +1,197 @@
+// Forces that load cells measure on driven grips, as data of a fit.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "calibration/calibration_fits.h"
+#include "calibration/calibration_run.h"
+#include "calibration/held_out_misfit.h"
+#include "calibration/linear_misfit.h"
+#include "calibration/reaction_report.h"
+#include "effects/catalogue.h"
+#include "prediction/prediction_study_reader.h"
+#include "record/csv_table.h"
+#include "support/pulled_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+ProgressOptions Silent() {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  return silent;
+}
+
+using Replacements = std::map<std::string, std::string>;
+
+PredictionStudy StudyOf(const TemporaryFolder& folder, const Replacements& replaced = {}) {
+  return ReadPredictionStudy(Config::Parse(PulledBarExperiment(folder.Path(), replaced),
+                                           (folder / "study.yaml").string()));
+}
+
+Calibration FitOf(const CalibrationProblem& problem) {
+  Progress progress(Silent());
+  return FitFromStart(problem, &progress);
+}
+
+TEST(MeasuredForce, DeterminesTheModulusOfABarThatIsStretched) {
+  const TemporaryFolder folder;
+  const PulledBarTruth truth;
+  WritePulledBar(folder.Path(), truth);
+  const PredictionStudy study = StudyOf(folder);
+  const CalibrationProblem problem(study, PulledBarMesh());
+  const Calibration fit = FitOf(problem);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  const ParameterEstimate& modulus = fit.estimates.at(0);
+  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_LT(modulus.low, truth.young_modulus);
+  EXPECT_GT(modulus.high, truth.young_modulus);
+  // 12 readings with σ = 10 mN and an unknown tare: the slope over 0 to 5.5 mm, of about 3 N, is
+  // known to σ √(12/12) / 3 N = 0.3 %.
+  EXPECT_LT(modulus.high - modulus.low, 0.03 * truth.young_modulus);
+  EXPECT_LT(fit.rms, 1.2);
+
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, fit.parameters);
+  const FittedReaction& jaw = misfits.at(0).reactions.at(0);
+  EXPECT_EQ(jaw.name, "jaw");
+  EXPECT_EQ(jaw.in_fit.frames, 12);
+  EXPECT_EQ(jaw.held_out.frames, kPulledFrames - 12);
+  // The tare is predicted minus measured.
+  EXPECT_NEAR(jaw.tare.at(0), -truth.tare, 0.02);
+  EXPECT_LT(jaw.in_fit.rms_over_sigma, 1.5);
+  EXPECT_LT(jaw.held_out.rms_over_sigma, 3);  // the errors of modulus and tare included
+  EXPECT_GT(jaw.held_out.rms, 0);
+  // The motion of the markers hardly depends on the modulus.
+  EXPECT_GT(SharesOfForces(problem, fit.parameters).at(0), 0.999);
+
+  // A prediction that is known is not made again.
+  const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
+  const FittedReaction same = MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0);
+  EXPECT_NEAR(same.in_fit.rms, jaw.in_fit.rms, 1e-6 * jaw.in_fit.rms);
+  EXPECT_NEAR(same.held_out.rms, jaw.held_out.rms, 1e-6 * jaw.held_out.rms);
+}
+
+TEST(MeasuredForce, WithoutItTheModulusScalesOut) {
+  const TemporaryFolder folder;
+  WritePulledBar(folder.Path(), {}, "");
+  const PredictionStudy study = StudyOf(folder);
+  const CalibrationProblem problem(study, PulledBarMesh());
+  const Calibration fit = FitOf(problem);
+  ASSERT_EQ(fit.estimates.size(), 1u);
+  const auto verdict = fit.estimates[0].verdict;
+  EXPECT_TRUE(verdict == ParameterEstimate::Verdict::kFlat ||
+              verdict == ParameterEstimate::Verdict::kDead)
+      << static_cast<int>(verdict);
+  EXPECT_TRUE(SharesOfForces(problem, fit.parameters).empty());
+}
+
+TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
+  const TemporaryFolder folder;
+  WritePulledBar(folder.Path(), {});
+  const PredictionStudy study =
+      StudyOf(folder, {{"{name: young_modulus}", "{name: young_modulus}, {name: poisson_ratio}"},
+                       {"    fit_until: 11.5 s\n",
+                        "    clock_deviation: 0.1 s\n    registration: {shift_deviation: 1 mm, "
+                        "turn_deviation: 1 deg}\n"}});
+  const CalibrationProblem problem(study, PulledBarMesh());
+  Eigen::VectorXd at = problem.Start();
+  ASSERT_EQ(at.size(), 9);
+  at.tail(7) << 0.05, 1e-3, -2e-3, 1e-3, 5e-4, -3e-4, 2e-4;
+  const Eigen::VectorXd steps =
+      (Eigen::VectorXd(9) << 200, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
+  // An effect that the model lacks, which a diagnosis would try.
+  const std::shared_ptr<const Effect> gravity = MakeEffect("gravity", {{"acceleration_x", 0.0}});
+  const LinearisedMisfit here =
+      problem.Linearise(at, true, {{.perturbation = {.effect = gravity, .parameter = 0}}});
+  ASSERT_TRUE(here.usable) << here.message;
+  ASSERT_EQ(here.parts.size(), 2u);
+  EXPECT_TRUE(here.parts[0].IsOfPoints());
+  const LinearisedMisfit::Part& force = here.parts[1];
+  ASSERT_EQ(force.reaction, std::optional<size_t>(0));
+  EXPECT_EQ(force.layout.Rows(), kPulledFrames);
+  EXPECT_EQ(force.errors.noise, 0.01);
+  EXPECT_EQ(force.errors.common, 0.3);
+  for (Eigen::Index k = 0; k < at.size(); ++k) {
+    const Eigen::VectorXd shift = steps[k] * Eigen::VectorXd::Unit(at.size(), k);
+    const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
+                                        problem.Linearise(at - shift, false, {}, &here).residual) /
+                                       (2 * steps[k]);
+    const auto rows = [&](const Eigen::VectorXd& all) {
+      return all.segment(force.first_row, force.layout.Rows());
+    };
+    // Equilibria are known to 1e-6 of the forces. The rate, for the clock, is the mean over a step
+    // between two frames, in which the curve bends by 1 %.
+    const double tolerance = k == 2 ? 1e-2 : 1e-3;
+    EXPECT_LT((rows(here.jacobian.col(k)) - rows(difference)).norm(),
+              tolerance * rows(difference).norm() + 1e-9)
+        << k;
+    // The registration of the markers does not concern the load cell.
+    if (k >= 3) {
+      EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;
+    }
+  }
+  // The weight of the bar is carried by both ends; a column of a candidate has the row of the jaw.
+  const double mass = problem.body()->node_mass.sum();
+  const double by_gravity = here.jacobian(force.first_row, at.size());
+  EXPECT_NEAR(by_gravity, -0.5 * mass, 0.05 * mass);
+  // The whitened rows of all frames, in the same order, are what is fitted.
+  const Prediction fitted = problem.Predict(at, true);
+  ASSERT_TRUE(fitted.usable) << fitted.message;
+  const Eigen::MatrixXd white = WhitenedRows(here.jacobian.leftCols(at.size()), here, 0, true);
+  ASSERT_EQ(fitted.jacobian.rows(), white.rows());
+  EXPECT_LT((fitted.jacobian - white).norm(), 1e-6 * fitted.jacobian.norm());
+  ASSERT_EQ(static_cast<Eigen::Index>(fitted.before.size()), white.rows());
+  EXPECT_EQ(fitted.before[static_cast<size_t>(force.first_row)], -1);
+  EXPECT_EQ(fitted.before.back(), white.rows() - 2);
+}
+
+TEST(MeasuredForce, ARunKeepsItsErrorsAndItsCurve) {
+  const TemporaryFolder folder;
+  // The noise is estimated: the rows of a file that says nothing scatter by 10 mN.
+  WritePulledBar(folder.Path(), {},
+                 "{file: force.csv, time: t, along: [2, 0, 0], value: fx, tare_deviation: 0.3 N}");
+  std::ofstream(folder / "study.yaml") << PulledBarExperiment(folder.Path());
+  Progress progress(Silent());
+  const CalibrationRecord record =
+      RunCalibration(ReadPredictionStudy(Config::Load(folder / "study.yaml")), &progress);
+  ASSERT_TRUE(record.usable) << record.message;
+  const CalibrationRecord read = LoadCalibration(folder / "run");
+  const FittedReaction& jaw = read.recordings.at(0).reactions.at(0);
+  EXPECT_TRUE(jaw.deviation_is_estimated);
+  EXPECT_GT(jaw.deviation, 0.004);  // from 16 readings
+  EXPECT_LT(jaw.deviation, 0.025);
+  EXPECT_THAT(jaw.labels, testing::ElementsAre("along"));
+  EXPECT_EQ(jaw.in_fit.rms, record.recordings[0].reactions.at(0).in_fit.rms);
+  EXPECT_GT(read.parameters.at(0).share_of_forces.value_or(0), 0.99);
+
+  const CsvTable curve = LoadCsv(folder / "run/calibration/reactions.csv");
+  ASSERT_EQ(curve.size(), 9u);
+  ASSERT_EQ(curve[0].values.size(), kPulledFrames);
+  EXPECT_EQ(curve[6].name, "displacement_m");
+  EXPECT_NEAR(curve[6].values[15], 15 * kStretch, 1e-12);
+  EXPECT_EQ(curve[8].name, "difference_N");
+  EXPECT_LT(curve[8].values.cwiseAbs().maxCoeff(), 0.1);
+}
+
+TEST(MeasuredForce, NeedsAReadingWithinTheFramesAndItsNoise) {
+  const TemporaryFolder folder;
+  const auto message = [&](const std::string& content) -> std::string {
+    WritePulledBar(folder.Path(), {}, "{file: force.csv, time: t, x: fx}");
+    std::ofstream(folder / "force.csv") << content;
+    try {
+      StudyOf(folder);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing was refused";
+  };
+  EXPECT_THAT(message("t,fx\n100,1\n200,2\n"), testing::HasSubstr("in which no frame lies"));
+  EXPECT_THAT(message("t,fx\n0,1\n5,1\n15,1\n"),
+              testing::HasSubstr("deviation: cannot be estimated"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,73 @@
+// The columns of candidate effects have the rows of measured forces: an effect that a motion driven
+// by grips does not show appears in the force.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "calibration/calibration_fits.h"
+#include "diagnosis/diagnosis.h"
+#include "diagnosis/effect_ranking.h"
+#include "diagnosis/recorded_diagnosis.h"
+#include "effects/catalogue.h"
+#include "prediction/prediction_study_reader.h"
+#include "report/verdict_text.h"
+#include "support/pulled_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+// A bar that stiffens with strain, and a fit of the model without it.
+struct StiffeningBar {
+  explicit StiffeningBar(const std::string& measured_force) {
+    PulledBarTruth truth;
+    truth.hidden = {MakeEffect("strain_stiffening", {{"modulus", 8e4}})};
+    WritePulledBar(folder.Path(), truth, measured_force);
+    study = ReadPredictionStudy(
+        Config::Parse(PulledBarExperiment(folder.Path()), (folder / "study.yaml").string()));
+    problem = std::make_unique<CalibrationProblem>(study, BarMesh({6, 1, 1}, 2));
+    values = FitFromStart(*problem, &progress).parameters;
+  }
+  static ProgressOptions Silent() {
+    ProgressOptions silent;
+    silent.style = ProgressStyle::kSilent;
+    return silent;
+  }
+
+  TemporaryFolder folder;
+  PredictionStudy study;
+  std::unique_ptr<CalibrationProblem> problem;
+  Progress progress{Silent()};
+  Eigen::VectorXd values;
+};
+
+double EvidenceForStiffening(StiffeningBar* bar) {
+  const EffectRanking ranking = RankEffects(*bar->problem, bar->values, &bar->progress);
+  const auto found = std::find_if(
+      ranking.effects.begin(), ranking.effects.end(),
+      [](const ScoredEffect& effect) { return effect.candidate.type == "strain_stiffening"; });
+  EXPECT_NE(found, ranking.effects.end());
+  return found != ranking.effects.end() ? found->score.evidence : 0;
+}
+
+TEST(MeasuredForceInADiagnosis, ShowsWhatTheMarkersDoNot) {
+  StiffeningBar without(""), with(kLoadCell);
+  EXPECT_LT(EvidenceForStiffening(&without), 3);
+  EXPECT_GT(EvidenceForStiffening(&with), 10);
+}
+
+// The look-alikes of the effect are other elasticity laws and effects that stiffen a bar which is
+// stretched; nothing else explains the force.
+TEST(MeasuredForceInADiagnosis, LeadsToTheEffectThatIsMissing) {
+  StiffeningBar bar(kLoadCell);
+  const Diagnosis diagnosis = Diagnose(*bar.problem, bar.values, {}, &bar.progress);
+  EXPECT_TRUE(diagnosis.verdict == Verdict::kMissing || diagnosis.verdict == Verdict::kAmbiguous)
+      << ExplainVerdict(RecordOf(diagnosis));
+  EXPECT_THAT(diagnosis.effects, testing::Contains("strain_stiffening"))
+      << ExplainVerdict(RecordOf(diagnosis));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,112 @@
+#include "scan/measured_reaction.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scan/recording_fixture.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const char* const kFrames = "  kind: points\n  files: f/*.csv\n  rate: 20 Hz\n";
+
+class MeasuredReactionTest : public RecordingTest {
+ protected:
+  MeasuredReactionTest() {
+    WriteClouds(3);
+    folder_.Write("load.csv", "t,fx,fz\n0,1000,10\n100,3000,30\n");
+    folder_.Write("jaw.csv", "t,x,y,z\n0,0,0,0\n1,0,0,1\n");
+  }
+  // A recording whose second held part has the reading `force`.
+  static std::string WithForce(const std::string& force) {
+    return Yaml(kFrames,
+                "fixed: [{name: base, nodes: [1]}]\n"
+                "gripped:\n"
+                "  - {name: jaw, nodes: [2], path: {file: jaw.csv, time: t, x: x, y: y, z: z},\n"
+                "     measured_force: " +
+                    force + "}\n");
+  }
+};
+
+TEST_F(MeasuredReactionTest, ComponentsAreReadInTheirUnitsAndInterpolated) {
+  const Recording recording = Load(
+      WithForce("{file: load.csv, time: t, time_unit: ms, x: fx, z: fz, unit: mN, deviation: 2 mN, "
+                "tare_deviation: 0.1 N}"));
+  ASSERT_EQ(recording.object.reactions.size(), 1u);
+  const MeasuredReaction& reaction = recording.object.reactions[0];
+  EXPECT_EQ(reaction.name, "jaw");
+  EXPECT_EQ(reaction.held, 1u);  // after the fixed part
+  EXPECT_THAT(reaction.labels, ElementsAre("x", "z"));
+  EXPECT_NEAR(reaction.deviation, 0.002, 1e-15);
+  EXPECT_EQ(reaction.tare_deviation, 0.1);
+  EXPECT_TRUE(reaction.Covers(0.1));
+  EXPECT_FALSE(reaction.Covers(0.11));
+  EXPECT_LT((ReadingAt(reaction, 0.05) - Eigen::Vector2d(2, 0.02)).norm(), 1e-12);
+  EXPECT_THAT(DescribeRecording(recording), HasSubstr("jaw: 2 values of x, z, at most 3 N"));
+  const auto files = RecordingFiles(recording);
+  EXPECT_THAT(files, testing::Contains(folder_.Path() / "load.csv"));
+}
+
+TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesItsSign) {
+  const Recording recording = Load(
+      WithForce("{file: load.csv, time: t, time_unit: ms, along: [0, 0, 2], value: fz, unit: N, "
+                "exerted_by: object}"));
+  const MeasuredReaction& reaction = recording.object.reactions.at(0);
+  EXPECT_EQ(reaction.directions, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(reaction.forces(0, 1), -30);
+}
+
+TEST_F(MeasuredReactionTest, AFixedPartMayHaveALoadCellToo) {
+  const Recording recording =
+      Load(Yaml(kFrames,
+                "fixed: [{nodes: [1]}, {name: base, nodes: [2], measured_force: {file: load.csv, "
+                "time: t, time_unit: ms, z: fz}}]\n"));
+  EXPECT_EQ(recording.object.reactions.at(0).held, 1u);
+  EXPECT_EQ(recording.object.reactions.at(0).name, "base");
+}
+
+// Each message names the file, the line and the field.
+TEST_F(MeasuredReactionTest, MistakesAreNamedWithTheirPlace) {
+  const auto error = [&](const std::string& force) { return LoadError(WithForce(force)); };
+  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, unit: mm}"),
+              AllOf(HasSubstr("recording.yaml:7"), HasSubstr("gripped[0].measured_force.unit"),
+                    HasSubstr("a force")));
+  EXPECT_THAT(error("{file: lost.csv, time: t, z: fz}"),
+              AllOf(HasSubstr("recording.yaml:7"), HasSubstr("gripped[0].measured_force.file"),
+                    HasSubstr("there is no file")));
+  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, along: [0, 0, 1], value: fz}"),
+              AllOf(HasSubstr("recording.yaml:7"), HasSubstr("measured_force.along"),
+                    HasSubstr("have columns already")));
+  EXPECT_THAT(error("{file: load.csv, time: t}"),
+              AllOf(HasSubstr("recording.yaml:7"), HasSubstr("direction")));
+  EXPECT_THAT(error("{file: load.csv, time: t, along: [0, 0, 0], value: fz}"),
+              AllOf(HasSubstr("measured_force.along"), HasSubstr("other than 0")));
+  EXPECT_THAT(error("{file: load.csv, time: t, along: [0, 0, 1]}"), HasSubstr("value"));
+  EXPECT_THAT(error("{file: load.csv, time: t, z: force}"),
+              AllOf(HasSubstr("load.csv"), HasSubstr("force")));
+  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, deviation: -1 N}"),
+              HasSubstr("measured_force.deviation"));
+  EXPECT_THAT(error("{file: load.csv, time: t, z: fz, tare_deviaton: 1 N}"),
+              HasSubstr("tare_deviation"));
+}
+
+TEST_F(MeasuredReactionTest, WhatIsWrittenIsReadAgain) {
+  const Recording recording = Load(WithForce(
+      "{file: load.csv, time: t, time_unit: ms, x: fx, z: fz, unit: N, deviation: 0.5 N}"));
+  const MeasuredReaction& reaction = recording.object.reactions.at(0);
+  std::string entry = WriteReaction(folder_.Path(), reaction, 1);
+  entry.erase(0, std::string("measured_force: ").size());
+  const Recording again = Load(WithForce(entry));
+  const MeasuredReaction& read = again.object.reactions.at(0);
+  EXPECT_EQ(read.labels, reaction.labels);
+  EXPECT_EQ(read.forces, reaction.forces);
+  EXPECT_EQ(read.times, reaction.times);
+  EXPECT_EQ(read.deviation, reaction.deviation);
+}
+
+}  // namespace
+}  // namespace lacuna
