@@ -131,8 +131,8 @@ CalibrationProblem::CalibrationProblem(const PredictionStudy& study, const TetMe
 }
 
 MeasurementErrors CalibrationProblem::ErrorsOf(const RecordingModel& model) const {
-  return model.item().scans != nullptr ? MeasurementErrors{scan_noise_, study_.scan.shape_deviation}
-                                       : MeasurementErrors{noise_, study_.place_deviation};
+  if (model.item().scans != nullptr) return {scan_noise_, study_.scan.shape_deviation};
+  return {noise_, PlaceDeviation(study_, model.item(), noise_)};
 }
 
 PredictionStudy CalibrationProblem::WithEstimatedNoise() const {

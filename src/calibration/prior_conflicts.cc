@@ -29,20 +29,21 @@ void AddNuisanceConflicts(const RecordingModel& model, const RecordingMisfit& mi
   }
 }
 
-void AddMarkerConflicts(const PredictionStudy& study, const RecordingMisfit& misfit,
-                        const Recording& recording, std::vector<PriorConflict>* conflicts) {
+// `deviation`, m, is that of the places.
+void AddMarkerConflicts(const RecordingMisfit& misfit, const Recording& recording, double deviation,
+                        std::vector<PriorConflict>* conflicts) {
   if (!misfit.has_own_places) return;
   const Eigen::RowVectorXd distance = misfit.place_offset.colwise().norm();
   std::vector<int> conflicting;
   for (int m = 0; m < distance.size(); ++m)
-    if (distance[m] > kConflict * study.place_deviation) conflicting.push_back(m);
+    if (distance[m] > kConflict * deviation) conflicting.push_back(m);
   std::stable_sort(conflicting.begin(), conflicting.end(),
                    [&](int a, int b) { return distance[a] > distance[b]; });
   for (size_t k = 0; k < conflicting.size() && k < kMostListed; ++k) {
     const int m = conflicting[k];
     conflicts->emplace_back(MarkerConflict{misfit.name,
                                            recording.markers.names[static_cast<size_t>(m)],
-                                           misfit.place_offset.col(m), study.place_deviation});
+                                           misfit.place_offset.col(m), deviation});
   }
   if (conflicting.size() > kMostListed)
     conflicts->emplace_back(MarkerConflictCount{misfit.name, static_cast<int>(conflicting.size()),
@@ -93,7 +94,8 @@ std::vector<PriorConflict> FindPriorConflicts(const CalibrationProblem& problem,
     if (item.scans != nullptr) {
       AddScanConflicts(study.scan, misfits[r], model, &conflicts);
     } else {
-      AddMarkerConflicts(study, misfits[r], item.recording, &conflicts);
+      AddMarkerConflicts(misfits[r], item.recording, PlaceDeviation(study, item, problem.noise()),
+                         &conflicts);
       AddReferenceShapeConflict(study, item, *problem.body(), &conflicts);
     }
   }

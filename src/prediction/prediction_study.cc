@@ -71,6 +71,12 @@ EffectList WithValues(const EffectList& effects, const std::vector<ModelParamete
   return with;
 }
 
+double PlaceDeviation(const PredictionStudy& study, const PredictedRecording& item, double noise) {
+  const bool is_read_off_frame =
+      HasTrackedPoints(item.recording) && !study.place_deviation_is_given;
+  return is_read_off_frame ? noise : study.place_deviation;
+}
+
 double Duration(const PredictionStudy& study) {
   double duration = 0;
   for (const PredictedRecording& item : study.recordings)

@@ -91,6 +91,7 @@ struct PredictionStudy {
   bool noise_is_estimated = false;  // whether `noise` is an estimate
   // m, σ of a marker's place on the object, an error that is the same in all frames.
   double place_deviation = 0.001;
+  bool place_deviation_is_given = false;
   // The squared misfit, σ², that effects have removed which a diagnosis has added to the model. The
   // next diagnosis judges what the model leaves by it.
   double explained_misfit = 0;
@@ -103,6 +104,10 @@ struct PredictionStudy {
   std::vector<PredictedRecording> recordings;
   nlohmann::json configuration;  // with defaults resolved, in SI units
 };
+
+// σ of the places of a recording's points on the object, m. The places of tracked points are read
+// off an undeformed frame, so that they have its noise (m, σ) unless place_deviation is given.
+double PlaceDeviation(const PredictionStudy& study, const PredictedRecording& item, double noise);
 
 // The time that the used frames span, s, in the longest recording.
 double Duration(const PredictionStudy& study);

@@ -137,6 +137,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.chooses_time_step = !motion || !motion->Has("time_step");
   if (!study.chooses_time_step) study.time_step = motion->Quantity("time_step", kTime, kPositive);
   study.noise = config.Quantity("noise", kLength, kNotNegative, study.noise);
+  study.place_deviation_is_given = config.Has("place_deviation");
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
   study.explained_misfit = config.Number("explained_misfit", kNotNegative, study.explained_misfit);

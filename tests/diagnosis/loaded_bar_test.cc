@@ -243,6 +243,10 @@ TEST_F(LoadedBar, ComesAsTrackedPointsToo) {
   EXPECT_TRUE(item.recording.markers.positions[5].col(8).array().isNaN().all());
   EXPECT_EQ(item.recording.markers.positions[4](0, 8), 0.04);
   EXPECT_EQ(item.recording.object.grips[0].motion, GripMotion::kFollowsMarkers);
+  EXPECT_EQ(PlaceDeviation(study, item, 2e-5), 1e-4) << "given in the experiment";
+  PredictionStudy without = study;
+  without.place_deviation_is_given = false;
+  EXPECT_EQ(PlaceDeviation(without, item, 2e-5), 2e-5) << "the noise of the frame that shows them";
   EXPECT_THAT(item.recording.object.grips[0].markers, testing::ElementsAre("p0", "p1"));
 }
 
