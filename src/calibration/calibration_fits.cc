@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "calibration/far_start.h"
 
 namespace lacuna {
 namespace {
@@ -20,6 +23,10 @@ constexpr double kOtherStarts[] = {0.5, 2, 0.25, 4};
 // more than `kSettled` times its posterior standard deviation.
 constexpr int kIterationsOfRound = 12;
 constexpr double kSettled = 0.1;
+// As long as the reach is widened, the correspondences are wrong in part: they are renewed after so
+// few iterations, and the reach is divided by `kReachStep`.
+constexpr int kIterationsWhileFar = 4;
+constexpr double kReachStep = 2;
 
 // The largest change of a parameter, in units of its posterior standard deviation.
 double LargestChange(const std::vector<CalibratedParameter>& parameters,
@@ -73,16 +80,19 @@ class Fitter {
   Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start,
                     const CalibrationOptions& options) {
     progress_.Begin(name, 0);
-    Calibration calibration =
-        problem_.HasScans() ? FitScans(horizon, start, options) : FitOnce(horizon, start, options);
-    progress_.Report(evaluations_, calibration.rms);  // replaces that of the last values tried
-    progress_.End(calibration.message);
-    calibration.predictions = evaluations_;
-    return calibration;
+    Calibration calibration = problem_.HasScans() ? FitScans(horizon, {.values = start}, options)
+                                                  : FitOnce(horizon, start, options);
+    return Finished(std::move(calibration));
   }
 
   Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
-    return Stage(name, ShortHorizon(problem_), start, {});
+    if (!problem_.HasScans()) return Stage(name, ShortHorizon(problem_), start, {});
+    progress_.Begin(name, 0);
+    const FarStart far = FindFarStart(problem_, start);
+    budget_.Spend(far.predictions, TimeStep());
+    evaluations_ += far.predictions;
+    searched_ = far.summary;
+    return Finished(FitScans(ShortHorizon(problem_), far, {}));
   }
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
@@ -97,6 +107,14 @@ class Fitter {
   int evaluations() const { return evaluations_; }
 
  private:
+  Calibration Finished(Calibration calibration) {
+    progress_.Report(evaluations_, calibration.rms);  // replaces that of the last values tried
+    if (!calibration.usable && !searched_.empty()) calibration.message += "; " + searched_;
+    progress_.End(calibration.message);
+    calibration.predictions = evaluations_;
+    return calibration;
+  }
+
   Calibration FitOnce(double horizon, const Eigen::VectorXd& start,
                       const CalibrationOptions& options) {
     std::vector<CalibratedParameter> parameters = problem_.parameters();
@@ -121,10 +139,24 @@ class Fitter {
 
   double TimeStep() const { return problem_.study().time_step; }
 
-  Calibration FitScans(double horizon, const Eigen::VectorXd& start,
-                       const CalibrationOptions& options) {
+  // Brings the prediction near while the reach decreases to scan.reach. A round that fails leaves
+  // the values as they are.
+  Eigen::VectorXd Approach(double horizon, const FarStart& far) {
+    Eigen::VectorXd values = far.values;
+    for (double factor = far.reach_factor; factor > 1; factor /= kReachStep) {
+      memory_.reach_factor = factor;
+      const Calibration round =
+          FitOnce(horizon, values, {.max_iterations = kIterationsWhileFar});
+      if (!round.estimates.empty()) values = round.parameters;
+      if (round.is_out_of_budget) break;
+    }
+    memory_.reach_factor = 1;
+    return values;
+  }
+
+  Calibration FitScans(double horizon, const FarStart& start, const CalibrationOptions& options) {
     Calibration calibration;
-    Eigen::VectorXd values = start;
+    Eigen::VectorXd values = Approach(horizon, start);
     CalibrationOptions of_round = options;
     for (int iterations = 0; iterations < options.max_iterations;) {
       of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
@@ -153,6 +185,7 @@ class Fitter {
   FitBudget& budget_;
   CalibrationProblem::FitMemory memory_;
   int evaluations_ = 0;
+  std::string searched_;  // FarStart::summary
 };
 
 }  // namespace
@@ -193,6 +226,8 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   Calibration calibration = fitter.Whole(
       start, beginning != nullptr ? *beginning : fitter.Beginning("fit, first part", start));
   if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
+  // Equilibria have no period, and FindFarStart has tried other moduli.
+  if (problem.HasScans() && problem.study().scheme == TimeScheme::kQuasiStatic) return calibration;
 
   const std::vector<ModelParameter>& fitted = problem.study().fitted;
   double least = calibration.usable ? calibration.rms : kUnlimited;

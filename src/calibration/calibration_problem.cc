@@ -44,7 +44,15 @@ Eigen::MatrixXd SumOverPlaces(const std::vector<ModelParameter>& parameters,
 // The reason why the correspondences of a scan cannot be used; empty where they can.
 std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
   const size_t lost = model.LostFrames(misfit, kFewestMatched).size();
-  if (2 * lost <= misfit.frames.size()) return "";
+  if (2 * lost <= misfit.frames.size()) {
+    if (model.Markers() != nullptr || misfit.observed.empty()) return "";
+    const Observed& first = misfit.observed.front();
+    if (model.Shows(first)) return "";
+    return fmt::format(
+        "frame {} shows {} of {} patches of the predicted surface: the length unit of its points, "
+        "their transform or their normals are wrong, or it shows too little of the object",
+        misfit.frames.front(), (first.count.array() > 0).count(), misfit.points);
+  }
   return fmt::format(
       "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
       "surface: start nearer to the solution, or increase scan.reach",
@@ -234,7 +242,10 @@ Prediction CalibrationProblem::PredictRecording(size_t r, const Eigen::VectorXd&
   Misfit& misfit = *found;
   misfit = model.Predict(frames, NuisanceOf(r, values), directions, hints);
   Prediction part;
-  part.message = misfit.summary.IsUsable() ? Mismatch(model, misfit) : misfit.summary.message;
+  if (!misfit.summary.IsUsable())
+    part.message = misfit.summary.message;
+  else if (hints.reach_factor <= 1)
+    part.message = Mismatch(model, misfit);
   part.usable = part.message.empty();
   if (!part.usable) {
     part.message = model.item().name + ": " + part.message;
@@ -276,7 +287,8 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     Misfit misfit;
     parts[static_cast<size_t>(k)] = PredictRecording(
         r, values, with_jacobian, horizon,
-        {seek ? nullptr : &known.correspondences[r], &known.equilibria[r]}, &misfit);
+        {seek ? nullptr : &known.correspondences[r], &known.equilibria[r], known.reach_factor},
+        &misfit);
     if (misfit.summary.held.size() > 0) known.equilibria[r] = misfit.summary.held;
     if (seek) known.correspondences[r] = std::move(misfit.observed);
   });
@@ -303,6 +315,31 @@ Prediction CalibrationProblem::Predict(const Eigen::VectorXd& values, bool with_
     row += part.residual.size();
   }
   return all;
+}
+
+std::optional<CalibrationProblem::ScanDistance> CalibrationProblem::DistanceOfScans(
+    const Eigen::VectorXd& values, FitMemory* memory) const {
+  memory->equilibria.resize(models_.size());
+  ScanDistance distance;
+  double frames = 0, offered = 0;
+  for (const size_t r : FittedRecordings()) {
+    if (models_[r].Markers() != nullptr) continue;
+    ThrowIfInterrupted();
+    const RecordingModel model = ModelAt(r, values);
+    const Misfit misfit = model.Predict(model.FittedFrames(), NuisanceOf(r, values), {},
+                                        {.near_equilibrium = &memory->equilibria[r]});
+    if (!misfit.summary.IsUsable()) return std::nullopt;
+    memory->equilibria[r] = misfit.summary.held;
+    for (const Observed& observed : misfit.observed) {
+      distance.mean += observed.distance;
+      distance.used += observed.used;
+      offered += observed.offered;
+      ++frames;
+    }
+  }
+  if (frames > 0) distance.mean /= frames;
+  if (offered > 0) distance.used /= offered;
+  return distance;
 }
 
 CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(

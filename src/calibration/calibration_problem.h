@@ -106,6 +106,9 @@ class CalibrationProblem {
     // For each recording, the equilibrium before the motion (3n, m), from which the search for the
     // next one starts.
     std::vector<Eigen::VectorXd> equilibria;
+    // Factor on scan.reach for the next search for correspondences. With a factor above 1 it does
+    // not matter how many scanned points find one.
+    double reach_factor = 1;
   };
 
   // The whitened residual over the fitted frames up to `horizon` seconds after the start of each
@@ -117,6 +120,16 @@ class CalibrationProblem {
   Prediction Predict(const Eigen::VectorXd& values, bool with_jacobian,
                      double horizon = std::numeric_limits<double>::infinity(),
                      FitMemory* memory = nullptr) const;
+
+  // How far the fitted frames of scans are from the surface that is predicted at `values`.
+  struct ScanDistance {
+    double mean = 0;  // m, over frames, of Observed::distance
+    double used = 0;  // the share of the points with a correspondence within scan.reach
+  };
+  // Empty where a simulation stops early. Equilibria are taken from `memory` and kept there. Throws
+  // Interrupted.
+  std::optional<ScanDistance> DistanceOfScans(const Eigen::VectorXd& values,
+                                              FitMemory* memory) const;
 
   // Predicts all frames of the fitted recordings. `directions`: further columns of the Jacobian,
   // the same for each recording. `same`, if given, provides the correspondences. `near`: of a

@@ -36,7 +36,8 @@ std::vector<Eigen::Matrix3d> MarkerObserver::DeformationAt(const Eigen::VectorXd
   return deformation;
 }
 
-Observed MarkerObserver::Observe(int frame, const Eigen::VectorXd& position) const {
+Observed MarkerObserver::ObserveWithin(double /*reach_factor*/, int frame,
+                                       const Eigen::VectorXd& position) const {
   Observed observed;
   observed.rows = rows_;
   observed.deformation = DeformationAt(position);

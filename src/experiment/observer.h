@@ -38,6 +38,9 @@ struct Observed {
   // For points of one component, the unit direction of the measurement: 3 × points; else 3 × 0.
   Eigen::Matrix3Xd normal;
   int offered = 0, used = 0;  // scanned points in the frame, and how many of them were compared
+  // The mean distance, m, of all scanned points of the frame from the model's surface, where a
+  // point farther away than the object's size counts as that far; 0 for markers.
+  double distance = 0;
 };
 
 // Compares the model with the frames of one recording. Its results depend on the arguments alone,
@@ -51,7 +54,13 @@ class Observer {
   virtual const Eigen::Matrix3Xd& Places() const = 0;
   // Compares frame `frame` with a model whose nodes are near `position` (3n), on which the
   // correspondences of scanned points depend.
-  virtual Observed Observe(int frame, const Eigen::VectorXd& position) const = 0;
+  Observed Observe(int frame, const Eigen::VectorXd& position) const {
+    return ObserveWithin(1, frame, position);
+  }
+  // The same with `reach_factor` times the reach within which scanned points find their
+  // correspondence. A larger factor finds more of them, and more wrong ones.
+  virtual Observed ObserveWithin(double reach_factor, int frame,
+                                 const Eigen::VectorXd& position) const = 0;
 };
 
 // Compares markers, which are embedded in the mesh at their places.
@@ -62,7 +71,8 @@ class MarkerObserver : public Observer {
   int PointCount() const override { return static_cast<int>(recording_.markers.places.cols()); }
   int Components() const override { return 3; }
   const Eigen::Matrix3Xd& Places() const override { return recording_.markers.places; }
-  Observed Observe(int frame, const Eigen::VectorXd& position) const override;
+  Observed ObserveWithin(double reach_factor, int frame,
+                         const Eigen::VectorXd& position) const override;
   const Embedding& places_in_mesh() const { return places_; }
   // The matrix W, with rows x, y and z of each marker.
   const ObservationMatrix& rows() const { return *rows_; }

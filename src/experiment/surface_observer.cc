@@ -80,19 +80,21 @@ SurfaceObserver::SurfaceObserver(std::shared_ptr<const ScanFrames> scans,
     : scans_(std::move(scans)),
       body_(std::move(body)),
       patches_(patches),
-      reach_(settings.reach * BoundingBoxDiagonal(body_->mesh.nodes)) {
+      size_(BoundingBoxDiagonal(body_->mesh.nodes)),
+      reach_(settings.reach * size_) {
   const ReferenceShape& reference = scans_->recording().reference;
   if (reference.sheet_face == SheetFace::kMiddle) depth_ = 0.5 * reference.sheet_thickness;
 }
 
-Observed SurfaceObserver::Observe(int frame, const Eigen::VectorXd& position) const {
+Observed SurfaceObserver::ObserveWithin(double reach_factor, int frame,
+                                        const Eigen::VectorXd& position) const {
   const ScannedPoints& scan = scans_->At(frame);
   const BoundarySurface& boundary = body_->boundary;
   const Eigen::Map<const Eigen::Matrix3Xd> nodes(position.data(), 3, position.size() / 3);
   const SurfaceHits hits = SurfaceSearch(BoundaryAt(boundary, nodes)).Nearest(scan.cloud.points);
   std::vector<Match> matches(static_cast<size_t>(scan.cloud.Size()));
   ParallelFor(scan.cloud.Size(), 256, [&](int64_t j) {
-    if (!(hits.distance[j] <= reach_)) return;
+    if (!(hits.distance[j] <= reach_factor * reach_)) return;
     Match match;
     match.place = PlaceOnFace(boundary, hits.triangle[j], hits.barycentric.col(j));
     const FaceGeometry now = Evaluate(match.place, boundary, nodes);
@@ -112,6 +114,7 @@ Observed SurfaceObserver::Observe(int frame, const Eigen::VectorXd& position) co
 
   Observed observed;
   observed.offered = static_cast<int>(matches.size());
+  if (observed.offered > 0) observed.distance = hits.distance.cwiseMin(size_).mean();
   observed.target = Eigen::VectorXd::Zero(patches);
   observed.count = Eigen::VectorXi::Zero(patches);
   observed.normal = patches_.normal;

@@ -31,14 +31,16 @@ class SurfaceObserver : public Observer {
   int PointCount() const override { return patches_.Count(); }
   int Components() const override { return 1; }
   const Eigen::Matrix3Xd& Places() const override { return patches_.place; }
-  Observed Observe(int frame, const Eigen::VectorXd& position) const override;
+  Observed ObserveWithin(double reach_factor, int frame,
+                         const Eigen::VectorXd& position) const override;
   double Reach() const { return reach_; }  // m
 
  private:
   std::shared_ptr<const ScanFrames> scans_;
   std::shared_ptr<const Body> body_;
   SurfacePatches patches_;
-  double reach_ = 0;
+  double size_ = 0;   // m, diagonal of the undeformed object's bounding box
+  double reach_ = 0;  // m
   double depth_ = 0;  // m, depth of the scanned surface below the model's: half a sheet's thickness
 };
 

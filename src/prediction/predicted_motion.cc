@@ -19,7 +19,13 @@ namespace {
 
 using Kind = MisfitDirection::Kind;
 
-constexpr double kFewestSeen = 0.05;  // smallest share of the patches in the first scan
+// The smallest share of the patches that a scan must show. Larger: small visible parts are refused;
+// smaller: a scan in another unit of length, inside the object, is taken for one of it.
+constexpr double kFewestSeen = 0.05;
+// A scan whose points are on average farther from the undeformed surface than this share of the
+// object's size shows something else: a straight rod that bends from one end into any other
+// direction moves its points by half of its length on average.
+constexpr double kElsewhere = 0.75;
 
 double ShareUsed(const Observed& observed) {
   return observed.offered > 0 ? static_cast<double>(observed.used) / observed.offered : 0;
@@ -196,13 +202,19 @@ void RecordingModel::RequireThatScansShowTheObject() {
   for (const int frame : item_.frames) item_.scans->At(frame);
   const Observed first =
       observer_->Observe(item_.frames.front(), model_.body->mesh.nodes.reshaped());
-  const int seen = static_cast<int>((first.count.array() > 0).count());
-  shown_ = ShareUsed(first);
-  if (seen >= kFewestSeen * PointCount()) return;
+  shown_ = Shows(first) ? ShareUsed(first) : 1;
+  const double size = BoundingBoxDiagonal(model_.body->mesh.nodes);
+  if (Shows(first) || first.distance < kElsewhere * size) return;
   throw InputError(fmt::format(
-      "{}: frame {} shows {} of {} patches of the undeformed surface: its points lie elsewhere, or "
-      "their length unit, transform or normals are wrong, or scan.reach is too small",
-      item_.recording.file.string(), item_.frames.front(), seen, PointCount()));
+      "{}: frame {} shows {} of {} patches of the undeformed surface: its points lie elsewhere, "
+      "farther than any deformation could move the object, or their length unit or transform is "
+      "wrong",
+      item_.recording.file.string(), item_.frames.front(), (first.count.array() > 0).count(),
+      PointCount()));
+}
+
+bool RecordingModel::Shows(const Observed& observed) const {
+  return (observed.count.array() > 0).count() >= kFewestSeen * PointCount();
 }
 
 std::vector<int> RecordingModel::FittedFrames() const {
@@ -304,7 +316,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         AppendReactions(Reactions(), item_.recording.times[frame], state, options.start_time,
                         directions, &misfit.reactions);
         Observed seen = hints.observed != nullptr ? (*hints.observed)[index]
-                                                  : observer_->Observe(frame, state.position);
+                                                  : observer_->ObserveWithin(hints.reach_factor,
+                                                                             frame, state.position);
         Eigen::VectorXd predicted = *seen.rows * state.position;
         Eigen::VectorXd velocity = *seen.rows * state.velocity;
         Eigen::MatrixXd by;

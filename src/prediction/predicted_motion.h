@@ -51,6 +51,9 @@ struct PredictionHints {
   // which the search takes ten times as long. The result is the same within the tolerance of that
   // equilibrium.
   const Eigen::VectorXd* near_equilibrium = nullptr;
+  // Where the observer searches for the correspondences of scanned points, the factor on scan.reach
+  // (Observer::ObserveWithin). Larger: a prediction farther away is compared with the scan.
+  double reach_factor = 1;
 };
 
 // The model as one recording sees it: with the recording's grips, loads and own effects, and an
@@ -58,8 +61,8 @@ struct PredictionHints {
 class RecordingModel {
  public:
   // `patches` divide the surface where the recording has scans. The study and the recording must
-  // outlive the model. Throws InputError where a region holds no node, a scan does not show the
-  // object, or the object moves already in the first frame.
+  // outlive the model. Throws InputError where a region holds no node, a scan lies where no
+  // deformation can bring the object, or the object moves already in the first frame.
   RecordingModel(const PredictionStudy& study, const PredictedRecording& recording,
                  const TetMesh& mesh, std::shared_ptr<const Body> body,
                  const SurfacePatches& patches);
@@ -111,8 +114,12 @@ class RecordingModel {
                                  const Eigen::Isometry3d& registration,
                                  const Eigen::Vector3d& place) const;
   // The frames of a scan in which too few points have a correspondence: fewer than `least` times
-  // the share in the best frame, or in the first frame with the undeformed surface.
+  // the share in the best frame, or in the first frame with the undeformed surface. Where the first
+  // frame does not show the undeformed surface, because the object is deformed there, all of its
+  // points are expected to have a correspondence.
   std::vector<int> LostFrames(const Misfit& misfit, double least) const;
+  // Whether a frame of a scan shows enough patches of the predicted surface to be compared with it.
+  bool Shows(const Observed& observed) const;
 
  private:
   const PredictionStudy& study_;
@@ -125,7 +132,8 @@ class RecordingModel {
   Eigen::Vector3d Middle() const { return observer_->Places().rowwise().mean(); }
 
   std::shared_ptr<const Observer> observer_;
-  // The share of the first scan's points that correspond to the undeformed surface.
+  // The share of the first scan's points that correspond to the undeformed surface; 1 where it does
+  // not show that surface.
   double shown_ = 0;
   std::vector<Nuisance> nuisances_;
 };
