@@ -80,7 +80,7 @@ class Fitter {
   Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start,
                     const CalibrationOptions& options) {
     progress_.Begin(name, 0);
-    Calibration calibration = problem_.HasScans() ? FitScans(horizon, {.values = start}, options)
+    Calibration calibration = problem_.HasScans() ? FitScans(horizon, {start, 1, 0, ""}, options)
                                                   : FitOnce(horizon, start, options);
     return Finished(std::move(calibration));
   }
@@ -145,8 +145,7 @@ class Fitter {
     Eigen::VectorXd values = far.values;
     for (double factor = far.reach_factor; factor > 1; factor /= kReachStep) {
       memory_.reach_factor = factor;
-      const Calibration round =
-          FitOnce(horizon, values, {.max_iterations = kIterationsWhileFar});
+      const Calibration round = FitOnce(horizon, values, {.max_iterations = kIterationsWhileFar});
       if (!round.estimates.empty()) values = round.parameters;
       if (round.is_out_of_budget) break;
     }

@@ -55,7 +55,7 @@ std::string Mismatch(const RecordingModel& model, const Misfit& misfit) {
   }
   return fmt::format(
       "in {} of {} frames most scanned points are farther than scan.reach from the predicted "
-      "surface: start nearer to the solution, or increase scan.reach",
+      "surface: start nearer to the solution, increase scan.reach, or crop the scans to the object",
       lost, misfit.frames.size());
 }
 

@@ -84,17 +84,20 @@ FarStart FindFarStart(const CalibrationProblem& problem, const Eigen::VectorXd& 
   SearchTowards(kStep, problem, start, memory, &search);
   far.predictions = search.predictions;
   if (!std::isfinite(search.distance)) {
-    far.summary = fmt::format("no equilibrium was found with moduli of 1 to {:g} times their start "
-                              "values", search.stiffest);
+    far.summary = fmt::format(
+        "no equilibrium was found with moduli of 1 to {:g} times their start "
+        "values",
+        search.stiffest);
     return far;
   }
   const double size = BoundingBoxDiagonal(problem.body()->mesh.nodes);
   const double reach = problem.study().scan.reach;
   far.values = search.best;
-  far.reach_factor = std::clamp(kReachOfMean * search.distance / (reach * size), 1.0,
-                                std::max(1.0, 1 / reach));
+  far.reach_factor =
+      std::clamp(kReachOfMean * search.distance / (reach * size), 1.0, std::max(1.0, 1 / reach));
   far.summary = fmt::format(
-      "with moduli of {:g} to {:g} times their start values the scanned points are at best {:.3g} mm "
+      "with moduli of {:g} to {:g} times their start values the scanned points are at best {:.3g} "
+      "mm "
       "from the predicted surface on average (scan.reach is {:.3g} mm)",
       search.softest, search.stiffest, 1e3 * search.distance, 1e3 * reach * size);
   return far;

@@ -4,24 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "core/parallel.h"
-#include "geometry/face_points.h"
-#include "geometry/nearest.h"
+#include "experiment/scan_matches.h"
 
 namespace lacuna {
 namespace {
 
-constexpr double kMinNormalAgreement = 0.5;  // cos 60°
-constexpr double kOutlier = 4;               // standard deviations from a patch's median
-constexpr int kFewestPoints = 3;             // fewest points with which a patch counts as seen
-
-// The correspondence of a scanned point to a place of the surface.
-struct Match {
-  int patch = -1;  // −1: none
-  FacePoint place;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double error = 0;  // m, n · (x − p)
-};
+constexpr double kOutlier = 4;    // standard deviations from a patch's median
+constexpr int kFewestPoints = 3;  // fewest points with which a patch counts as seen
 
 double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -30,7 +19,7 @@ double MedianOf(std::vector<double> values) {
 }
 
 // Those of `points` whose errors are not outliers, in the same order.
-std::vector<int> Agreeing(const std::vector<Match>& matches, const std::vector<int>& points,
+std::vector<int> Agreeing(const std::vector<ScanMatch>& matches, const std::vector<int>& points,
                           double noise) {
   std::vector<double> errors;
   for (const int j : points) errors.push_back(matches[j].error);
@@ -80,8 +69,7 @@ SurfaceObserver::SurfaceObserver(std::shared_ptr<const ScanFrames> scans,
     : scans_(std::move(scans)),
       body_(std::move(body)),
       patches_(patches),
-      size_(BoundingBoxDiagonal(body_->mesh.nodes)),
-      reach_(settings.reach * size_) {
+      reach_(settings.reach * BoundingBoxDiagonal(body_->mesh.nodes)) {
   const ReferenceShape& reference = scans_->recording().reference;
   if (reference.sheet_face == SheetFace::kMiddle) depth_ = 0.5 * reference.sheet_thickness;
 }
@@ -91,21 +79,8 @@ Observed SurfaceObserver::ObserveWithin(double reach_factor, int frame,
   const ScannedPoints& scan = scans_->At(frame);
   const BoundarySurface& boundary = body_->boundary;
   const Eigen::Map<const Eigen::Matrix3Xd> nodes(position.data(), 3, position.size() / 3);
-  const SurfaceHits hits = SurfaceSearch(BoundaryAt(boundary, nodes)).Nearest(scan.cloud.points);
-  std::vector<Match> matches(static_cast<size_t>(scan.cloud.Size()));
-  ParallelFor(scan.cloud.Size(), 256, [&](int64_t j) {
-    if (!(hits.distance[j] <= reach_factor * reach_)) return;
-    Match match;
-    match.place = PlaceOnFace(boundary, hits.triangle[j], hits.barycentric.col(j));
-    const FaceGeometry now = Evaluate(match.place, boundary, nodes);
-    const double agreement = now.normal.dot(scan.cloud.normals.col(j));
-    if (!((scan.points_out ? agreement : std::abs(agreement)) >= kMinNormalAgreement)) return;
-    match.normal = now.normal;
-    match.error = now.normal.dot(now.position - scan.cloud.points.col(j)) - depth_;
-    const FaceGeometry rest = Evaluate(match.place, boundary, body_->mesh.nodes);
-    match.patch = patches_.PatchOf(rest.position, rest.normal);
-    matches[static_cast<size_t>(j)] = match;
-  });
+  const ScanMatches found = MatchScan(scan, *body_, patches_, nodes, reach_factor * reach_, depth_);
+  const std::vector<ScanMatch>& matches = found.matches;
 
   const int patches = PointCount();
   std::vector<std::vector<int>> members(static_cast<size_t>(patches));
@@ -114,7 +89,7 @@ Observed SurfaceObserver::ObserveWithin(double reach_factor, int frame,
 
   Observed observed;
   observed.offered = static_cast<int>(matches.size());
-  if (observed.offered > 0) observed.distance = hits.distance.cwiseMin(size_).mean();
+  observed.distance = found.distance;
   observed.target = Eigen::VectorXd::Zero(patches);
   observed.count = Eigen::VectorXi::Zero(patches);
   observed.normal = patches_.normal;
@@ -132,13 +107,13 @@ Observed SurfaceObserver::ObserveWithin(double reach_factor, int frame,
     }
     Eigen::Vector3d place = Eigen::Vector3d::Zero(), normal = place;
     for (const int j : points) {
-      const Match& match = matches[j];
+      const ScanMatch& match = matches[j];
       for (int a = 0; a < match.place.count; ++a) {
         const int node = boundary.faces(a, match.place.face);
         for (int axis = 0; axis < 3; ++axis)
           sum.Add(3 * node + axis, match.place.weight[a] * match.normal[axis]);
       }
-      observed.target[c] += match.normal.dot(scan.cloud.points.col(j)) + depth_;
+      observed.target[c] += match.normal.dot(scan.cloud.points.col(j)) + match.depth;
       place += scan.cloud.points.col(j);
       normal += match.normal;
     }

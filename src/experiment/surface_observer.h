@@ -20,10 +20,11 @@ namespace lacuna {
 // Image and Vision Computing 10, 1992). Motion of the surface within itself leaves the row
 // unchanged, as scans contain no information about it.
 //
-// Points are left out if they are farther away than the reach, if their normal deviates by more
-// than 60° from that of the surface, or if they differ from the median of their patch by more than
-// four times its spread (or the noise, if that is larger). A patch with fewer than three remaining
-// points is not seen.
+// Points beside a face, beyond its edge, are compared with the edge (scan_matches.h). Points are
+// left out if they are farther away than the reach, if their normal deviates by more than 60° from
+// that of the surface, or if they differ from the median of their patch by more than four times its
+// spread (or the noise, if that is larger). A patch with fewer than three remaining points is not
+// seen.
 class SurfaceObserver : public Observer {
  public:
   SurfaceObserver(std::shared_ptr<const ScanFrames> scans, std::shared_ptr<const Body> body,
@@ -39,7 +40,6 @@ class SurfaceObserver : public Observer {
   std::shared_ptr<const ScanFrames> scans_;
   std::shared_ptr<const Body> body_;
   SurfacePatches patches_;
-  double size_ = 0;   // m, diagonal of the undeformed object's bounding box
   double reach_ = 0;  // m
   double depth_ = 0;  // m, depth of the scanned surface below the model's: half a sheet's thickness
 };

@@ -95,6 +95,19 @@ void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
   *stacked = turned.reshaped(stacked->rows(), stacked->cols());
 }
 
+// The motion of the nodes in one frame (3n, node-major).
+struct NodalMotion {
+  Eigen::VectorXd position, velocity;
+  Eigen::MatrixXd jacobian;  // ∂position/∂(perturbation)
+
+  void Register(const Eigen::Isometry3d& registration) {
+    Turn(registration.linear(), &position);
+    position += registration.translation().replicate(position.size() / 3, 1);
+    Turn(registration.linear(), &velocity);
+    Turn(registration.linear(), &jacobian);
+  }
+};
+
 }  // namespace
 
 Eigen::VectorXd Misfit::ResidualWithout(const Eigen::MatrixXd& place_offset) const {
@@ -202,7 +215,9 @@ void RecordingModel::RequireThatScansShowTheObject() {
   for (const int frame : item_.frames) item_.scans->At(frame);
   const Observed first =
       observer_->Observe(item_.frames.front(), model_.body->mesh.nodes.reshaped());
-  shown_ = Shows(first) ? ShareUsed(first) : 1;
+  shown_ = ShareUsed(first);
+  const bool may_be_deformed = study_.scheme == TimeScheme::kQuasiStatic && shown_ < 0.5;
+  if (!Shows(first) || may_be_deformed) shown_ = 1;
   const double size = BoundingBoxDiagonal(model_.body->mesh.nodes);
   if (Shows(first) || first.distance < kElsewhere * size) return;
   throw InputError(fmt::format(
@@ -311,52 +326,46 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
   misfit.jacobian.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
       model_, options, times, perturbations, [&](int index, const PredictedState& state) {
-        const int frame = frames[index];
+        NodalMotion nodal{state.position, state.velocity, {}};
+        if (!perturbations.empty()) nodal.jacobian = state.position_jacobian;
+        if (is_registered) nodal.Register(registration);
+        Observed seen =
+            hints.observed != nullptr
+                ? (*hints.observed)[index]
+                : observer_->ObserveWithin(hints.reach_factor, frames[index], nodal.position);
+        const bool moves = state.time > options.start_time;
+        const auto derivative = [&](size_t k) -> Eigen::VectorXd {
+          switch (directions[k].kind) {
+            case Kind::kModel:
+              return nodal.jacobian.col(column[k]);
+            case Kind::kClock:
+              return (moves ? -1.0 : 0.0) * nodal.velocity;
+            case Kind::kShift:
+            case Kind::kTurn:
+              break;
+          }
+          Eigen::Matrix3Xd rigid(3, nodal.position.size() / 3);
+          for (Eigen::Index a = 0; a < rigid.cols(); ++a)
+            rigid.col(a) =
+                ByRegistration(directions[k], registration, nodal.position.segment<3>(3 * a));
+          return rigid.reshaped();
+        };
         const Eigen::Index begin = rows_of_frame * index;
-        AppendReactions(Reactions(), item_.recording.times[frame], state, options.start_time,
-                        directions, &misfit.reactions);
-        Observed seen = hints.observed != nullptr ? (*hints.observed)[index]
-                                                  : observer_->ObserveWithin(hints.reach_factor,
-                                                                             frame, state.position);
-        Eigen::VectorXd predicted = *seen.rows * state.position;
-        Eigen::VectorXd velocity = *seen.rows * state.velocity;
-        Eigen::MatrixXd by;
-        if (!perturbations.empty()) by = *seen.rows * state.position_jacobian;
-        std::vector<Eigen::Matrix3d> deformation = seen.deformation;
-        if (is_registered) {
-          Turn(registration.linear(), &predicted);
-          predicted += registration.translation().replicate(misfit.points, 1);
-          Turn(registration.linear(), &velocity);
-          Turn(registration.linear(), &by);
-          for (Eigen::Matrix3d& F : deformation) F = registration.linear() * F;
-        }
+        AppendReactions(Reactions(), item_.recording.times[frames[index]], state,
+                        options.start_time, directions, &misfit.reactions);
+        misfit.residual.segment(begin, rows_of_frame) = *seen.rows * nodal.position - seen.target;
+        for (size_t k = 0; k < directions.size(); ++k)
+          misfit.jacobian.col(static_cast<Eigen::Index>(k)).segment(begin, rows_of_frame) =
+              *seen.rows * derivative(k);
         for (int point = 0; point < misfit.points; ++point) {
           misfit.count.push_back(seen.count[point]);
-          const Eigen::Index row = begin + components * point, own = components * point;
-          misfit.residual.segment(row, components).setZero();
-          if (seen.count[point] == 0) continue;
-          misfit.residual.segment(row, components) =
-              predicted.segment(own, components) - seen.target.segment(own, components);
-          for (size_t k = 0; k < directions.size(); ++k) {
-            auto derivative =
-                misfit.jacobian.col(static_cast<Eigen::Index>(k)).segment(row, components);
-            switch (directions[k].kind) {
-              case Kind::kModel:
-                derivative = by.col(column[k]).segment(own, components);
-                break;
-              case Kind::kClock:
-                if (state.time > options.start_time)
-                  derivative = -velocity.segment(own, components);
-                break;
-              case Kind::kShift:
-              case Kind::kTurn:
-                derivative = ByRegistration(directions[k], registration, predicted.segment<3>(own));
-                break;
-            }
-          }
+          if (seen.count[point] > 0) continue;
+          misfit.residual.segment(begin + components * point, components).setZero();
+          misfit.jacobian.middleRows(begin + components * point, components).setZero();
         }
-        misfit.deformation.insert(misfit.deformation.end(), deformation.begin(), deformation.end());
-        misfit.frames.push_back(frame);
+        for (const Eigen::Matrix3d& F : seen.deformation)
+          misfit.deformation.emplace_back(registration.linear() * F);
+        misfit.frames.push_back(frames[index]);
         misfit.observed.push_back(std::move(seen));
       });
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());

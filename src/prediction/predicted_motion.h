@@ -115,8 +115,8 @@ class RecordingModel {
                                  const Eigen::Vector3d& place) const;
   // The frames of a scan in which too few points have a correspondence: fewer than `least` times
   // the share in the best frame, or in the first frame with the undeformed surface. Where the first
-  // frame does not show the undeformed surface, because the object is deformed there, all of its
-  // points are expected to have a correspondence.
+  // frame does not show the undeformed surface, because the object is deformed there, all points
+  // are expected to have a correspondence.
   std::vector<int> LostFrames(const Misfit& misfit, double least) const;
   // Whether a frame of a scan shows enough patches of the predicted surface to be compared with it.
   bool Shows(const Observed& observed) const;
@@ -133,7 +133,7 @@ class RecordingModel {
 
   std::shared_ptr<const Observer> observer_;
   // The share of the first scan's points that correspond to the undeformed surface; 1 where it does
-  // not show that surface.
+  // not show that surface or, in a quasi-static study, where fewer than half of its points do.
   double shown_ = 0;
   std::vector<Nuisance> nuisances_;
 };

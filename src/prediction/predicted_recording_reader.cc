@@ -154,8 +154,6 @@ PredictedRecording ReadRecordingEntry(const Config& config, const Effect* materi
   item.fit_until = config.Quantity("fit_until", kTime, kAnyValue, kForever);
   item.clock_deviation = config.Quantity("clock_deviation", kTime, kNotNegative, 0);
   if (const auto registration = config.OptionalChild("registration")) {
-    if (item.scans != nullptr)
-      config.Fail("registration", "is implemented for markers only, not for scans");
     item.shift_deviation = registration->Quantity("shift_deviation", kLength, kPositive);
     item.turn_deviation = registration->Quantity("turn_deviation", kAngle, kPositive);
   }
