@@ -29,6 +29,7 @@ void AddInfo(CLI::App* app, std::function<int()>* command);
 void AddValidate(CLI::App* app, std::function<int()>* command);
 void AddEffects(CLI::App* app, std::function<int()>* command);
 void AddExplain(CLI::App* app, std::function<int()>* command);
+void AddExport(CLI::App* app, std::function<int()>* command);
 
 }  // namespace lacuna
 

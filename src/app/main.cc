@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
   lacuna::AddValidate(&app, &command);
   lacuna::AddEffects(&app, &command);
   lacuna::AddExplain(&app, &command);
+  lacuna::AddExport(&app, &command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

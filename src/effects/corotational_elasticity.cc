@@ -4,6 +4,7 @@
 
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "effects/standard_cards.h"
 #include "fem/elastic_solid.h"
 
 namespace lacuna {
@@ -137,6 +138,8 @@ class CorotationalLaw {
 };
 
 }  // namespace
+
+const EffectCard& CorotationalElasticityCard() { return CorotationalLaw::Card(); }
 
 CatalogueEntry CorotationalElasticity() {
   return {&CorotationalLaw::Card(), CatalogueEntry::Kind::kMaterial,

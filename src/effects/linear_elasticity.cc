@@ -1,6 +1,7 @@
 // Small-strain linear elasticity (Hooke's law).
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "effects/standard_cards.h"
 #include "fem/elastic_solid.h"
 
 namespace lacuna {
@@ -71,6 +72,8 @@ class LinearLaw {
 };
 
 }  // namespace
+
+const EffectCard& LinearElasticityCard() { return LinearLaw::Card(); }
 
 CatalogueEntry LinearElasticity() {
   return {&LinearLaw::Card(), CatalogueEntry::Kind::kMaterial, &MakeAs<ElasticSolid<LinearLaw>>,

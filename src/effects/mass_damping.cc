@@ -2,6 +2,7 @@
 #include <glog/logging.h>
 
 #include "effects/catalogue.h"
+#include "effects/standard_cards.h"
 #include "fem/cloneable_effect.h"
 
 namespace lacuna {
@@ -77,6 +78,8 @@ class MassDampingEffect final : public CloneableEffect<MassDampingEffect> {
 };
 
 }  // namespace
+
+const EffectCard& MassDampingCard() { return MassDampingEffect::TheCard(); }
 
 CatalogueEntry MassDamping() {
   return {&MassDampingEffect::TheCard(), CatalogueEntry::Kind::kEffect, &MakeAs<MassDampingEffect>,

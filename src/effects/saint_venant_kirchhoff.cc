@@ -1,6 +1,7 @@
 // The St. Venant–Kirchhoff law: Hooke's law between Green–Lagrange strain and its work conjugate.
 #include "effects/catalogue.h"
 #include "effects/elastic_parameters.h"
+#include "effects/standard_cards.h"
 #include "fem/elastic_solid.h"
 
 namespace lacuna {
@@ -91,6 +92,8 @@ class SaintVenantKirchhoffLaw {
 };
 
 }  // namespace
+
+const EffectCard& SaintVenantKirchhoffCard() { return SaintVenantKirchhoffLaw::Card(); }
 
 CatalogueEntry SaintVenantKirchhoff() {
   return {&SaintVenantKirchhoffLaw::Card(), CatalogueEntry::Kind::kMaterial,

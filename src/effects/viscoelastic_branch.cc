@@ -19,6 +19,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "effects/standard_cards.h"
 #include "fem/memory_branch.h"
 
 namespace lacuna {
@@ -143,6 +144,8 @@ class ViscoelasticLaw {
 };
 
 }  // namespace
+
+const EffectCard& ViscoelasticBranchCard() { return ViscoelasticLaw::Card(); }
 
 CatalogueEntry ViscoelasticBranch() {
   return {&ViscoelasticLaw::Card(), CatalogueEntry::Kind::kEffect,

@@ -1,0 +1,52 @@
+#include "exchange/counterpart.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/text_layout.h"
+
+namespace lacuna {
+
+Counterparts Missing(const Counterparts& counterparts) {
+  Counterparts missing;
+  for (const Counterpart& counterpart : counterparts)
+    if (counterpart.kind == Counterpart::Kind::kNone) missing.push_back(counterpart);
+  return missing;
+}
+
+std::vector<std::string> CounterpartLines(const Counterparts& counterparts) {
+  std::vector<std::string> lines;
+  for (const auto& [part, kind, how] : counterparts)
+    lines.push_back(fmt::format("{}: {}{}", part,
+                                kind == Counterpart::Kind::kExact       ? ""
+                                : kind == Counterpart::Kind::kConverted ? "converted: "
+                                                                        : "none: ",
+                                how));
+  return lines;
+}
+
+std::vector<std::string> ProvenanceLines(const PortableModel& model) {
+  std::vector<std::string> lines{
+      fmt::format("Written by lacuna {} from the run {}", model.program_version, model.run),
+      fmt::format("Experiment {}, recording {}", model.experiment, model.recording),
+      "Units are SI: m, kg, s, N, Pa",
+      fmt::format("Time 0 of the motion is {} s on the model's clock", model.start)};
+  for (const PortableParameter& parameter : model.parameters) {
+    std::string line =
+        fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "), parameter.unit);
+    line += parameter.fitted
+                ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})", parameter.low,
+                              parameter.high)
+                : " (held)";
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::string Commented(const std::vector<std::string>& lines, const std::string& prefix) {
+  std::string text;
+  for (const std::string& line : lines) text += Wrapped(line, prefix, prefix + "  ");
+  return text;
+}
+
+}  // namespace lacuna

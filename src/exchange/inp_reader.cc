@@ -1,0 +1,247 @@
+#include "exchange/inp_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "exchange/inp_lines.h"
+#include "geometry/tet_soup.h"
+
+namespace lacuna {
+namespace {
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file), lines_(file) {}
+
+  ImportedModel Read() {
+    bool has_line = lines_.Next();
+    if (has_line && !lines_.IsKeyword()) lines_.Fail("expected a keyword line, such as *NODE");
+    while (has_line) has_line = ReadBlock();
+    return Finish();
+  }
+
+ private:
+  // The numbers of one set, in the order of the map of nodes or elements.
+  using Numbers = std::map<int, int>;  // label → index in the file
+  using Sets = std::map<std::string, std::set<int>>;  // of labels
+
+  // Each reads from a keyword line up to the next one and returns whether there is one.
+  bool ReadBlock() {
+    const std::string keyword = lines_.Keyword();
+    if (keyword == "NODE") return ReadNodes();
+    if (keyword == "ELEMENT") return ReadElements();
+    if (keyword == "NSET") return ReadSet("NSET", nodes_, &node_sets_, &node_set_order_);
+    if (keyword == "ELSET") return ReadSet("ELSET", elements_, &element_sets_, &element_set_order_);
+    if (keyword == "MATERIAL") return ReadMaterial();
+    if (keyword == "ELASTIC" || keyword == "DENSITY") return ReadProperty(keyword == "ELASTIC");
+    if (keyword == "INCLUDE")
+      lines_.Fail("*INCLUDE is not read: put the content of that file in its place");
+    if (keyword != "HEADING") NotRead();
+    return SkipData();
+  }
+
+  void NotRead() {
+    model_.not_read.push_back(fmt::format("line {}: {}", lines_.Line(), lines_.KeywordText()));
+  }
+
+  bool NextData() { return has_next_ = lines_.Next(), has_next_ && !lines_.IsKeyword(); }
+
+  bool SkipData() {
+    while (NextData()) continue;
+    return has_next_;
+  }
+
+  std::set<int>* SetOf(const char* parameter, Sets* sets, std::vector<std::string>* order) {
+    const std::string* name = lines_.Parameter(parameter);
+    if (name == nullptr || name->empty()) return nullptr;
+    const auto [set, is_new] = sets->try_emplace(*name);
+    if (is_new) order->push_back(*name);
+    return &set->second;
+  }
+
+  bool ReadNodes() {
+    std::set<int>* set = SetOf("NSET", &node_sets_, &node_set_order_);
+    while (NextData()) {
+      const int label = lines_.Label(0, "the number of a node");
+      if (!nodes_.emplace(label, static_cast<int>(soup_.nodes.size())).second)
+        lines_.Fail(fmt::format("node {} appears a second time", label));
+      soup_.nodes.emplace_back(lines_.Number(1, "x"), lines_.Number(2, "y"), lines_.Number(3, "z"));
+      if (set != nullptr) set->insert(label);
+    }
+    return has_next_;
+  }
+
+  bool ReadElements() {
+    const std::string type = lines_.RequiredParameter("TYPE");
+    const size_t size = type == "C3D10" ? 10 : 4;
+    if (type != "C3D10" && type != "C3D4") {
+      NotRead();
+      return SkipData();
+    }
+    std::set<int>* set = SetOf("ELSET", &element_sets_, &element_set_order_);
+    while (NextData()) {
+      const int label = lines_.Label(0, "the number of an element");
+      if (!elements_.emplace(label, static_cast<int>(soup_.tets.size())).second)
+        lines_.Fail(fmt::format("element {} appears a second time", label));
+      std::vector<int> tet;
+      size_t at = 1;
+      while (tet.size() < size) {
+        if (at == lines_.Fields().size() && lines_.EndsWithComma()) {
+          if (!NextData())
+            lines_.Fail(fmt::format("element {} ends after {} nodes", label, tet.size()));
+          at = 0;
+        }
+        tet.push_back(NodeAt(at++));
+      }
+      if (at < lines_.Fields().size())
+        lines_.Fail(fmt::format("element {} has more than {} nodes", label, size));
+      // The node order of C3D10 is that of TetMesh.
+      soup_.Add(tet, lines_.Line());
+      if (set != nullptr) set->insert(label);
+    }
+    return has_next_;
+  }
+
+  int NodeAt(size_t field) {
+    const int label = lines_.Label(field, "the number of a node");
+    const auto found = nodes_.find(label);
+    if (found == nodes_.end()) lines_.Fail(fmt::format("there is no node {}", label));
+    return found->second;
+  }
+
+  bool ReadSet(const char* parameter, const Numbers& numbers, Sets* sets,
+               std::vector<std::string>* order) {
+    lines_.RequiredParameter(parameter);
+    const bool generates = lines_.Parameter("GENERATE") != nullptr;
+    std::set<int>* set = SetOf(parameter, sets, order);
+    while (NextData()) {
+      if (generates) {
+        AddRange(numbers, set);
+        continue;
+      }
+      for (size_t k = 0; k < lines_.Fields().size(); ++k) {
+        if (lines_.Fields()[k].empty()) continue;
+        const auto other = sets->find(Upper(lines_.Fields()[k]));
+        if (other != sets->end()) {
+          if (&other->second != set) set->insert(other->second.begin(), other->second.end());
+          continue;
+        }
+        const int label = lines_.Label(k, "a number or the name of a set above");
+        if (!numbers.contains(label)) lines_.Fail(fmt::format("there is no number {}", label));
+        set->insert(label);
+      }
+    }
+    return has_next_;
+  }
+
+  static std::string Upper(std::string_view text) {
+    std::string upper(text);
+    std::transform(upper.begin(), upper.end(), upper.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+    return upper;
+  }
+
+  // first, last, step: all of these numbers must exist.
+  void AddRange(const Numbers& numbers, std::set<int>* set) {
+    const long long first = lines_.Label(0, "the first number");
+    const long long last = lines_.Label(1, "the last number");
+    const long long step = lines_.Fields().size() > 2 ? lines_.Label(2, "the step") : 1;
+    if (last < first) lines_.Fail("the last number is smaller than the first");
+    long long found = 0;
+    for (auto at = numbers.lower_bound(static_cast<int>(first));
+         at != numbers.end() && at->first <= last; ++at) {
+      if ((at->first - first) % step != 0) continue;
+      ++found;
+      set->insert(at->first);
+    }
+    if (const long long wanted = (last - first) / step + 1; found != wanted)
+      lines_.Fail(fmt::format("{} of the {} numbers do not exist", wanted - found, wanted));
+  }
+
+  bool ReadMaterial() {
+    model_.materials.push_back({lines_.RequiredParameter("NAME"), {}, {}, {}});
+    return SkipData();
+  }
+
+  bool ReadProperty(bool is_elasticity) {
+    const std::string keyword = lines_.Keyword();
+    if (model_.materials.empty())
+      lines_.Fail(fmt::format("*{} stands before any *MATERIAL", keyword));
+    const std::string* type = lines_.Parameter("TYPE");
+    if (type != nullptr && !type->starts_with("ISO"))
+      lines_.Fail(fmt::format("only isotropic elasticity is read, not TYPE={}", *type));
+    ImportedMaterial& material = model_.materials.back();
+    std::optional<double>& value = is_elasticity ? material.young_modulus : material.density;
+    if (value) lines_.Fail(fmt::format("the material has a second *{}", keyword));
+    while (NextData()) {
+      if (value)
+        lines_.Fail(fmt::format("a second line of *{}: values that depend on temperature are not "
+                                "read",
+                                keyword));
+      value = lines_.Number(0, is_elasticity ? "Young's modulus" : "the density");
+      if (*value <= 0) lines_.Fail(fmt::format("*{} must be positive", keyword));
+      if (!is_elasticity) continue;
+      material.poisson_ratio = lines_.Number(1, "Poisson's ratio");
+      if (*material.poisson_ratio <= -1 || *material.poisson_ratio >= 0.5)
+        lines_.Fail("Poisson's ratio must lie between -1 and 0.5");
+    }
+    if (!value) lines_.Fail(fmt::format("*{} has no values", keyword));
+    return has_next_;
+  }
+
+  // Sets of labels as sets of indices of the mesh, where `kept` maps indices in the file to those
+  // in the mesh, or −1.
+  std::vector<NamedNodes> SetsOf(const Sets& sets, const std::vector<std::string>& order,
+                                 const Numbers& numbers, const std::vector<int>& kept) {
+    std::vector<NamedNodes> named;
+    for (const std::string& name : order) {
+      NamedNodes set{name, {}};
+      size_t dropped = 0;
+      for (const int label : sets.at(name)) {
+        const int index = kept[static_cast<size_t>(numbers.at(label))];
+        if (index >= 0) set.nodes.push_back(index);
+        dropped += index < 0;
+      }
+      std::sort(set.nodes.begin(), set.nodes.end());
+      if (dropped > 0)
+        model_.notes.push_back(fmt::format(
+            "set {}: {} of its nodes belong to no tetrahedron and were dropped", name, dropped));
+      if (!set.nodes.empty()) named.push_back(std::move(set));
+    }
+    return named;
+  }
+
+  ImportedModel Finish() {
+    TetMeshFile read = FinishTetMesh(soup_, file_);
+    model_.notes = read.notes;
+    std::vector<int> kept(soup_.nodes.size(), -1), all(soup_.tets.size());
+    for (Eigen::Index n = 0; n < read.node_in_file.size(); ++n)
+      kept[static_cast<size_t>(read.node_in_file[n])] = static_cast<int>(n);
+    for (size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
+    model_.node_sets = SetsOf(node_sets_, node_set_order_, nodes_, kept);
+    model_.element_sets = SetsOf(element_sets_, element_set_order_, elements_, all);
+    model_.mesh = std::move(read.mesh);
+    return std::move(model_);
+  }
+
+  std::filesystem::path file_;
+  InpLines lines_;
+  bool has_next_ = false;
+  TetSoup soup_;
+  Numbers nodes_, elements_;
+  Sets node_sets_, element_sets_;
+  std::vector<std::string> node_set_order_, element_set_order_;
+  ImportedModel model_;
+};
+
+}  // namespace
+
+ImportedModel ReadInp(const std::filesystem::path& file) { return Reader(file).Read(); }
+
+}  // namespace lacuna

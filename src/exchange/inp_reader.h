@@ -1,0 +1,40 @@
+// Reads mesh, sets and material of an input file of Abaqus or CalculiX.
+//
+// Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
+// other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat: node
+// numbers are unique, as CalculiX requires. Every other keyword is listed in `not_read`. Numbers
+// stay in the file's own units, which an .inp file does not state.
+#ifndef LACUNA_EXCHANGE_INP_READER_H_
+#define LACUNA_EXCHANGE_INP_READER_H_
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exchange/portable_model.h"
+
+namespace lacuna {
+
+struct ImportedMaterial {
+  std::string name;
+  std::optional<double> young_modulus, poisson_ratio, density;
+};
+
+struct ImportedModel {
+  TetMesh mesh;                         // nodes in the order of the file, unused ones dropped
+  std::vector<NamedNodes> node_sets;    // of nodes of `mesh`, ascending
+  std::vector<NamedNodes> element_sets;  // of elements of `mesh`, ascending
+  std::vector<ImportedMaterial> materials;
+  std::vector<std::string> not_read;  // "line 812: *BOUNDARY"
+  std::vector<std::string> notes;     // changes of the mesh and of the sets, one sentence each
+};
+
+// Throws InputError with file and line for a line that does not follow the format, numbers that are
+// not finite, nodes or sets that do not exist, numbers that appear twice, an elasticity that is not
+// isotropic or depends on temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
+ImportedModel ReadInp(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXCHANGE_INP_READER_H_

@@ -1,0 +1,124 @@
+// CalculiX moves an exported model as Lacuna does. The tests are skipped where ccx is absent.
+#include "exchange/calculix.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "exchange/cantilever.h"
+#include "exchange/inp_writer.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+CalculixResult Exported(const Cantilever& bar) {
+  TemporaryFolder folder;
+  const PortableModel model = bar.Describe();
+  std::ofstream(folder / "model.inp") << InpText(model, InpDialect::kCalculix);
+  const CalculixResult result = RunCalculix(folder / "model.inp", folder / "calculix",
+                                            model.mesh.NodeCount(), model.frames);
+  EXPECT_TRUE(result.IsUsable()) << result.message;
+  return result;
+}
+
+DisplacementDifference Difference(const Cantilever& bar) {
+  const CalculixResult result = Exported(bar);
+  if (!result.IsUsable()) return {0, 1, 1};
+  const DisplacementDifference difference =
+      CompareDisplacements(bar.Displacements(), result.displacement);
+  std::cout << "largest displacement " << difference.largest_displacement << " m, largest difference "
+            << difference.largest << ", rms " << difference.rms << "\n";
+  return difference;
+}
+
+#define SKIP_WITHOUT_CALCULIX() \
+  if (!HasCalculix()) GTEST_SKIP() << "skipped, ccx absent"
+
+// The law is the same in both programs. What remains are the masses: CalculiX spreads the weight
+// consistently, Lacuna as lumped masses.
+TEST(Calculix, SagsUnderGravityAsLacunaDoes) {
+  SKIP_WITHOUT_CALCULIX();
+  const Cantilever bar("st_venant_kirchhoff", {8, 2, 2}, 2);
+  const DisplacementDifference difference = Difference(bar);
+  EXPECT_GT(difference.largest_displacement, 0.005);  // large rotations
+  EXPECT_LT(difference.largest, 0.01);
+}
+
+// For linear elements of the same shape, too: nodes are not mixed up.
+TEST(Calculix, SagsWithLinearElements) {
+  SKIP_WITHOUT_CALCULIX();
+  EXPECT_LT(Difference(Cantilever("st_venant_kirchhoff", {8, 2, 2}, 1)).largest, 0.01);
+}
+
+TEST(Calculix, SagsWithConvertedLaws) {
+  SKIP_WITHOUT_CALCULIX();
+  for (const char* law : {"neo_hookean", "corotational", "linear"})
+    EXPECT_LT(Difference(Cantilever(law, {6, 1, 1}, 2)).largest, 0.01) << law;
+}
+
+// A displacement that is linear in the position and prescribed on the whole boundary makes all
+// interior nodes follow, if each node of an element is where the other program expects it.
+TEST(Calculix, PassesThePatchTest) {
+  SKIP_WITHOUT_CALCULIX();
+  Cantilever bar("linear", {3, 3, 3}, 2);
+  bar.mesh = ToQuadratic(Jittered(BoxMesh({0, 0, 0}, {0.06, 0.06, 0.06}, {3, 3, 3}), 0.02, 0.2, 5));
+  bar.model.body = std::make_shared<const Body>(MakeBody(bar.mesh, 1000));
+  bar.model.effects.pop_back();  // gravity
+  const Eigen::VectorXi boundary = bar.model.body->boundary.node;
+  const Eigen::Matrix3d gradient{{0.01, 0.002, 0}, {-0.003, 0.02, 0.004}, {0.001, 0, -0.01}};
+  const Eigen::Matrix3Xd moved = (Eigen::Matrix3d::Identity() + gradient) * bar.mesh.nodes;
+  bar.model.grips = {{boundary, [=](double) { return Eigen::Matrix3Xd(moved(Eigen::all, boundary)); }}};
+  const CalculixResult result = Exported(bar);
+  ASSERT_TRUE(result.IsUsable());
+  const Eigen::MatrixXd exact = (moved - bar.mesh.nodes).reshaped();
+  // ccx prints seven digits.
+  EXPECT_LT(CompareDisplacements(exact, result.displacement.leftCols(1)).largest, 1e-5);
+}
+
+// Released from a force at the tip, with both kinds of damping.
+TEST(Calculix, RingsDownAsLacunaDoes) {
+  SKIP_WITHOUT_CALCULIX();
+  Cantilever bar("st_venant_kirchhoff", {6, 2, 2}, 2);
+  bar.model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 3}}));
+  bar.model.effects.push_back(MakeEffect(
+      "stiffness_damping", {{"beta", 0.002}, {"young_modulus", 1e5}, {"poisson_ratio", 0.4}}));
+  const Eigen::VectorXd share = BoundaryShares(*bar.model.body, bar.Tip());
+  bar.options.held_force = Eigen::VectorXd::Zero(3 * share.size());
+  for (Eigen::Index i = 0; i < share.size(); ++i) bar.options.held_force[3 * i + 2] = 0.02 * share[i];
+  for (int k = 1; k <= 8; ++k) bar.frames.push_back(0.02 * k);
+  bar.options.time_step = 1e-3;
+  EXPECT_LT(Difference(bar).largest, 0.01);
+}
+
+// A grip that shifts and turns, and a force that grows: tables over the time.
+TEST(Calculix, FollowsGripsAndLoads) {
+  SKIP_WITHOUT_CALCULIX();
+  Cantilever bar("st_venant_kirchhoff", {6, 1, 1}, 2);
+  const Eigen::Matrix3Xd rest = bar.mesh.nodes(Eigen::all, bar.model.grips[0].nodes);
+  bar.model.grips[0].motion = [rest](double time) -> Eigen::Matrix3Xd {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(0.1 * time, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    return (turn * rest).colwise() + Eigen::Vector3d(0, 0.002 * time, 0);
+  };
+  bar.model.effects.push_back(std::make_shared<PrescribedForce>(
+      BoundaryShares(*bar.model.body, bar.Tip()),
+      [](double time) { return Eigen::Vector3d(0, 0.005 * time, 0.01); }));
+  bar.names.loads = {"pull"};
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  bar.options.time_step = 0.5;
+  bar.frames = {1, 2, 3};
+  EXPECT_LT(Difference(bar).largest, 0.01);
+}
+
+TEST(Calculix, SaysWhyItStopped) {
+  SKIP_WITHOUT_CALCULIX();
+  TemporaryFolder folder;
+  std::ofstream(folder / "bad.inp") << "*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n";
+  const CalculixResult result = RunCalculix(folder / "bad.inp", folder / "calculix", 1, {});
+  EXPECT_EQ(result.status, CalculixResult::Status::kFailed);
+  EXPECT_FALSE(result.message.empty());
+}
+
+}  // namespace
+}  // namespace lacuna

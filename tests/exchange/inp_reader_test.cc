@@ -1,0 +1,128 @@
+// Input files of other programs, sound and hostile ones.
+#include "exchange/inp_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.h"
+#include "exchange/cantilever.h"
+#include "exchange/inp_writer.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+ImportedModel Read(const std::string& text) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "model.inp", std::ios::binary) << text;
+  return ReadInp(folder / "model.inp");
+}
+
+std::string ErrorOf(const std::string& text) {
+  try {
+    Read(text);
+  } catch (const InputError& problem) {
+    return problem.what();
+  }
+  return "no error";
+}
+
+constexpr const char* kTet = R"(*Heading
+ a comment of the user, *with stars
+** comment
+*NODE, nset=All
+ 10, 0., 0., 0.
+ 20, 1.D0, 0., 0.
+ 30, 0., +1e0, 0.
+ 40, 0., 0., 1.
+*Element, type=c3d4, elset=soft
+7, 10, 20, 30,
+ 40
+*Nset, nset=foot, generate
+10, 30, 10
+*NSET, NSET=Both
+foot, 40
+*ELSET, ELSET=E2
+7
+*Material, name=Gel
+*Density
+1e-9,
+*Elastic
+ 0.1, 0.45
+*Boundary
+foot, 1, 3
+*Step, nlgeom
+*Static
+*End Step
+)";
+
+TEST(InpReader, ReadsWhatOtherProgramsWrite) {
+  const ImportedModel model = Read(kTet);
+  EXPECT_EQ(model.mesh.NodeCount(), 4);
+  EXPECT_EQ(model.mesh.nodes.col(2), Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(model.mesh.tets.col(0), Eigen::Vector4i(0, 1, 2, 3));
+  ASSERT_EQ(model.node_sets.size(), 3u);
+  EXPECT_EQ(model.node_sets[1].name, "FOOT");
+  EXPECT_THAT(model.node_sets[1].nodes, ElementsAre(0, 1, 2));
+  EXPECT_THAT(model.node_sets[2].nodes, ElementsAre(0, 1, 2, 3));
+  ASSERT_EQ(model.element_sets.size(), 2u);
+  EXPECT_THAT(model.element_sets[1].nodes, ElementsAre(0));
+  ASSERT_EQ(model.materials.size(), 1u);
+  EXPECT_EQ(model.materials[0].name, "GEL");
+  EXPECT_EQ(model.materials[0].young_modulus, 0.1);
+  EXPECT_EQ(model.materials[0].density, 1e-9);
+  EXPECT_THAT(model.not_read, ElementsAre("line 22: *Boundary", "line 24: *Step, nlgeom",
+                                          "line 25: *Static", "line 26: *End Step"));
+}
+
+std::string Replaced(std::string text, const std::string& old, const std::string& with) {
+  text.replace(text.find(old), old.size(), with);
+  return text;
+}
+
+TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
+  const std::string tet = kTet;
+  EXPECT_THAT(ErrorOf(Replaced(tet, "1.D0", "nan")), HasSubstr("model.inp:6: got \"nan\""));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "1.D0", "1e999")), HasSubstr(":6:"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "1.D0, 0., 0.", "1, 0")), HasSubstr(":6: the line ends"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, " 20, 1.D0", " 10, 1.")), HasSubstr(":6: node 10 appears"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 41\n*Nset")), HasSubstr(":11: there is no node"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 40, 10\n*Nset")), HasSubstr("more than 4 nodes"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "1, 2147483647, 1")),
+              HasSubstr(":13: 2147483643 of the 2147483647 numbers do not exist"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "10, 99999999999999999999")), HasSubstr(":13:"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "30, 10")), HasSubstr(":13: the last number"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "foot, 40", "feet, 40")), HasSubstr(":15: got \"feet\""));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "0.1, 0.45", "0.1, 0.45\n0.2, 0.45, 20.")),
+              HasSubstr(":22: a second line of *ELASTIC"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "0.1, 0.45", "0.1, 0.5")), HasSubstr("Poisson's ratio"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "*Elastic", "*Elastic, type=ortho")), HasSubstr("isotropic"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "type=c3d4", "type=s3")), HasSubstr("no tetrahedra"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "type=c3d4, ", "")), HasSubstr("needs TYPE"));
+  EXPECT_THAT(ErrorOf("*INCLUDE, INPUT=mesh.inp\n"), HasSubstr("*INCLUDE"));
+  EXPECT_THAT(ErrorOf("1, 2, 3\n"), HasSubstr(":1: expected a keyword"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("no tetrahedra"));
+}
+
+// Each beginning of a sound file is either read or refused, and never crashes.
+TEST(InpReader, SurvivesTruncationAtEveryByte) {
+  const std::string whole =
+      InpText(Cantilever("linear", {1, 1, 1}, 2).Describe(), InpDialect::kCalculix);
+  TemporaryFolder folder;
+  for (size_t length = 0; length < whole.size(); length += 7) {
+    std::ofstream(folder / "cut.inp", std::ios::binary) << whole.substr(0, length);
+    try {
+      EXPECT_GT(ReadInp(folder / "cut.inp").mesh.TetCount(), 0);
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

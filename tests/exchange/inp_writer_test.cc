@@ -1,0 +1,138 @@
+// The .inp file: node order, exact round trips, and what becomes of each part of the model.
+#include "exchange/inp_writer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.h"
+#include "exchange/cantilever.h"
+#include "exchange/export_format.h"
+#include "exchange/inp_reader.h"
+#include "geometry/shape_functions.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+std::vector<std::string> MissingParts(const PortableModel& model, InpDialect dialect) {
+  std::vector<std::string> names;
+  for (const Counterpart& part : Missing(InpCounterparts(model, dialect))) names.push_back(part.part);
+  return names;
+}
+
+ImportedModel WrittenAndRead(const PortableModel& model, InpDialect dialect) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "model.inp") << InpText(model, dialect);
+  return ReadInp(folder / "model.inp");
+}
+
+TEST(InpWriter, IsReadBackWithTheSameBits) {
+  for (const int order : {1, 2}) {
+    Cantilever bar("st_venant_kirchhoff", {3, 1, 1}, 1);
+    TetMesh mesh = Jittered(bar.mesh, 0.02, 0.1, 3);
+    // Coordinates that need all digits, and very small ones, which have no exponent in the file.
+    mesh.nodes *= 1.0 / 3;
+    mesh.nodes(1, 0) = -1.2345678901234567e-18;
+    if (order == 2) mesh = ToQuadratic(mesh);
+    PortableModel model = bar.Describe();
+    model.mesh = mesh;
+    for (const InpDialect dialect : {InpDialect::kCalculix, InpDialect::kAbaqus}) {
+      const ImportedModel read = WrittenAndRead(model, dialect);
+      EXPECT_EQ(read.mesh.nodes, mesh.nodes);
+      EXPECT_EQ(read.mesh.tets, mesh.tets);
+      ASSERT_EQ(read.node_sets.size(), 2u);
+      EXPECT_EQ(read.node_sets[0].name, "ALL_NODES");
+      EXPECT_EQ(read.node_sets[1].name, "CLAMP");
+      EXPECT_EQ(read.node_sets[1].nodes, model.grips[0].part.nodes);
+      ASSERT_EQ(read.materials.size(), 1u);
+      EXPECT_EQ(read.materials[0].young_modulus, 1e5);
+      EXPECT_EQ(read.materials[0].poisson_ratio, 0.4);
+      EXPECT_EQ(read.materials[0].density, 1000);
+      EXPECT_THAT(read.notes, IsEmpty());
+    }
+  }
+}
+
+// The manuals of both programs: node 5 lies between 1 and 2, 6 between 2 and 3, 7 between 1 and 3,
+// and 8, 9, 10 between 4 and 1, 2, 3.
+TEST(InpWriter, PutsTheMidpointsOfEdgesWhereTheManualHasThem) {
+  constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+  const ImportedModel read = WrittenAndRead(
+      Cantilever("linear", {2, 1, 1}, 2).Describe(), InpDialect::kCalculix);
+  ASSERT_EQ(read.mesh.Order(), 2);
+  for (const auto tet : read.mesh.tets.colwise())
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Vector3d middle =
+          (read.mesh.nodes.col(tet[kEdges[k][0]]) + read.mesh.nodes.col(tet[kEdges[k][1]])) / 2;
+      EXPECT_LT((read.mesh.nodes.col(tet[4 + k]) - middle).norm(), 1e-15);
+    }
+  EXPECT_NEAR(TetVolumes(read.mesh).sum(), 0.08 * 0.02 * 0.02, 1e-18);
+}
+
+TEST(InpWriter, NamesWhatHasNoCounterpart) {
+  Cantilever bar("neo_hookean", {2, 1, 1}, 1);
+  bar.model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 2}}));
+  bar.model.effects.push_back(MakeEffect("pressure", {{"pressure", 100}}));
+  bar.model.effects.push_back(
+      MakeEffect("viscoelastic_branch",
+                 {{"modulus", 3e4}, {"relaxation_time", 0.04}, {"poisson_ratio", 0.4}}));
+  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix),
+              ElementsAre("pressure", "viscoelastic_branch"));
+  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kAbaqus), ElementsAre("pressure"));
+  const std::string text = InpText(bar.Describe(), InpDialect::kCalculix);
+  EXPECT_THAT(text, HasSubstr("** pressure: none: "));
+  EXPECT_THAT(text, HasSubstr("*DAMPING, ALPHA=2, BETA=0\n"));
+}
+
+TEST(InpWriter, RefusesDampingThatIsNotProportionalToTheStiffness) {
+  Cantilever bar("corotational", {2, 1, 1}, 1);
+  bar.model.effects.push_back(MakeEffect(
+      "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.4}}));
+  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix), IsEmpty());
+  // β E_damping/E = 0.01 · 2
+  EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix),
+              HasSubstr("*DAMPING, ALPHA=0, BETA=0.02\n"));
+  bar.model.effects.back() = MakeEffect(
+      "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.3}});
+  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix), ElementsAre("stiffness_damping"));
+  EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix), Not(HasSubstr("*DAMPING, ALPHA")));
+}
+
+// By hand, E = 1e5, ν = 0.4: μ = 35714.2857…, K = 166666.6…, hence C10 = 17857.1428…, D1 = 1.2e-5.
+// A branch of a third of E and the same ν takes g = k = (1/3)/(1 + 1/3) = 1/4.
+TEST(InpWriter, ConvertsTheNeoHookeanLawAndABranch) {
+  Cantilever bar("neo_hookean", {2, 1, 1}, 1);
+  bar.model.effects.push_back(
+      MakeEffect("viscoelastic_branch",
+                 {{"modulus", 1e5 / 3}, {"relaxation_time", 0.04}, {"poisson_ratio", 0.4}}));
+  EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix),
+              HasSubstr("*HYPERELASTIC, NEO HOOKE\n17857.14285714, 1.2e-05\n"));
+  EXPECT_THAT(InpText(bar.Describe(), InpDialect::kAbaqus),
+              HasSubstr("*HYPERELASTIC, NEO HOOKE, MODULI=LONG TERM\n17857.14285714, 1.2e-05\n"
+                        "*VISCOELASTIC, TIME=PRONY\n0.25, 0.25, 0.04\n"));
+}
+
+TEST(InpWriter, MakesNamesOfSetsThatAreValidAndUnique) {
+  EXPECT_THAT(InpSetNames({{"clamp", {}}, {"Clamp", {}}, {"52 g", {}}, {"", {}}, {"body", {}}}),
+              ElementsAre("CLAMP", "CLAMP_2", "N_52_G", "N_", "BODY_2"));
+}
+
+TEST(InpWriter, WritesNumbersThatBothProgramsRead) {
+  for (const double value : {-1.2345678901234567e-100, 1.0 / 3, -2e300, 0.0})
+    EXPECT_LE(InpNumber(value).size(), 20u) << value;
+}
+
+TEST(ExportFormats, AreFoundByName) {
+  EXPECT_EQ(FindExportFormat("inp").program, "CalculiX");
+  EXPECT_THROW(FindExportFormat("imp"), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
