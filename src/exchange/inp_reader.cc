@@ -27,7 +27,6 @@ class Reader {
   }
 
  private:
-  // The numbers of one set, in the order of the map of nodes or elements.
   using Numbers = std::map<int, int>;  // label → index in the file
   using Sets = std::map<std::string, std::set<int>>;  // of labels
 
@@ -82,6 +81,7 @@ class Reader {
     const size_t size = type == "C3D10" ? 10 : 4;
     if (type != "C3D10" && type != "C3D4") {
       NotRead();
+      skips_elements_ = true;
       return SkipData();
     }
     std::set<int>* set = SetOf("ELSET", &element_sets_, &element_set_order_);
@@ -133,11 +133,18 @@ class Reader {
           continue;
         }
         const int label = lines_.Label(k, "a number or the name of a set above");
-        if (!numbers.contains(label)) lines_.Fail(fmt::format("there is no number {}", label));
-        set->insert(label);
+        if (numbers.contains(label))
+          set->insert(label);
+        else if (!MayBeSkipped(numbers))
+          lines_.Fail(fmt::format("there is no number {}", label));
       }
     }
     return has_next_;
+  }
+
+  // Whether an unknown number may be that of an element of a type that is not read.
+  bool MayBeSkipped(const Numbers& numbers) const {
+    return &numbers == &elements_ && skips_elements_;
   }
 
   static std::string Upper(std::string_view text) {
@@ -160,7 +167,8 @@ class Reader {
       ++found;
       set->insert(at->first);
     }
-    if (const long long wanted = (last - first) / step + 1; found != wanted)
+    if (const long long wanted = (last - first) / step + 1;
+        found != wanted && !MayBeSkipped(numbers))
       lines_.Fail(fmt::format("{} of the {} numbers do not exist", wanted - found, wanted));
   }
 
@@ -232,7 +240,7 @@ class Reader {
 
   std::filesystem::path file_;
   InpLines lines_;
-  bool has_next_ = false;
+  bool has_next_ = false, skips_elements_ = false;
   TetSoup soup_;
   Numbers nodes_, elements_;
   Sets node_sets_, element_sets_;

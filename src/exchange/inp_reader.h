@@ -2,8 +2,8 @@
 //
 // Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
 // other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat: node
-// numbers are unique, as CalculiX requires. Every other keyword is listed in `not_read`. Numbers
-// stay in the file's own units, which an .inp file does not state.
+// numbers are unique, as CalculiX requires. Every other keyword, elements of other types included, is
+// listed in `not_read`. Numbers stay in the file's own units, which an .inp file does not state.
 #ifndef LACUNA_EXCHANGE_INP_READER_H_
 #define LACUNA_EXCHANGE_INP_READER_H_
 

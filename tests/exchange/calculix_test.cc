@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iostream>
 
 #include "exchange/cantilever.h"
 #include "exchange/inp_writer.h"
@@ -79,15 +80,15 @@ TEST(Calculix, PassesThePatchTest) {
 // Released from a force at the tip, with both kinds of damping.
 TEST(Calculix, RingsDownAsLacunaDoes) {
   SKIP_WITHOUT_CALCULIX();
-  Cantilever bar("st_venant_kirchhoff", {6, 2, 2}, 2);
+  Cantilever bar("st_venant_kirchhoff", {6, 1, 1}, 2);
   bar.model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 3}}));
   bar.model.effects.push_back(MakeEffect(
       "stiffness_damping", {{"beta", 0.002}, {"young_modulus", 1e5}, {"poisson_ratio", 0.4}}));
   const Eigen::VectorXd share = BoundaryShares(*bar.model.body, bar.Tip());
   bar.options.held_force = Eigen::VectorXd::Zero(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i) bar.options.held_force[3 * i + 2] = 0.02 * share[i];
-  for (int k = 1; k <= 8; ++k) bar.frames.push_back(0.02 * k);
-  bar.options.time_step = 1e-3;
+  for (int k = 1; k <= 5; ++k) bar.frames.push_back(0.02 * k);
+  bar.options.time_step = 2e-3;
   EXPECT_LT(Difference(bar).largest, 0.01);
 }
 

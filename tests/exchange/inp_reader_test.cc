@@ -76,8 +76,8 @@ TEST(InpReader, ReadsWhatOtherProgramsWrite) {
   EXPECT_EQ(model.materials[0].name, "GEL");
   EXPECT_EQ(model.materials[0].young_modulus, 0.1);
   EXPECT_EQ(model.materials[0].density, 1e-9);
-  EXPECT_THAT(model.not_read, ElementsAre("line 22: *Boundary", "line 24: *Step, nlgeom",
-                                          "line 25: *Static", "line 26: *End Step"));
+  EXPECT_THAT(model.not_read, ElementsAre("line 23: *Boundary", "line 25: *Step, nlgeom",
+                                          "line 26: *Static", "line 27: *End Step"));
 }
 
 std::string Replaced(std::string text, const std::string& old, const std::string& with) {
@@ -99,7 +99,7 @@ TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
   EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "30, 10")), HasSubstr(":13: the last number"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "foot, 40", "feet, 40")), HasSubstr(":15: got \"feet\""));
   EXPECT_THAT(ErrorOf(Replaced(tet, "0.1, 0.45", "0.1, 0.45\n0.2, 0.45, 20.")),
-              HasSubstr(":22: a second line of *ELASTIC"));
+              HasSubstr(":23: a second line of *ELASTIC"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "0.1, 0.45", "0.1, 0.5")), HasSubstr("Poisson's ratio"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "*Elastic", "*Elastic, type=ortho")), HasSubstr("isotropic"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "type=c3d4", "type=s3")), HasSubstr("no tetrahedra"));
