@@ -30,6 +30,7 @@ void AddValidate(CLI::App* app, std::function<int()>* command);
 void AddEffects(CLI::App* app, std::function<int()>* command);
 void AddExplain(CLI::App* app, std::function<int()>* command);
 void AddExport(CLI::App* app, std::function<int()>* command);
+void AddImport(CLI::App* app, std::function<int()>* command);
 
 }  // namespace lacuna
 

@@ -28,6 +28,7 @@ constexpr char kFooter[] = R"(Start here:
   lacuna compare results/hidden_effect         where and when that model fails
   lacuna diagnose results/hidden_effect        which physical effect it lacks
   lacuna report results/hidden_effect          all of this as a page for the browser
+  lacuna export results/hidden_effect --to inp  the fitted model for another FEM program
   lacuna sweep plan experiments/sweeps/bend_grid.yaml FOLDER   many experiments at once
   lacuna info experiments/recordings/bend      what a recording, mesh or run holds
   lacuna simulate experiments/scenes/twist.yaml --recording scan   make a recording of your own
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
   lacuna::AddEffects(&app, &command);
   lacuna::AddExplain(&app, &command);
   lacuna::AddExport(&app, &command);
+  lacuna::AddImport(&app, &command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

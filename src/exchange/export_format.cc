@@ -3,11 +3,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <nlohmann/json.hpp>
+
 #include "core/error.h"
 #include "core/suggestion.h"
+#include "exchange/feb_writer.h"
 #include "exchange/inp_writer.h"
+#include "exchange/model_json.h"
+#include "geometry/gmsh_io.h"
 
 namespace lacuna {
+namespace {
+
+FileTexts GmshFiles(const PortableModel& model, GmshVersion version) {
+  return {{"model.msh", GmshText(model.mesh, version)},
+          {"model.json", ModelJson(model, "model.msh").dump(1) + "\n"}};
+}
+
+}  // namespace
 
 const std::vector<ExportFormat>& ExportFormats() {
   static const std::vector<ExportFormat> formats{
@@ -21,6 +34,12 @@ const std::vector<ExportFormat>& ExportFormats() {
        [](const PortableModel& model) {
          return FileTexts{{"model.inp", InpText(model, InpDialect::kAbaqus)}};
        }},
+      {"feb", "FEBio 4", FebCounterparts,
+       [](const PortableModel& model) { return FileTexts{{"model.feb", FebText(model)}}; }},
+      {"msh", "Gmsh 4.1, with model.json", JsonCounterparts,
+       [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k41); }},
+      {"msh2", "Gmsh 2.2, with model.json", JsonCounterparts,
+       [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k22); }},
   };
   return formats;
 }

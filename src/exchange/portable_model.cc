@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "effects/catalogue.h"
 #include "effects/gravity.h"
 #include "effects/neo_hookean.h"
 #include "effects/standard_cards.h"
@@ -30,6 +31,16 @@ Kind KindOf(const EffectCard& card) {
   for (const auto& [known, kind] : kinds)
     if (known == &card) return kind;
   return Kind::kOther;
+}
+
+PortableEffect DescribeEffect(const Effect& effect) {
+  const EffectCard& card = effect.Card();
+  PortableEffect described{KindOf(card), card.type, effect.Parameters(), {}, false};
+  for (const ParameterCard& parameter : card.parameters)
+    described.value_names.push_back(parameter.name);
+  const CatalogueEntry* entry = FindEntry(card.type);
+  described.is_own_law = entry == nullptr || entry->make == nullptr;
+  return described;
 }
 
 // 0 at the start of the motion, then steps of at most `time_step` that meet every frame.
@@ -122,6 +133,7 @@ PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
   PortableModel described;
   described.mesh = mesh;
   described.density = body.density;
+  described.node_mass = body.node_mass;
   described.start = options.start_time;
   described.time_step = options.time_step;
   described.is_static = options.step.scheme == TimeScheme::kQuasiStatic;
@@ -132,8 +144,7 @@ PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
     described.grips.push_back(DescribeGrip(model.grips[g], names.grips[g], mesh, described));
   for (const auto& effect : model.effects) {
     if (dynamic_cast<const PrescribedForce*>(effect.get()) == nullptr) {
-      described.effects.push_back(
-          {KindOf(effect->Card()), effect->Card().type, effect->Parameters()});
+      described.effects.push_back(DescribeEffect(*effect));
       continue;
     }
     CHECK_LT(described.loads.size(), names.loads.size());

@@ -37,6 +37,8 @@ struct PortableEffect {
   Kind kind = Kind::kOther;
   std::string name;        // the effect's name in the catalogue
   Eigen::VectorXd values;  // in the order of the effect's card, SI
+  std::vector<std::string> value_names;
+  bool is_own_law = false;  // written by the user as expressions, which are not described here
 
   bool IsElasticity() const { return kind <= Kind::kNeoHookean; }
 };
@@ -78,6 +80,7 @@ struct PortableModel {
 
   TetMesh mesh;
   double density = 0;
+  Eigen::VectorXd node_mass;  // n, lumped, as Lacuna uses them
   std::vector<PortableEffect> effects;  // the elasticity law first; without measured forces
   std::vector<NamedNodes> regions;      // the parts that the recording names, grips included
   std::vector<PortableGrip> grips;

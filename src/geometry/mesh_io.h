@@ -35,7 +35,7 @@ struct TetMeshFile {
 };
 
 // Reads the following formats:
-//   .msh          Gmsh 2.2, text; tetrahedra of order 1 or 2, other elements are skipped
+//   .msh          Gmsh 2.2 and 4.1, text; tetrahedra of order 1 or 2, other elements are skipped
 //   .node, .ele   TetGen, order 1; either file is named and both are read
 //   .mesh         MEDIT, text, order 1
 //   .tet          lines "v x y z" and "t i j k l", indices from 0

@@ -2,47 +2,18 @@
 
 #include <array>
 #include <functional>
-#include <iterator>
 #include <map>
-#include <unordered_map>
-#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "geometry/gmsh_io.h"
 #include "geometry/mesh_io.h"
+#include "geometry/node_numbers.h"
 #include "geometry/tet_soup.h"
 #include "geometry/text_scanner.h"
 
 namespace lacuna {
 namespace {
-
-constexpr int kGmshTet = 4;
-constexpr int kGmshQuadraticTet = 11;
-
-// Maps the node numbers of the file to indices in the list of nodes.
-class NodeNumbers {
- public:
-  void Add(long long number, const TextScanner& scanner) {
-    const int place = static_cast<int>(place_.size());
-    if (!place_.emplace(number, place).second) {
-      scanner.Fail(fmt::format("node {} appears a second time", number));
-    }
-  }
-  int Place(long long number, const TextScanner& scanner) const {
-    const auto found = place_.find(number);
-    if (found == place_.end()) scanner.Fail(fmt::format("there is no node {}", number));
-    return found->second;
-  }
-
- private:
-  std::unordered_map<long long, int> place_;
-};
-
-long long Count(TextScanner& scanner, const char* what) {
-  const long long count = scanner.Integer(what);
-  if (count < 0) scanner.Fail(fmt::format("got {}; expected {}", count, what));
-  return count;
-}
 
 // Reads the four node numbers of a tetrahedron, counted from `first`, from the rest of the line.
 void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
@@ -56,90 +27,6 @@ void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
     node = static_cast<int>(number - first);
   }
   soup.Add(tet, scanner.Line());
-}
-
-void SkipGmshSection(const std::string& name, TextScanner& scanner) {
-  do {
-    scanner.ExpectLine("$End" + name);
-  } while (scanner.Word("a word") != "$End" + name);
-}
-
-void ExpectGmshEnd(const std::string& name, TextScanner& scanner) {
-  scanner.ExpectLine("$End" + name);
-  if (scanner.Word("the end of the section") != "$End" + name) {
-    scanner.Fail("expected $End" + name);
-  }
-}
-
-void ReadGmshFormat(TextScanner& scanner) {
-  scanner.ExpectLine("the version");
-  const double version = scanner.Number("the version");
-  if (version < 2 || version >= 3) {
-    scanner.Fail(
-        fmt::format("Gmsh version {} is not read; save as version 2 (-format msh2)", version));
-  }
-  if (scanner.Integer("0 for text") != 0) {
-    scanner.Fail("binary Gmsh files are not read; save as text");
-  }
-  ExpectGmshEnd("MeshFormat", scanner);
-}
-
-void ReadGmshNodes(TextScanner& scanner, NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the number of nodes");
-  const long long count = Count(scanner, "the number of nodes");
-  for (long long n = 0; n < count; ++n) {
-    scanner.ExpectLine(fmt::format("node {} of {}", n + 1, count));
-    numbers.Add(scanner.Integer("the number of the node"), scanner);
-    soup.nodes.push_back(scanner.Point("a coordinate"));
-  }
-  ExpectGmshEnd("Nodes", scanner);
-}
-
-void ReadGmshElements(TextScanner& scanner, const NodeNumbers& numbers, TetSoup& soup) {
-  scanner.ExpectLine("the number of elements");
-  const long long count = Count(scanner, "the number of elements");
-  for (long long e = 0; e < count; ++e) {
-    scanner.ExpectLine(fmt::format("element {} of {}", e + 1, count));
-    scanner.Integer("the number of the element");
-    const long long type = scanner.Integer("the type of the element");
-    if (type != kGmshTet && type != kGmshQuadraticTet) continue;
-    const long long tags = Count(scanner, "the number of tags");
-    for (long long tag = 0; tag < tags; ++tag) scanner.Integer("a tag");
-    std::array<int, 10> nodes{};
-    const int node_count = type == kGmshTet ? 4 : 10;
-    for (int k = 0; k < node_count; ++k) {
-      nodes[k] = numbers.Place(scanner.Integer("the number of a node"), scanner);
-    }
-    // Gmsh lists the midpoint of (2,3) before that of (1,3).
-    std::swap(nodes[8], nodes[9]);
-    soup.Add({nodes.data(), static_cast<size_t>(node_count)}, scanner.Line());
-  }
-  ExpectGmshEnd("Elements", scanner);
-}
-
-TetSoup ReadGmsh(const std::filesystem::path& file) {
-  TextScanner scanner(file);
-  NodeNumbers numbers;
-  TetSoup soup;
-  bool has_elements = false;
-  scanner.ExpectLine("$MeshFormat");
-  if (scanner.Word("a section") != "$MeshFormat") scanner.Fail("expected $MeshFormat");
-  ReadGmshFormat(scanner);
-  while (scanner.NextLine()) {
-    const std::string section(scanner.Word("a section"));
-    if (section == "$Nodes") {
-      ReadGmshNodes(scanner, numbers, soup);
-    } else if (section == "$Elements") {
-      ReadGmshElements(scanner, numbers, soup);
-      has_elements = true;
-    } else if (section.starts_with('$')) {
-      SkipGmshSection(section.substr(1), scanner);
-    } else {
-      scanner.Fail(fmt::format("got \"{}\"; expected a section such as $Nodes", section));
-    }
-  }
-  if (!has_elements) scanner.Fail("the file ends without $Elements");
-  return soup;
 }
 
 TetSoup ReadVertexTetLines(const std::filesystem::path& file) {
@@ -264,24 +151,7 @@ TetMeshFile ReadTetMesh(const std::filesystem::path& file) {
 }
 
 void WriteTetMesh(const std::filesystem::path& msh, const TetMesh& mesh) {
-  std::string content = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-  auto end = std::back_inserter(content);
-  fmt::format_to(end, "$Nodes\n{}\n", mesh.NodeCount());
-  for (Eigen::Index n = 0; n < mesh.NodeCount(); ++n) {
-    const auto node = mesh.nodes.col(n);
-    fmt::format_to(end, "{} {} {} {}\n", n + 1, node.x(), node.y(), node.z());
-  }
-  fmt::format_to(end, "$EndNodes\n$Elements\n{}\n", mesh.TetCount());
-  const int type = mesh.Order() == 2 ? kGmshQuadraticTet : kGmshTet;
-  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e) {
-    Eigen::VectorXi nodes = mesh.tets.col(e);
-    if (mesh.Order() == 2) std::swap(nodes(8), nodes(9));
-    fmt::format_to(end, "{} {} 2 0 1", e + 1, type);
-    for (const int node : nodes) fmt::format_to(end, " {}", node + 1);
-    content += '\n';
-  }
-  content += "$EndElements\n";
-  WriteFileAtomically(msh, content);
+  WriteFileAtomically(msh, GmshText(mesh, GmshVersion::k22));
 }
 
 }  // namespace lacuna

@@ -292,8 +292,8 @@ TEST(ReadTetMesh, RefusesTetrahedraThatFormNoMesh) {
 
 TEST(ReadTetMesh, RefusesOtherVersionsOfGmsh) {
   const TemporaryFolder folder;
-  EXPECT_THAT(TetFailure(Write(folder / "a.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")),
-              AllOf(HasSubstr("a.msh:2: Gmsh version 4.1"), HasSubstr("msh2")));
+  EXPECT_THAT(TetFailure(Write(folder / "a.msh", "$MeshFormat\n4.0 0 8\n$EndMeshFormat\n")),
+              AllOf(HasSubstr("a.msh:2: Gmsh version 4 "), HasSubstr("msh2")));
   EXPECT_THAT(TetFailure(Write(folder / "a.msh", "$MeshFormat\n2.2 1 8\n\1\n$EndMeshFormat\n")),
               HasSubstr("binary"));
 }

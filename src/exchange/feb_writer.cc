@@ -1,0 +1,286 @@
+#include "exchange/feb_writer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = PortableEffect::Kind;
+using How = Counterpart::Kind;
+constexpr int kMostBranches = 6;  // of FEBio's viscoelastic material
+
+bool IsWritten(const PortableEffect& branch, const PortableModel& model) {
+  return branch.kind == Kind::kViscoelasticBranch &&
+         std::abs(branch.values[2] - model.Elasticity().values[1]) <= 1e-9;
+}
+
+std::vector<PortableEffect> Branches(const PortableModel& model) {
+  std::vector<PortableEffect> branches;
+  for (const PortableEffect& effect : model.effects)
+    if (IsWritten(effect, model) && branches.size() < kMostBranches) branches.push_back(effect);
+  return branches;
+}
+
+Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model) {
+  switch (effect.kind) {
+    case Kind::kSaintVenantKirchhoff:
+      return {effect.name, How::kExact, "isotropic elastic"};
+    case Kind::kCorotational:
+      return {effect.name, How::kConverted,
+              "isotropic elastic: agrees to first order in the strain, at any rotation"};
+    case Kind::kLinear:
+      return {effect.name, How::kConverted,
+              "isotropic elastic: agrees for small strains and rotations"};
+    case Kind::kNeoHookean:
+      return {effect.name, How::kConverted,
+              "neo-Hookean, mu/2 (F:F-3) - mu ln J + lambda/2 (ln J)^2 in place of mu/2 (F:F-3) - mu "
+              "(J-1) + (lambda+mu)/2 (J-1)^2: agrees to second order in J-1"};
+    case Kind::kGravity:
+      return {effect.name, How::kExact, "nodal loads, the weights of the lumped masses"};
+    case Kind::kViscoelasticBranch:
+      if (!IsWritten(effect, model))
+        return {effect.name, How::kNone, "its Poisson's ratio is not that of the material"};
+      return {effect.name, How::kConverted,
+              "viscoelastic with g = m/E, over the elastic stress in place of Hooke's; at most six"};
+    default:
+      return {effect.name, How::kNone, "no element of the format that is written describes it"};
+  }
+}
+
+double RampTime(const PortableModel& model) {
+  double time = 1;
+  for (const PortableEffect& branch : Branches(model)) time = std::max(time, 1e3 * branch.values[1]);
+  return time;
+}
+
+class Writer {
+ public:
+  explicit Writer(const PortableModel& model) : model_(model), ramp_(RampTime(model)) {}
+
+  std::string Text() {
+    std::string comment = Commented(ProvenanceLines(model_), "  ") + "  The parts of the model:\n" +
+                          Commented(CounterpartLines(FebCounterparts(model_)), "  ");
+    // Two hyphens end a comment in XML.
+    for (size_t at = 0; (at = comment.find("--", at)) != std::string::npos;) comment.erase(at, 1);
+    Mesh();
+    for (size_t g = 0; g < model_.grips.size(); ++g) Grip(model_.grips[g], g);
+    Loads();
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!--\n" + comment +
+           "-->\n<febio_spec version=\"4.0\">\n<Module type=\"solid\"><units>SI</units></Module>\n" +
+           Material() + mesh_ +
+           "<MeshDomains><SolidDomain name=\"elements\" mat=\"lacuna\"/></MeshDomains>\n" +
+           Section("MeshData", data_) + Section("Boundary", boundary_) + Section("Loads", loads_) +
+           Steps() + Section("LoadData", curves_) +
+           "<Output>\n<plotfile type=\"febio\"><var type=\"displacement\"/></plotfile>\n"
+           "<logfile><node_data data=\"ux;uy;uz\" file=\"displacements.txt\"/></logfile>\n"
+           "</Output>\n</febio_spec>\n";
+  }
+
+ private:
+  static std::string Section(const std::string& name, const std::string& content) {
+    return content.empty() ? "" : fmt::format("<{0}>\n{1}</{0}>\n", name, content);
+  }
+
+  std::string Material() const {
+    const PortableEffect& law = model_.Elasticity();
+    const std::string elastic = fmt::format(
+        "type=\"{}\">\n<density>{}</density><E>{}</E><v>{}</v>\n",
+        law.kind == Kind::kNeoHookean ? "neo-Hookean" : "isotropic elastic", model_.density,
+        law.values[0], law.values[1]);
+    const std::string head = "<Material>\n<material id=\"1\" name=\"lacuna\" ";
+    const std::vector<PortableEffect> branches = Branches(model_);
+    if (branches.empty()) return head + elastic + "</material>\n</Material>\n";
+    std::string text =
+        head + fmt::format("type=\"viscoelastic\">\n<density>{}</density>\n", model_.density);
+    for (size_t k = 0; k < branches.size(); ++k)
+      text += fmt::format("<g{0}>{1}</g{0}><t{0}>{2}</t{0}>\n", k + 1,
+                          branches[k].values[0] / law.values[0], branches[k].values[1]);
+    return text + "<elastic " + elastic + "</elastic>\n</material>\n</Material>\n";
+  }
+
+  void Mesh() {
+    const auto end = std::back_inserter(mesh_);
+    mesh_ = "<Mesh>\n<Nodes name=\"nodes\">\n";
+    for (Eigen::Index n = 0; n < model_.mesh.NodeCount(); ++n) {
+      const auto node = model_.mesh.nodes.col(n);
+      fmt::format_to(end, "<node id=\"{}\">{},{},{}</node>\n", n + 1, node.x(), node.y(), node.z());
+    }
+    fmt::format_to(end, "</Nodes>\n<Elements type=\"{}\" name=\"elements\">\n",
+                   model_.mesh.Order() == 2 ? "tet10" : "tet4");
+    for (Eigen::Index e = 0; e < model_.mesh.TetCount(); ++e) {
+      const Eigen::VectorXi nodes = model_.mesh.tets.col(e).array() + 1;
+      fmt::format_to(end, "<elem id=\"{}\">{}</elem>\n", e + 1, fmt::join(nodes, ","));
+    }
+    mesh_ += "</Elements>\n";
+    for (size_t k = 0; k < model_.regions.size(); ++k)
+      NodeSet(fmt::format("region{}", k + 1), model_.regions[k].name, model_.regions[k].nodes);
+    mesh_ += "</Mesh>\n";
+  }
+
+  void NodeSet(const std::string& name, const std::string& title, const std::vector<int>& nodes) {
+    std::string shown = title;
+    std::erase_if(shown, [](char c) { return c == '-' || c == '<' || c == '>' || c == '&'; });
+    std::vector<int> numbers = nodes;
+    for (int& node : numbers) ++node;
+    mesh_ += fmt::format("<!-- {} -->\n<NodeSet name=\"{}\">{}</NodeSet>\n", shown, name,
+                         fmt::join(numbers, ","));
+  }
+
+  // A table over the total time, linear between its points; returns its number.
+  int Curve(const std::vector<double>& times, const std::vector<double>& values) {
+    const auto end = std::back_inserter(curves_);
+    fmt::format_to(end,
+                   "<load_controller id=\"{}\" type=\"loadcurve\"><interpolate>LINEAR</interpolate>"
+                   "<extend>CONSTANT</extend><points>\n",
+                   ++curve_count_);
+    for (size_t k = 0; k < times.size(); ++k)
+      fmt::format_to(end, "<pt>{},{}</pt>\n", times[k], values[k]);
+    curves_ += "</points></load_controller>\n";
+    return curve_count_;
+  }
+
+  // Grows linearly in the first step to the first value, and follows the values in the second.
+  template <typename Values>
+  int MotionCurve(const Values& values) {
+    std::vector<double> times{0}, table{0};
+    for (size_t k = 0; k < model_.times.size(); ++k) {
+      times.push_back(ramp_ + model_.times[k]);
+      table.push_back(values[static_cast<Eigen::Index>(k)]);
+    }
+    return Curve(times, table);
+  }
+
+  void Grip(const PortableGrip& grip, size_t number) {
+    const std::string set = fmt::format("region{}", number + 1);
+    if (grip.displacements.empty()) {
+      boundary_ += fmt::format(
+          "<bc name=\"grip{}\" node_set=\"{}\" type=\"zero displacement\"><x_dof>1</x_dof>"
+          "<y_dof>1</y_dof><z_dof>1</z_dof></bc>\n",
+          number + 1, set);
+      return;
+    }
+    const bool is_translation = grip.IsTranslation();
+    for (size_t column = 0; column < (is_translation ? 1 : grip.part.nodes.size()); ++column) {
+      const std::string place =
+          is_translation ? set : fmt::format("{}_{}", set, grip.part.nodes[column] + 1);
+      if (!is_translation) {
+        const size_t end = mesh_.rfind("</Mesh>");
+        mesh_.insert(end, fmt::format("<NodeSet name=\"{}\">{}</NodeSet>\n", place,
+                                      grip.part.nodes[column] + 1));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        Eigen::VectorXd values(static_cast<Eigen::Index>(model_.times.size()));
+        for (Eigen::Index k = 0; k < values.size(); ++k)
+          values[k] = grip.displacements[static_cast<size_t>(k)](axis,
+                                                                 static_cast<Eigen::Index>(column));
+        boundary_ += fmt::format(
+            "<bc name=\"{0}_{1}\" node_set=\"{0}\" type=\"prescribed displacement\"><dof>{1}</dof>"
+            "<value lc=\"{2}\">1</value><relative>0</relative></bc>\n",
+            place, "xyz"[axis], MotionCurve(values));
+      }
+    }
+  }
+
+  // A force `values` (n, N) along an axis at all nodes, times a load curve.
+  void NodalLoad(const std::string& name, int axis, const Eigen::VectorXd& values, int curve) {
+    if (values.isZero(0)) return;
+    if (!has_all_nodes_) {
+      std::vector<int> all(static_cast<size_t>(model_.mesh.NodeCount()));
+      for (size_t n = 0; n < all.size(); ++n) all[n] = static_cast<int>(n) + 1;
+      mesh_.insert(mesh_.rfind("</Mesh>"),
+                   fmt::format("<NodeSet name=\"all\">{}</NodeSet>\n", fmt::join(all, ",")));
+      has_all_nodes_ = true;
+    }
+    data_ += fmt::format("<NodeData name=\"{}_{}\" node_set=\"all\" data_type=\"scalar\">\n", name,
+                         "xyz"[axis]);
+    for (Eigen::Index n = 0; n < values.size(); ++n)
+      data_ += fmt::format("<node lid=\"{}\">{}</node>\n", n + 1, values[n]);
+    data_ += "</NodeData>\n";
+    loads_ += fmt::format(
+        "<nodal_load name=\"{0}_{1}\" node_set=\"all\" type=\"nodal_load\"><dof>{1}</dof>"
+        "<scale lc=\"{2}\" type=\"map\">{0}_{1}</scale></nodal_load>\n",
+        name, "xyz"[axis], curve);
+  }
+
+  void Loads() {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (const PortableEffect* gravity = model_.Find(Kind::kGravity);
+          gravity != nullptr && gravity->values[axis] != 0)
+        NodalLoad("weight", axis, model_.node_mass * gravity->values[axis],
+                  Curve({0, ramp_}, {0, 1}));
+      for (size_t l = 0; l < model_.loads.size(); ++l) {
+        const PortableLoad& load = model_.loads[l];
+        if (load.force.row(axis).isZero(0)) continue;
+        Eigen::VectorXd shares = Eigen::VectorXd::Zero(model_.mesh.NodeCount());
+        shares(load.part.nodes) = load.shares;
+        NodalLoad(fmt::format("force{}", l + 1), axis, shares, MotionCurve(load.force.row(axis)));
+      }
+      // The hold vanishes within a millionth of the first time step of the motion.
+      if (model_.held_force.size() > 0)
+        NodalLoad("hold", axis, model_.held_force.row(axis),
+                  Curve({0, ramp_, ramp_ + 1e-6 * model_.time_step}, {0, 1, 0}));
+    }
+  }
+
+  static std::string Step(int number, const char* analysis, double duration, double step) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(duration / step - 1e-9)));
+    return fmt::format(
+        "<step id=\"{0}\" name=\"step{0}\"><Control>\n<analysis>{1}</analysis><time_steps>{2}"
+        "</time_steps><step_size>{3}</step_size>\n<solver type=\"solid\"><symmetric_stiffness>"
+        "symmetric</symmetric_stiffness></solver>\n<time_stepper type=\"default\"><max_retries>10"
+        "</max_retries><opt_iter>15</opt_iter><dtmin>{4}</dtmin><dtmax>{3}</dtmax></time_stepper>\n"
+        "</Control></step>\n",
+        number, analysis, steps, duration / steps, 1e-4 * step);
+  }
+
+  std::string Steps() const {
+    std::string steps = Step(1, "STATIC", ramp_, ramp_ / 10);
+    if (!model_.frames.empty())
+      steps += Step(2, model_.is_static ? "STATIC" : "DYNAMIC", model_.Duration(), model_.time_step);
+    return Section("Step", steps);
+  }
+
+  const PortableModel& model_;
+  double ramp_;  // s
+  int curve_count_ = 0;
+  bool has_all_nodes_ = false;
+  std::string mesh_, data_, boundary_, loads_, curves_;
+};
+
+}  // namespace
+
+Counterparts FebCounterparts(const PortableModel& model) {
+  Counterparts parts;
+  for (const PortableEffect& effect : model.effects)
+    parts.push_back(EffectCounterpart(effect, model));
+  for (const PortableGrip& grip : model.grips)
+    parts.push_back({"grip " + grip.part.name, How::kExact,
+                     grip.displacements.empty() ? "zero displacement"
+                                                : "prescribed displacement, linear between times at "
+                                                  "most one time step apart"});
+  for (const PortableLoad& load : model.loads)
+    parts.push_back({"force " + load.part.name, How::kExact, "nodal loads with a load curve"});
+  if (model.held_force.size() > 0)
+    parts.push_back({"hold", How::kExact, "nodal loads that vanish when the motion starts"});
+  if (!model.is_static)
+    parts.push_back({"inertia", How::kConverted,
+                     "consistent masses in place of lumped ones; FEBio's time scheme"});
+  return parts;
+}
+
+std::string FebText(const PortableModel& model) {
+  if (!model.Elasticity().IsElasticity())
+    throw InputError(fmt::format("{}: this elasticity law cannot be written into a .feb file",
+                                 model.Elasticity().name));
+  return Writer(model).Text();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,136 @@
+#include "exchange/imported_experiment.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "effects/standard_cards.h"
+#include "exchange/inp_writer.h"
+#include "geometry/mesh_io.h"
+
+namespace lacuna {
+namespace {
+
+constexpr double kSoftModulus = 1e5;     // Pa, a start where the file has no elasticity
+constexpr double kSoftPoisson = 0.45;
+constexpr double kWaterDensity = 1000;  // kg/m³
+
+// As a text in YAML, whatever characters it holds.
+std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+
+const ImportedMaterial* MaterialOf(const ImportedModel& model) {
+  for (const ImportedMaterial& material : model.materials)
+    if (material.young_modulus) return &material;
+  return model.materials.empty() ? nullptr : &model.materials.front();
+}
+
+std::string Recording(const ImportedModel& model, const std::string& name,
+                      const std::filesystem::path& source,
+                      const std::vector<std::string>& sets) {
+  std::string text = fmt::format(
+      "# Made from {}. Complete what is marked TO DO; docs/recording.md has the keys.\n"
+      "schema_version: 1\nname: {}\nlength_unit: m                    # TO DO: of the numbers in your files\n"
+      "frames:                           # TO DO: your measurements; this is a marker file\n"
+      "  kind: markers\n  file: markers.csv\n"
+      "  columns: {{time: t, x: \"*_x\", y: \"*_y\", z: \"*_z\"}}\n"
+      "  marker_places:                  # TO DO: each marker's position on the undeformed object\n"
+      "    - {{name: tip, position: [{} m, {} m, {} m]}}\n"
+      "reference: {{from: tet_mesh, file: {}, length_unit: m}}\n",
+      source.filename().string(), Quoted(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
+      model.mesh.nodes(2, 0), Quoted(name + ".msh"));
+  text += "# TO DO: use the node sets where they belong: parts that do not move (fixed), parts that\n"
+          "# are moved (gripped), or the regions of measured forces.\n";
+  text += sets.empty() ? "#   the file has no node sets\n" : "# fixed:\n";
+  for (const std::string& set : sets)
+    text += fmt::format("#   - {{name: {0}, nodes_file: nodes_{0}.txt}}\n", set);
+  return text;
+}
+
+std::string MaterialText(const ImportedMaterial* material) {
+  const bool is_known = material != nullptr && material->young_modulus.has_value();
+  const double density =
+      material != nullptr && material->density ? *material->density : kWaterDensity;
+  return fmt::format(
+      "density: {} kg/m^3{}\nmaterial: {{law: {}, young_modulus: {} Pa, poisson_ratio: {}}}{}\n",
+      density, material != nullptr && material->density ? "" : "   # TO DO: not in the file",
+      SaintVenantKirchhoffCard().type, is_known ? *material->young_modulus : kSoftModulus,
+      is_known ? *material->poisson_ratio : kSoftPoisson,
+      is_known ? "" : "   # TO DO: not in the file");
+}
+
+std::string Experiment(const ImportedModel& model, const std::string& name,
+                       const std::filesystem::path& source) {
+  const ImportedMaterial* material = MaterialOf(model);
+  std::string text = fmt::format(
+      "# Made from {}. docs/prediction.md has the keys.\n"
+      "#   lacuna fit {}.yaml\n"
+      "schema_version: 1\nname: {}\noutput: {}\n",
+      source.filename().string(), name, Quoted(name), Quoted(name + "_run"));
+  text += MaterialText(material);
+  for (const ImportedMaterial& other : model.materials)
+    if (&other != material)
+      text += fmt::format("# The file has another material, {}, which is not used\n", other.name);
+  // The mesh is given, so that its settings only say which order of elements is used.
+  text += fmt::format(
+      "mesh: {{max_volume: 1 m^3, order: {}}}   # the elements of the file are used as they are\n"
+      "effects: []                       # TO DO: gravity, for instance; lacuna effects lists all\n",
+      model.mesh.Order());
+  const double start = material != nullptr && material->young_modulus ? *material->young_modulus
+                                                                     : kSoftModulus;
+  text += fmt::format(
+      "fit:\n  parameters:\n    - {{name: young_modulus, min: {} Pa, max: {} Pa}}\n"
+      "recordings:\n  - recording: .                  # the recording.yaml beside this file\n"
+      "    # fit_until: 1 s              # TO DO: hold out the later frames\n",
+      start / 10, start * 10);
+  if (!model.not_read.empty()) {
+    text += fmt::format("# Not read from {}:\n", source.filename().string());
+    for (const std::string& line : model.not_read) text += "#   " + line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+ImportedModel InSiUnits(ImportedModel model, InpUnits units) {
+  if (units == InpUnits::kMetre) return model;
+  model.mesh.nodes *= 1e-3;
+  for (ImportedMaterial& material : model.materials) {
+    if (material.young_modulus) *material.young_modulus *= 1e6;
+    if (material.density) *material.density *= 1e12;
+  }
+  return model;
+}
+
+std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,
+                                                 const std::string& name,
+                                                 const std::filesystem::path& source,
+                                                 const std::filesystem::path& folder) {
+  const std::vector<std::string> sets = InpSetNames(model.node_sets);
+  std::map<std::string, std::string> texts{
+      {"recording.yaml", Recording(model, name, source, sets)},
+      {name + ".yaml", Experiment(model, name, source)}};
+  for (size_t k = 0; k < sets.size(); ++k)
+    texts[fmt::format("nodes_{}.txt", sets[k])] =
+        fmt::format("{}\n", fmt::join(model.node_sets[k].nodes, "\n"));
+  MakeFolder(folder);
+  const std::string mesh = name + ".msh";
+  for (const auto& [file, text] : texts)
+    if (std::filesystem::exists(folder / file))
+      throw InputError({(folder / file).string()}, "exists already; choose another --output");
+  if (std::filesystem::exists(folder / mesh))
+    throw InputError({(folder / mesh).string()}, "exists already; choose another --output");
+  WriteTetMesh(folder / mesh, model.mesh);
+  std::vector<std::string> written{mesh};
+  for (const auto& [file, text] : texts) {
+    WriteFileAtomically(folder / file, text);
+    written.push_back(file);
+  }
+  return written;
+}
+
+}  // namespace lacuna

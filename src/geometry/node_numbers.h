@@ -1,0 +1,41 @@
+// The node numbers of a mesh file, and the counts in it.
+#ifndef LACUNA_GEOMETRY_NODE_NUMBERS_H_
+#define LACUNA_GEOMETRY_NODE_NUMBERS_H_
+
+#include <string>
+#include <unordered_map>
+
+#include "geometry/text_scanner.h"
+
+namespace lacuna {
+
+// Maps the node numbers of the file to indices in the list of nodes.
+class NodeNumbers {
+ public:
+  // Throws InputError where the number is there already.
+  void Add(long long number, const TextScanner& scanner) {
+    const int place = static_cast<int>(place_.size());
+    if (!place_.emplace(number, place).second)
+      scanner.Fail("node " + std::to_string(number) + " appears a second time");
+  }
+  // Throws InputError where there is no such number.
+  int Place(long long number, const TextScanner& scanner) const {
+    const auto found = place_.find(number);
+    if (found == place_.end()) scanner.Fail("there is no node " + std::to_string(number));
+    return found->second;
+  }
+
+ private:
+  std::unordered_map<long long, int> place_;
+};
+
+// Reads a whole number that is not negative; throws InputError otherwise.
+inline long long Count(TextScanner& scanner, const char* what) {
+  const long long count = scanner.Integer(what);
+  if (count < 0) scanner.Fail("got " + std::to_string(count) + "; expected " + what);
+  return count;
+}
+
+}  // namespace lacuna
+
+#endif  // LACUNA_GEOMETRY_NODE_NUMBERS_H_

@@ -1,0 +1,84 @@
+// From an .inp file to an experiment that can be fitted.
+#include "exchange/imported_experiment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.h"
+#include "exchange/cantilever.h"
+#include "exchange/inp_writer.h"
+#include "geometry/mesh_io.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using testing::HasSubstr;
+
+ImportedModel Imported(const TemporaryFolder& folder, int order) {
+  std::ofstream(folder / "bar.inp")
+      << InpText(Cantilever("st_venant_kirchhoff", {2, 1, 1}, order).Describe(),
+                 InpDialect::kCalculix);
+  return ReadInp(folder / "bar.inp");
+}
+
+std::string Replaced(std::string text, const std::string& old, const std::string& with) {
+  EXPECT_THAT(text, HasSubstr(old));
+  return text.replace(text.find(old), old.size(), with);
+}
+
+TEST(ImportedExperiment, CanBeReadOnceItIsCompleted) {
+  for (const int order : {1, 2}) {
+    TemporaryFolder folder;
+    const ImportedModel model = InSiUnits(Imported(folder, order), InpUnits::kMetre);
+    WriteImportedExperiment(model, "bar", folder / "bar.inp", folder / "study");
+    EXPECT_EQ(ReadTetMesh(folder / "study/bar.msh").mesh.nodes, model.mesh.nodes);
+    // What a user does: write the measurements, and use a node set.
+    std::ofstream(folder / "study/markers.csv")
+        << "t,tip_x,tip_y,tip_z\n0,0.08,0,0\n0.01,0.08,0,0\n0.02,0.08,0,-0.001\n0.03,0.08,0,-0.002\n";
+    const std::filesystem::path recording = folder / "study/recording.yaml";
+    const std::string used =
+        Replaced(Replaced(FileContent(recording), "# fixed:\n", "fixed:\n"), "#   - {name: CLAMP",
+                 "   - {name: CLAMP");
+    std::ofstream(recording) << used;
+    const PredictionStudy study =
+        ReadPredictionStudy(Config::Load(folder / "study/bar.yaml"));
+    EXPECT_EQ(study.density, 1000);
+    EXPECT_EQ(study.effects.front()->Parameters(), Eigen::Vector2d(1e5, 0.4));
+    const TetMesh body = MakeReferenceBody(study).mesh;
+    EXPECT_EQ(body.nodes, model.mesh.nodes);
+    EXPECT_EQ(body.tets, model.mesh.tets);
+    const Region& clamp = study.recordings[0].recording.object.fixed.at(0);
+    EXPECT_EQ(SelectNodes(clamp, body.nodes), model.node_sets[1].nodes);
+  }
+}
+
+TEST(ImportedExperiment, ConvertsMillimetres) {
+  ImportedModel model;
+  model.mesh = BoxMesh({0, 0, 0}, {80, 20, 20}, {1, 1, 1});
+  model.materials = {{"GEL", 0.1, 0.45, 1.07e-9}};
+  const ImportedModel si = InSiUnits(model, InpUnits::kMillimetre);
+  EXPECT_NEAR(si.mesh.nodes.maxCoeff(), 0.08, 1e-15);
+  EXPECT_NEAR(*si.materials[0].young_modulus, 1e5, 1e-9);
+  EXPECT_NEAR(*si.materials[0].density, 1070, 1e-9);
+  EXPECT_EQ(si.materials[0].poisson_ratio, 0.45);
+}
+
+TEST(ImportedExperiment, OverwritesNothingAndSaysWhatIsUnknown) {
+  TemporaryFolder folder;
+  ImportedModel model;
+  model.mesh = BoxMesh({0, 0, 0}, {0.08, 0.02, 0.02}, {1, 1, 1});
+  model.not_read = {"line 3: *BOUNDARY"};
+  WriteImportedExperiment(model, "a: b", "a.inp", folder / "study");
+  const std::string experiment = FileContent(folder / "study/a: b.yaml");
+  EXPECT_THAT(experiment, HasSubstr("TO DO: not in the file"));
+  EXPECT_THAT(experiment, HasSubstr("#   line 3: *BOUNDARY"));
+  EXPECT_THROW(WriteImportedExperiment(model, "a: b", "a.inp", folder / "study"), InputError);
+}
+
+}  // namespace
+}  // namespace lacuna
