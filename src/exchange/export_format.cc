@@ -10,6 +10,7 @@
 #include "exchange/feb_writer.h"
 #include "exchange/inp_writer.h"
 #include "exchange/model_json.h"
+#include "exchange/scene_writers.h"
 #include "geometry/gmsh_io.h"
 
 namespace lacuna {
@@ -18,6 +19,10 @@ namespace {
 FileTexts GmshFiles(const PortableModel& model, GmshVersion version) {
   return {{"model.msh", GmshText(model.mesh, version)},
           {"model.json", ModelJson(model, "model.msh").dump(1) + "\n"}};
+}
+
+std::string LinearMesh(const PortableModel& model) {
+  return GmshText(WithLinearElements(model).mesh, GmshVersion::k22);
 }
 
 }  // namespace
@@ -40,6 +45,16 @@ const std::vector<ExportFormat>& ExportFormats() {
        [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k41); }},
       {"msh2", "Gmsh 2.2, with model.json", JsonCounterparts,
        [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k22); }},
+      {"sofa", "SOFA, with a mesh", SofaCounterparts,
+       [](const PortableModel& model) {
+         return FileTexts{{"model.py", SofaText(model)}, {"model.msh", LinearMesh(model)}};
+       }},
+      {"mjcf", "MuJoCo, with a mesh", MujocoCounterparts,
+       [](const PortableModel& model) {
+         return FileTexts{{"model.xml", MujocoText(model)}, {"model.msh", LinearMesh(model)}};
+       }},
+      {"usda", "USD, a TetMesh", UsdCounterparts,
+       [](const PortableModel& model) { return FileTexts{{"model.usda", UsdText(model)}}; }},
   };
   return formats;
 }
