@@ -11,7 +11,8 @@ if ! command -v dpkg-query apt-get >/dev/null; then
   exit 1
 fi
 mapfile -t wanted < third_party_notes/debian-packages.txt
-# Everything, tests included: these open a page in a browser. Node need not be Debian's.
+# Everything, tests included: these open a page in a browser and run exported models. Node need not
+# be Debian's.
 if (($# == 0)); then
   while read -r package; do
     command -v "${package/nodejs/node}" >/dev/null || wanted+=("$package")

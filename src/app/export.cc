@@ -44,8 +44,8 @@ void PrintDifference(const char* what, const DisplacementDifference& difference)
 // Returns the exit status.
 int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   const PortableModel& model = run.model;
-  const CalculixResult result = RunCalculix(output / "model.inp", output / "calculix",
-                                            model.mesh.NodeCount(), model.frames);
+  const CalculixResult result =
+      RunCalculix(output / "model.inp", output / "calculix", model.mesh.NodeCount(), model.frames);
   if (result.status == CalculixResult::Status::kAbsent) {
     fmt::print("Not verified: ccx is absent (Debian package calculix-ccx).\n");
     return 0;
@@ -57,8 +57,8 @@ int Verify(const DescribedRun& run, const std::filesystem::path& output) {
   const Eigen::MatrixXd expected =
       run.positions.colwise() - Eigen::VectorXd(model.mesh.nodes.reshaped());
   fmt::print("Displacements of all {} nodes, CalculiX against Lacuna:\n", model.mesh.NodeCount());
-  PrintDifference("equilibrium", CompareDisplacements(expected.leftCols(1),
-                                                      result.displacement.leftCols(1)));
+  PrintDifference("equilibrium",
+                  CompareDisplacements(expected.leftCols(1), result.displacement.leftCols(1)));
   const Eigen::Index frames = expected.cols() - 1;
   if (frames > 0)
     PrintDifference("motion", CompareDisplacements(expected.rightCols(frames),

@@ -19,10 +19,11 @@ struct ImportArguments {
 int Import(const ImportArguments& arguments) {
   const std::filesystem::path file = arguments.file;
   const std::string name = file.stem().string();
-  const ImportedModel model = InSiUnits(
-      ReadInp(file), arguments.unit == "mm" ? InpUnits::kMillimetre : InpUnits::kMetre);
-  const std::filesystem::path output =
-      arguments.output.empty() ? std::filesystem::path(name) : std::filesystem::path(arguments.output);
+  const ImportedModel model =
+      InSiUnits(ReadInp(file), arguments.unit == "mm" ? InpUnits::kMillimetre : InpUnits::kMetre);
+  const std::filesystem::path output = arguments.output.empty()
+                                           ? std::filesystem::path(name)
+                                           : std::filesystem::path(arguments.output);
   const std::vector<std::string> written = WriteImportedExperiment(model, name, file, output);
   const Eigen::Vector3d size =
       model.mesh.nodes.rowwise().maxCoeff() - model.mesh.nodes.rowwise().minCoeff();
@@ -51,8 +52,8 @@ int Import(const ImportArguments& arguments) {
 }  // namespace
 
 void AddImport(CLI::App* app, std::function<int()>* command) {
-  CLI::App* imported = app->add_subcommand(
-      "import", "Begin an experiment from an input file of Abaqus or CalculiX");
+  CLI::App* imported =
+      app->add_subcommand("import", "Begin an experiment from an input file of Abaqus or CalculiX");
   imported->footer(
       "Reads mesh, sets and isotropic elasticity; every keyword that is not read is listed.\n"
       "docs/export.md describes the files that are written.");

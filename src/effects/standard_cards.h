@@ -1,6 +1,6 @@
 // The cards of effects that other finite-element programs know too, by which other modules refer to
-// them without spelling their names. Gravity, stiffness-proportional damping and the neo-Hookean law
-// have headers of their own. Laws, sources and units are in the .cc file of each effect.
+// them without spelling their names. Gravity, stiffness-proportional damping and the neo-Hookean
+// law have headers of their own. Laws, sources and units are in the .cc file of each effect.
 #ifndef LACUNA_EFFECTS_STANDARD_CARDS_H_
 #define LACUNA_EFFECTS_STANDARD_CARDS_H_
 

@@ -124,11 +124,11 @@ CalculixResult RunCalculix(const std::filesystem::path& inp, const std::filesyst
   if (status != 0 || log.find("Job finished") == std::string::npos)
     return {Status::kFailed, "ccx stopped: " + ErrorsIn(log), {}};
   size_t read = 0;
-  CalculixResult result{Status::kDone, "",
-                        ReadDisplacements(ReadWholeFile(folder / "model.dat"), nodes, frames, &read)};
+  CalculixResult result{
+      Status::kDone, "",
+      ReadDisplacements(ReadWholeFile(folder / "model.dat"), nodes, frames, &read)};
   if (read == frames.size() + 1) return result;
-  return {Status::kFailed,
-          fmt::format("ccx wrote {} of {} states", read, frames.size() + 1), {}};
+  return {Status::kFailed, fmt::format("ccx wrote {} of {} states", read, frames.size() + 1), {}};
 }
 
 DisplacementDifference CompareDisplacements(const Eigen::MatrixXd& expected,

@@ -13,7 +13,7 @@ namespace lacuna {
 struct CalculixResult {
   enum class Status { kNotRun, kAbsent, kFailed, kDone };
   Status status = Status::kNotRun;
-  std::string message;          // of a failure: what ccx said; else empty
+  std::string message;           // of a failure: what ccx said; else empty
   Eigen::MatrixXd displacement;  // 3n × (1 + frames), node-major, m
   bool IsUsable() const { return status == Status::kDone; }
 };

@@ -32,12 +32,11 @@ std::vector<std::string> ProvenanceLines(const PortableModel& model) {
       "Units are SI: m, kg, s, N, Pa",
       fmt::format("Time 0 of the motion is {} s on the model's clock", model.start)};
   for (const PortableParameter& parameter : model.parameters) {
-    std::string line =
-        fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "), parameter.unit);
-    line += parameter.fitted
-                ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})", parameter.low,
-                              parameter.high)
-                : " (held)";
+    std::string line = fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "),
+                                   parameter.unit);
+    line += parameter.fitted ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})",
+                                           parameter.low, parameter.high)
+                             : " (held)";
     lines.push_back(line);
   }
   return lines;

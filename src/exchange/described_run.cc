@@ -60,8 +60,8 @@ void PredictPositions(const RecordingModel& model, const PredictionOptions& opti
     times.push_back(described->model.start + frame);
   const Eigen::Index size = 3 * model.model().body->NodeCount();
   described->positions.resize(size, static_cast<Eigen::Index>(times.size()) + 1);
-  const PredictionSummary summary = Predict(
-      model.model(), options, times, {}, [&](int index, const PredictedState& state) {
+  const PredictionSummary summary =
+      Predict(model.model(), options, times, {}, [&](int index, const PredictedState& state) {
         described->positions.col(index + 1) = state.position;
       });
   if (!summary.IsUsable())
@@ -83,9 +83,9 @@ DescribedRun DescribeRun(const std::filesystem::path& run, const DescribedRunOpt
     if (item.recording.times[static_cast<size_t>(frame)] <= options.until)
       frames.push_back(item.recording.times[static_cast<size_t>(frame)] - model.Delay(nuisance));
   const PredictionOptions prediction = model.Options(nuisance);
-  DescribedRun described{DescribeModel(model.model(), fitted.mesh, prediction, frames,
-                                       NamesOf(item, fitted.mesh)),
-                         {}};
+  DescribedRun described{
+      DescribeModel(model.model(), fitted.mesh, prediction, frames, NamesOf(item, fitted.mesh)),
+      {}};
   described.model.run = fitted.study.name;
   described.model.experiment = fitted.study.file.filename().string();
   described.model.recording = item.name;

@@ -40,7 +40,9 @@ const std::vector<ExportFormat>& ExportFormats() {
          return FileTexts{{"model.inp", InpText(model, InpDialect::kAbaqus)}};
        }},
       {"feb", "FEBio 4", FebCounterparts,
-       [](const PortableModel& model) { return FileTexts{{"model.feb", FebText(model)}}; }},
+       [](const PortableModel& model) {
+         return FileTexts{{"model.feb", FebText(model)}};
+       }},
       {"msh", "Gmsh 4.1, with model.json", JsonCounterparts,
        [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k41); }},
       {"msh2", "Gmsh 2.2, with model.json", JsonCounterparts,
@@ -54,7 +56,9 @@ const std::vector<ExportFormat>& ExportFormats() {
          return FileTexts{{"model.xml", MujocoText(model)}, {"model.msh", LinearMesh(model)}};
        }},
       {"usda", "USD, a TetMesh", UsdCounterparts,
-       [](const PortableModel& model) { return FileTexts{{"model.usda", UsdText(model)}}; }},
+       [](const PortableModel& model) {
+         return FileTexts{{"model.usda", UsdText(model)}};
+       }},
   };
   return formats;
 }

@@ -40,16 +40,18 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
       return {effect.name, How::kConverted,
               "isotropic elastic: agrees for small strains and rotations"};
     case Kind::kNeoHookean:
-      return {effect.name, How::kConverted,
-              "neo-Hookean, mu/2 (F:F-3) - mu ln J + lambda/2 (ln J)^2 in place of mu/2 (F:F-3) - mu "
-              "(J-1) + (lambda+mu)/2 (J-1)^2: agrees to second order in J-1"};
+      return {
+          effect.name, How::kConverted,
+          "neo-Hookean, mu/2 (F:F-3) - mu ln J + lambda/2 (ln J)^2 in place of mu/2 (F:F-3) - mu "
+          "(J-1) + (lambda+mu)/2 (J-1)^2: agrees to second order in J-1"};
     case Kind::kGravity:
       return {effect.name, How::kExact, "nodal loads, the weights of the lumped masses"};
     case Kind::kViscoelasticBranch:
       if (!IsWritten(effect, model))
         return {effect.name, How::kNone, "its Poisson's ratio is not that of the material"};
-      return {effect.name, How::kConverted,
-              "viscoelastic with g = m/E, over the elastic stress in place of Hooke's; at most six"};
+      return {
+          effect.name, How::kConverted,
+          "viscoelastic with g = m/E, over the elastic stress in place of Hooke's; at most six"};
     default:
       return {effect.name, How::kNone, "no element of the format that is written describes it"};
   }
@@ -57,7 +59,8 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
 
 double RampTime(const PortableModel& model) {
   double time = 1;
-  for (const PortableEffect& branch : Branches(model)) time = std::max(time, 1e3 * branch.values[1]);
+  for (const PortableEffect& branch : Branches(model))
+    time = std::max(time, 1e3 * branch.values[1]);
   return time;
 }
 
@@ -74,7 +77,8 @@ class Writer {
     for (size_t g = 0; g < model_.grips.size(); ++g) Grip(model_.grips[g], g);
     Loads();
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!--\n" + comment +
-           "-->\n<febio_spec version=\"4.0\">\n<Module type=\"solid\"><units>SI</units></Module>\n" +
+           "-->\n<febio_spec version=\"4.0\">\n<Module "
+           "type=\"solid\"><units>SI</units></Module>\n" +
            Material() + mesh_ +
            "<MeshDomains><SolidDomain name=\"elements\" mat=\"lacuna\"/></MeshDomains>\n" +
            Section("MeshData", data_) + Section("Boundary", boundary_) + Section("Loads", loads_) +
@@ -91,10 +95,10 @@ class Writer {
 
   std::string Material() const {
     const PortableEffect& law = model_.Elasticity();
-    const std::string elastic = fmt::format(
-        "type=\"{}\">\n<density>{}</density><E>{}</E><v>{}</v>\n",
-        law.kind == Kind::kNeoHookean ? "neo-Hookean" : "isotropic elastic", model_.density,
-        law.values[0], law.values[1]);
+    const std::string elastic =
+        fmt::format("type=\"{}\">\n<density>{}</density><E>{}</E><v>{}</v>\n",
+                    law.kind == Kind::kNeoHookean ? "neo-Hookean" : "isotropic elastic",
+                    model_.density, law.values[0], law.values[1]);
     const std::string head = "<Material>\n<material id=\"1\" name=\"lacuna\" ";
     const std::vector<PortableEffect> branches = Branches(model_);
     if (branches.empty()) return head + elastic + "</material>\n</Material>\n";
@@ -179,8 +183,8 @@ class Writer {
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::VectorXd values(static_cast<Eigen::Index>(model_.times.size()));
         for (Eigen::Index k = 0; k < values.size(); ++k)
-          values[k] = grip.displacements[static_cast<size_t>(k)](axis,
-                                                                 static_cast<Eigen::Index>(column));
+          values[k] =
+              grip.displacements[static_cast<size_t>(k)](axis, static_cast<Eigen::Index>(column));
         boundary_ += fmt::format(
             "<bc name=\"{0}_{1}\" node_set=\"{0}\" type=\"prescribed displacement\"><dof>{1}</dof>"
             "<value lc=\"{2}\">1</value><relative>0</relative></bc>\n",
@@ -244,7 +248,8 @@ class Writer {
   std::string Steps() const {
     std::string steps = Step(1, "STATIC", ramp_, ramp_ / 10);
     if (!model_.frames.empty())
-      steps += Step(2, model_.is_static ? "STATIC" : "DYNAMIC", model_.Duration(), model_.time_step);
+      steps +=
+          Step(2, model_.is_static ? "STATIC" : "DYNAMIC", model_.Duration(), model_.time_step);
     return Section("Step", steps);
   }
 
@@ -263,9 +268,10 @@ Counterparts FebCounterparts(const PortableModel& model) {
     parts.push_back(EffectCounterpart(effect, model));
   for (const PortableGrip& grip : model.grips)
     parts.push_back({"grip " + grip.part.name, How::kExact,
-                     grip.displacements.empty() ? "zero displacement"
-                                                : "prescribed displacement, linear between times at "
-                                                  "most one time step apart"});
+                     grip.displacements.empty()
+                         ? "zero displacement"
+                         : "prescribed displacement, linear between times at "
+                           "most one time step apart"});
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, How::kExact, "nodal loads with a load curve"});
   if (model.held_force.size() > 0)

@@ -16,7 +16,7 @@
 namespace lacuna {
 namespace {
 
-constexpr double kSoftModulus = 1e5;     // Pa, a start where the file has no elasticity
+constexpr double kSoftModulus = 1e5;  // Pa, a start where the file has no elasticity
 constexpr double kSoftPoisson = 0.45;
 constexpr double kWaterDensity = 1000;  // kg/m³
 
@@ -30,11 +30,11 @@ const ImportedMaterial* MaterialOf(const ImportedModel& model) {
 }
 
 std::string Recording(const ImportedModel& model, const std::string& name,
-                      const std::filesystem::path& source,
-                      const std::vector<std::string>& sets) {
+                      const std::filesystem::path& source, const std::vector<std::string>& sets) {
   std::string text = fmt::format(
       "# Made from {}. Complete what is marked TO DO; docs/recording.md has the keys.\n"
-      "schema_version: 1\nname: {}\nlength_unit: m                    # TO DO: of the numbers in your files\n"
+      "schema_version: 1\nname: {}\nlength_unit: m                    # TO DO: of the numbers in "
+      "your files\n"
       "frames:                           # TO DO: your measurements; this is a marker file\n"
       "  kind: markers\n  file: markers.csv\n"
       "  columns: {{time: t, x: \"*_x\", y: \"*_y\", z: \"*_z\"}}\n"
@@ -43,8 +43,9 @@ std::string Recording(const ImportedModel& model, const std::string& name,
       "reference: {{from: tet_mesh, file: {}, length_unit: m}}\n",
       source.filename().string(), Quoted(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
       model.mesh.nodes(2, 0), Quoted(name + ".msh"));
-  text += "# TO DO: use the node sets where they belong: parts that do not move (fixed), parts that\n"
-          "# are moved (gripped), or the regions of measured forces.\n";
+  text +=
+      "# TO DO: use the node sets where they belong: parts that do not move (fixed), parts that\n"
+      "# are moved (gripped), or the regions of measured forces.\n";
   text += sets.empty() ? "#   the file has no node sets\n" : "# fixed:\n";
   for (const std::string& set : sets)
     text += fmt::format("#   - {{name: {0}, nodes_file: nodes_{0}.txt}}\n", set);
@@ -78,10 +79,11 @@ std::string Experiment(const ImportedModel& model, const std::string& name,
   // The mesh is given, so that its settings only say which order of elements is used.
   text += fmt::format(
       "mesh: {{max_volume: 1 m^3, order: {}}}   # the elements of the file are used as they are\n"
-      "effects: []                       # TO DO: gravity, for instance; lacuna effects lists all\n",
+      "effects: []                       # TO DO: gravity, for instance; lacuna effects lists "
+      "all\n",
       model.mesh.Order());
-  const double start = material != nullptr && material->young_modulus ? *material->young_modulus
-                                                                     : kSoftModulus;
+  const double start =
+      material != nullptr && material->young_modulus ? *material->young_modulus : kSoftModulus;
   text += fmt::format(
       "fit:\n  parameters:\n    - {{name: young_modulus, min: {} Pa, max: {} Pa}}\n"
       "recordings:\n  - recording: .                  # the recording.yaml beside this file\n"
@@ -111,9 +113,8 @@ std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,
                                                  const std::filesystem::path& source,
                                                  const std::filesystem::path& folder) {
   const std::vector<std::string> sets = InpSetNames(model.node_sets);
-  std::map<std::string, std::string> texts{
-      {"recording.yaml", Recording(model, name, source, sets)},
-      {name + ".yaml", Experiment(model, name, source)}};
+  std::map<std::string, std::string> texts{{"recording.yaml", Recording(model, name, source, sets)},
+                                           {name + ".yaml", Experiment(model, name, source)}};
   for (size_t k = 0; k < sets.size(); ++k)
     texts[fmt::format("nodes_{}.txt", sets[k])] =
         fmt::format("{}\n", fmt::join(model.node_sets[k].nodes, "\n"));

@@ -1,5 +1,5 @@
-// Makes the beginning of an experiment from an imported model: a mesh, a recording without data, and
-// an experiment of `lacuna fit`.
+// Makes the beginning of an experiment from an imported model: a mesh, a recording without data,
+// and an experiment of `lacuna fit`.
 #ifndef LACUNA_EXCHANGE_IMPORTED_EXPERIMENT_H_
 #define LACUNA_EXCHANGE_IMPORTED_EXPERIMENT_H_
 
@@ -11,8 +11,8 @@
 
 namespace lacuna {
 
-// The units of an .inp file, which it does not state: with lengths in m those of SI; with lengths in
-// mm the usual ones of mm, N, s: stresses in MPa, densities in tonne/mm³.
+// The units of an .inp file, which it does not state: with lengths in m those of SI; with lengths
+// in mm the usual ones of mm, N, s: stresses in MPa, densities in tonne/mm³.
 enum class InpUnits { kMetre, kMillimetre };
 
 // The model with all numbers in SI units.

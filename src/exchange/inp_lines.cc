@@ -112,7 +112,8 @@ double InpLines::Number(size_t k, const char* what) const {
   if (k >= fields_.size()) Fail(fmt::format("the line ends where {} should follow", what));
   std::string word(fields_[k]);
   // Fortran's exponent.
-  std::replace_if(word.begin(), word.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
+  std::replace_if(
+      word.begin(), word.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
   const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
   double value = 0;
   const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);

@@ -32,14 +32,16 @@ Counterpart ElasticityCounterpart(const PortableEffect& law, InpDialect dialect)
               "*ELASTIC, in steps with NLGEOM: Abaqus uses the logarithmic strain in place of the "
               "Green-Lagrange strain; they agree to first order"};
     case Kind::kCorotational:
-      return {law.name, How::kConverted,
-              "*ELASTIC, in steps with NLGEOM: agrees to first order in the strain, at any rotation"};
+      return {
+          law.name, How::kConverted,
+          "*ELASTIC, in steps with NLGEOM: agrees to first order in the strain, at any rotation"};
     case Kind::kNeoHookean:
-      return {law.name, How::kConverted,
-              "*HYPERELASTIC, NEO HOOKE with C10 = mu/2, D1 = 2/K, mu = E/(2(1+nu)), K = "
-              "E/(3(1-2nu)): the energy mu/2 (F:F-3) - mu (J-1) + (lambda+mu)/2 (J-1)^2 becomes C10 "
-              "(J^(-2/3) F:F - 3) + (J-1)^2/D1, which agrees to second order in the strain, and "
-              "where J = 1"};
+      return {
+          law.name, How::kConverted,
+          "*HYPERELASTIC, NEO HOOKE with C10 = mu/2, D1 = 2/K, mu = E/(2(1+nu)), K = "
+          "E/(3(1-2nu)): the energy mu/2 (F:F-3) - mu (J-1) + (lambda+mu)/2 (J-1)^2 becomes C10 "
+          "(J^(-2/3) F:F - 3) + (J-1)^2/D1, which agrees to second order in the strain, and "
+          "where J = 1"};
     default:
       return {law.name, How::kNone, "the elasticity law has no counterpart"};
   }
@@ -54,9 +56,10 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
       return {effect.name, How::kExact, "*DAMPING, ALPHA"};
     case Kind::kStiffnessDamping:
       if (!IsProportional(effect, model.Elasticity()))
-        return {effect.name, How::kNone,
-                "its Poisson's ratio is not that of the material, so that it is not proportional to "
-                "the stiffness"};
+        return {
+            effect.name, How::kNone,
+            "its Poisson's ratio is not that of the material, so that it is not proportional to "
+            "the stiffness"};
       return {effect.name, How::kConverted,
               "*DAMPING, BETA = beta E_damping/E: beta times the tangent stiffness in place of "
               "stiffness at rest on the rate of the Green-Lagrange strain; they agree for small "
@@ -99,9 +102,9 @@ void AppendBranches(const PortableModel& model, std::string* text) {
   for (const PortableEffect& effect : model.effects) {
     if (effect.kind != Kind::kViscoelasticBranch) continue;
     const LameConstants branch = LameFromYoung(effect.values[0], effect.values[2]);
-    *text += fmt::format("{}, {}, {}\n", InpNumber(branch.mu / sum.mu),
-                         InpNumber(BulkModulus(branch) / BulkModulus(sum)),
-                         InpNumber(effect.values[1]));
+    *text +=
+        fmt::format("{}, {}, {}\n", InpNumber(branch.mu / sum.mu),
+                    InpNumber(BulkModulus(branch) / BulkModulus(sum)), InpNumber(effect.values[1]));
   }
 }
 
@@ -123,9 +126,10 @@ Counterparts InpCounterparts(const PortableModel& model, InpDialect dialect) {
   if (model.held_force.size() > 0)
     parts.push_back({"hold", How::kExact, "*CLOAD in the first step, removed in the second"});
   if (!model.is_static)
-    parts.push_back({"inertia", How::kConverted,
-                     "the masses of the elements (consistent, or as the program chooses) in place of "
-                     "lumped ones; *DYNAMIC in place of Lacuna's time scheme"});
+    parts.push_back(
+        {"inertia", How::kConverted,
+         "the masses of the elements (consistent, or as the program chooses) in place of "
+         "lumped ones; *DYNAMIC in place of Lacuna's time scheme"});
   return parts;
 }
 

@@ -9,8 +9,8 @@
 //    logarithmic strain, which agrees to first order in the strain.
 //  * The corotational law agrees with both to first order in the strain, at any rotation.
 //  * The neo-Hookean law ψ = μ/2 (F:F − 3) − μ (J − 1) + (λ + μ)/2 (J − 1)² is not that of
-//    *HYPERELASTIC, NEO HOOKE, ψ = C10 (J^(−2/3) F:F − 3) + (J − 1)²/D1. With C10 = μ/2 and D1 = 2/K
-//    the energies agree to second order in the strain, hence the stresses to first order: with
+//    *HYPERELASTIC, NEO HOOKE, ψ = C10 (J^(−2/3) F:F − 3) + (J − 1)²/D1. With C10 = μ/2 and D1 =
+//    2/K the energies agree to second order in the strain, hence the stresses to first order: with
 //    J = 1 + d and F:F − 3 = 2d + O(ε²), J^(−2/3) F:F − 3 = (F:F − 3) − 2d + d²/3 + O(ε³), so that
 //    the coefficient of d² is μ/6 + K/2 = (λ + μ)/2, as in ψ. Both are the same where J = 1.
 //  * Rayleigh damping: α M is that of mass damping; β C on the rate of the Green–Lagrange strain is

@@ -27,7 +27,7 @@ class Reader {
   }
 
  private:
-  using Numbers = std::map<int, int>;  // label → index in the file
+  using Numbers = std::map<int, int>;                 // label → index in the file
   using Sets = std::map<std::string, std::set<int>>;  // of labels
 
   // Each reads from a keyword line up to the next one and returns whether there is one.
@@ -189,9 +189,10 @@ class Reader {
     if (value) lines_.Fail(fmt::format("the material has a second *{}", keyword));
     while (NextData()) {
       if (value)
-        lines_.Fail(fmt::format("a second line of *{}: values that depend on temperature are not "
-                                "read",
-                                keyword));
+        lines_.Fail(
+            fmt::format("a second line of *{}: values that depend on temperature are not "
+                        "read",
+                        keyword));
       value = lines_.Number(0, is_elasticity ? "Young's modulus" : "the density");
       if (*value <= 0) lines_.Fail(fmt::format("*{} must be positive", keyword));
       if (!is_elasticity) continue;

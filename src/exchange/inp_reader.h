@@ -1,9 +1,10 @@
 // Reads mesh, sets and material of an input file of Abaqus or CalculiX.
 //
 // Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
-// other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat: node
-// numbers are unique, as CalculiX requires. Every other keyword, elements of other types included, is
-// listed in `not_read`. Numbers stay in the file's own units, which an .inp file does not state.
+// other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat:
+// node numbers are unique, as CalculiX requires. Every other keyword, elements of other types
+// included, is listed in `not_read`. Numbers stay in the file's own units, which an .inp file does
+// not state.
 #ifndef LACUNA_EXCHANGE_INP_READER_H_
 #define LACUNA_EXCHANGE_INP_READER_H_
 
@@ -22,8 +23,8 @@ struct ImportedMaterial {
 };
 
 struct ImportedModel {
-  TetMesh mesh;                         // nodes in the order of the file, unused ones dropped
-  std::vector<NamedNodes> node_sets;    // of nodes of `mesh`, ascending
+  TetMesh mesh;                          // nodes in the order of the file, unused ones dropped
+  std::vector<NamedNodes> node_sets;     // of nodes of `mesh`, ascending
   std::vector<NamedNodes> element_sets;  // of elements of `mesh`, ascending
   std::vector<ImportedMaterial> materials;
   std::vector<std::string> not_read;  // "line 812: *BOUNDARY"

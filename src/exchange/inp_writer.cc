@@ -57,7 +57,8 @@ void AppendAmplitude(const std::string& name, const std::vector<double>& times,
   fmt::format_to(std::back_inserter(*text), "*AMPLITUDE, NAME={}, TIME=TOTAL TIME\n0., 0.", name);
   for (size_t k = 0; k < times.size(); ++k)
     fmt::format_to(std::back_inserter(*text), "{}{}, {}", (k + 1) % kPerLine == 0 ? "\n" : ", ",
-                   InpNumber(kRampTime + times[k]), InpNumber(values[static_cast<Eigen::Index>(k)]));
+                   InpNumber(kRampTime + times[k]),
+                   InpNumber(values[static_cast<Eigen::Index>(k)]));
   *text += "\n";
 }
 
@@ -80,16 +81,15 @@ void AddGrip(const PortableGrip& grip, const std::string& set, const PortableMod
       for (size_t k = 0; k < model.times.size(); ++k)
         values[static_cast<Eigen::Index>(k)] =
             grip.displacements[k](axis, static_cast<Eigen::Index>(column));
-      const std::string place =
-          is_translation ? set : std::to_string(grip.part.nodes[column] + 1);
+      const std::string place = is_translation ? set : std::to_string(grip.part.nodes[column] + 1);
       if (values.isZero(0)) {
         sections->fixed += fmt::format("{0}, {1}, {1}\n", place, axis + 1);
         continue;
       }
       const std::string name = fmt::format("U_{}_{}", place, kAxes[axis]);
       AppendAmplitude(name, model.times, values, &sections->amplitudes);
-      sections->moved += fmt::format("*BOUNDARY, AMPLITUDE={0}\n{1}, {2}, {2}, 1.\n", name, place,
-                                     axis + 1);
+      sections->moved +=
+          fmt::format("*BOUNDARY, AMPLITUDE={0}\n{1}, {2}, {2}, 1.\n", name, place, axis + 1);
     }
 }
 
@@ -124,9 +124,9 @@ void AddLoads(const PortableModel& model, Sections* sections) {
         fmt::format("{}, {}, {}\n", node + 1, axis + 1, InpNumber(nodal.start));
     if (nodal.shares.empty()) continue;
     const bool is_single = nodal.shares.size() == 1;
-    const std::string name =
-        is_single ? fmt::format("F_{}_{}", nodal.shares[0].first + 1, kAxes[axis])
-                  : fmt::format("F_NODE_{}_{}", node + 1, kAxes[axis]);
+    const std::string name = is_single
+                                 ? fmt::format("F_{}_{}", nodal.shares[0].first + 1, kAxes[axis])
+                                 : fmt::format("F_NODE_{}_{}", node + 1, kAxes[axis]);
     const bool is_new = !lines.contains(name);
     lines[name] += fmt::format("{}, {}, {}\n", node + 1, axis + 1,
                                InpNumber(is_single ? nodal.shares[0].second : 1));
@@ -142,8 +142,7 @@ void AddLoads(const PortableModel& model, Sections* sections) {
 
 std::string Output(bool is_first, InpDialect dialect) {
   const std::string at = is_first ? "" : ", TIME POINTS=FRAMES";
-  if (dialect == InpDialect::kAbaqus)
-    return "*OUTPUT, FIELD" + at + "\n*NODE OUTPUT\nU\n";
+  if (dialect == InpDialect::kAbaqus) return "*OUTPUT, FIELD" + at + "\n*NODE OUTPUT\nU\n";
   // CalculiX computes the energies that *DYNAMIC needs only if the first step asks for them.
   return "*NODE PRINT, NSET=ALL_NODES" + (is_first ? ", FREQUENCY=1000000" : at) + "\nU\n" +
          "*NODE FILE" + (is_first ? ", FREQUENCY=1000000" : at) + "\nU\n" +
@@ -163,9 +162,9 @@ std::string Steps(const PortableModel& model, const Sections& sections, InpDiale
   for (const PortableEffect& effect : model.effects)
     if (effect.kind == PortableEffect::Kind::kGravity && effect.values.norm() > 0) {
       const Eigen::Vector3d direction = effect.values.normalized();
-      text += fmt::format("*DLOAD\nBODY, GRAV, {}, {}, {}, {}\n", InpNumber(effect.values.norm()),
-                          InpNumber(direction.x()), InpNumber(direction.y()),
-                          InpNumber(direction.z()));
+      text +=
+          fmt::format("*DLOAD\nBODY, GRAV, {}, {}, {}, {}\n", InpNumber(effect.values.norm()),
+                      InpNumber(direction.x()), InpNumber(direction.y()), InpNumber(direction.z()));
     }
   if (!sections.start_loads.empty()) text += "*CLOAD\n" + sections.start_loads;
   text += Output(true, dialect) + "*END STEP\n";
@@ -176,9 +175,9 @@ std::string Steps(const PortableModel& model, const Sections& sections, InpDiale
     text += "*DYNAMIC, ALPHA=0.\n";
   else
     text += has_branches ? "*VISCO\n" : "*STATIC\n";
-  text += fmt::format("{0}, {1}, {2}, {3}\n", InpNumber(std::min(model.time_step, model.Duration())),
-                      InpNumber(model.Duration()), InpNumber(1e-4 * model.time_step),
-                      InpNumber(model.time_step));
+  text += fmt::format(
+      "{0}, {1}, {2}, {3}\n", InpNumber(std::min(model.time_step, model.Duration())),
+      InpNumber(model.Duration()), InpNumber(1e-4 * model.time_step), InpNumber(model.time_step));
   if (!sections.start_loads.empty()) text += "*CLOAD, OP=NEW\n" + sections.loads;
   return text + Output(false, dialect) + "*END STEP\n";
 }
@@ -223,7 +222,8 @@ std::string InpText(const PortableModel& model, InpDialect dialect) {
       text += fmt::format("** \"{}\" in the recording\n", model.regions[k].name);
     AppendSet(sets[k], model.regions[k].nodes, &text);
   }
-  for (size_t g = 0; g < model.grips.size(); ++g) AddGrip(model.grips[g], sets[g], model, &sections);
+  for (size_t g = 0; g < model.grips.size(); ++g)
+    AddGrip(model.grips[g], sets[g], model, &sections);
   AddLoads(model, &sections);
   text += InpMaterial(model, dialect) + "*SOLID SECTION, ELSET=BODY, MATERIAL=LACUNA\n";
   text += sections.amplitudes;

@@ -1,10 +1,10 @@
 // Writes a model as an input file of CalculiX or Abaqus.
 //
 // The file holds the mesh (C3D4 or C3D10, whose node order is that of TetMesh), a node set for each
-// region of the recording, the material (inp_material.h), and two steps: the equilibrium of the held
-// body at the start of the motion, from total time 0 to 1 s, and the motion from 1 s on. Forces and
-// prescribed motions are tables over the total time. SI units. Node and element numbers are those
-// of the mesh plus 1.
+// region of the recording, the material (inp_material.h), and two steps: the equilibrium of the
+// held body at the start of the motion, from total time 0 to 1 s, and the motion from 1 s on.
+// Forces and prescribed motions are tables over the total time. SI units. Node and element numbers
+// are those of the mesh plus 1.
 //
 // Coordinates are written without exponent, with all digits that a double needs. CalculiX reads the
 // first 20 characters of a number, so that it loses digits below 1e-17 m and never an exponent.

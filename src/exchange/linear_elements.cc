@@ -1,6 +1,6 @@
-#include "exchange/scene_writers.h"
-
 #include <vector>
+
+#include "exchange/scene_writers.h"
 
 namespace lacuna {
 namespace {
@@ -37,7 +37,8 @@ void RestrictLoad(const PortableModel& model, const std::vector<int>& kept, Port
     load->part.nodes.push_back(kept[static_cast<size_t>(n)]);
     left.push_back(shares[n]);
   }
-  load->shares = Eigen::Map<const Eigen::VectorXd>(left.data(), static_cast<Eigen::Index>(left.size()));
+  load->shares =
+      Eigen::Map<const Eigen::VectorXd>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
 }  // namespace
@@ -46,7 +47,8 @@ PortableModel WithLinearElements(const PortableModel& model) {
   if (model.mesh.Order() == 1) return model;
   PortableModel linear = model;
   std::vector<int> kept(static_cast<size_t>(model.mesh.NodeCount()), -1), nodes;
-  for (const int node : model.mesh.tets.topRows<4>().reshaped()) kept[static_cast<size_t>(node)] = 0;
+  for (const int node : model.mesh.tets.topRows<4>().reshaped())
+    kept[static_cast<size_t>(node)] = 0;
   for (size_t n = 0; n < kept.size(); ++n) {
     if (kept[n] < 0) continue;
     kept[n] = static_cast<int>(nodes.size());

@@ -86,7 +86,8 @@ nlohmann::ordered_json ModelJson(const PortableModel& model, const std::string& 
                     {"time_step", model.time_step},
                     {"times", model.times},
                     {"frames", model.frames}};
-  for (const char* list : {"effects", "regions", "grips", "forces", "fit"}) json[list] = Json::array();
+  for (const char* list : {"effects", "regions", "grips", "forces", "fit"})
+    json[list] = Json::array();
   for (const PortableEffect& effect : model.effects) json["effects"].push_back(EffectJson(effect));
   for (const NamedNodes& region : model.regions)
     json["regions"].push_back({{"name", region.name}, {"nodes", region.nodes}});

@@ -27,8 +27,9 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
               "rotations"};
     case Kind::kCorotational:
     case Kind::kNeoHookean:
-      return {effect.name, How::kConverted,
-              "elasticity of a flexcomp, St. Venant-Kirchhoff: agrees to first order in the strain"};
+      return {
+          effect.name, How::kConverted,
+          "elasticity of a flexcomp, St. Venant-Kirchhoff: agrees to first order in the strain"};
     case Kind::kGravity:
       return {effect.name, How::kExact, "gravity of option"};
     case Kind::kStiffnessDamping:
@@ -46,8 +47,9 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
 Counterparts MujocoCounterparts(const PortableModel& model) {
   Counterparts parts;
   if (model.mesh.Order() == 2)
-    parts.push_back({"quadratic elements", How::kNone,
-                     "linear ones of the corner nodes are written, which are too stiff in bending"});
+    parts.push_back(
+        {"quadratic elements", How::kNone,
+         "linear ones of the corner nodes are written, which are too stiff in bending"});
   for (const PortableEffect& effect : model.effects)
     parts.push_back(EffectCounterpart(effect, model));
   parts.push_back({"masses", How::kConverted, "every node gets the same share of the mass"});

@@ -68,7 +68,8 @@ PortableGrip DescribeGrip(const Grip& grip, const std::string& name, const TetMe
   if (!grip.motion) return described;
   std::vector<int> order(static_cast<size_t>(grip.nodes.size()));
   for (size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return grip.nodes[a] < grip.nodes[b]; });
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return grip.nodes[a] < grip.nodes[b]; });
   for (const double time : model.times) {
     const Eigen::Matrix3Xd places = grip.motion(model.start + time);
     described.displacements.emplace_back(places(Eigen::all, order) -

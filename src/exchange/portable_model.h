@@ -80,7 +80,7 @@ struct PortableModel {
 
   TetMesh mesh;
   double density = 0;
-  Eigen::VectorXd node_mass;  // n, lumped, as Lacuna uses them
+  Eigen::VectorXd node_mass;            // n, lumped, as Lacuna uses them
   std::vector<PortableEffect> effects;  // the elasticity law first; without measured forces
   std::vector<NamedNodes> regions;      // the parts that the recording names, grips included
   std::vector<PortableGrip> grips;

@@ -2,8 +2,8 @@
 // scene), MuJoCo (MJCF) and USD (a TetMesh). They have linear tetrahedra only, so that of quadratic
 // elements the corner nodes are kept. SI units.
 //
-// Sources: SOFA documentation, TetrahedronHyperelasticityFEMForceField and TetrahedronFEMForceField;
-// MuJoCo XML reference, flexcomp; USD, UsdGeomTetMesh.
+// Sources: SOFA documentation, TetrahedronHyperelasticityFEMForceField and
+// TetrahedronFEMForceField; MuJoCo XML reference, flexcomp; USD, UsdGeomTetMesh.
 #ifndef LACUNA_EXCHANGE_SCENE_WRITERS_H_
 #define LACUNA_EXCHANGE_SCENE_WRITERS_H_
 

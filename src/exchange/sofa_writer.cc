@@ -37,9 +37,10 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
       return {effect.name, How::kExact,
               "TetrahedronHyperelasticityFEMForceField, StVenantKirchhoff with mu, lambda"};
     case Kind::kNeoHookean:
-      return {effect.name, How::kConverted,
-              "TetrahedronHyperelasticityFEMForceField, NeoHookean with mu and K = lambda + 2 mu/3: "
-              "agrees to first order in the strain"};
+      return {
+          effect.name, How::kConverted,
+          "TetrahedronHyperelasticityFEMForceField, NeoHookean with mu and K = lambda + 2 mu/3: "
+          "agrees to first order in the strain"};
     case Kind::kGravity:
       return {effect.name, How::kExact, "gravity of the root node"};
     case Kind::kMassDamping:
@@ -105,8 +106,9 @@ std::string LoadText(const PortableLoad& load) {
 Counterparts SofaCounterparts(const PortableModel& model) {
   Counterparts parts;
   if (model.mesh.Order() == 2)
-    parts.push_back({"quadratic elements", How::kNone,
-                     "linear ones of the corner nodes are written, which are too stiff in bending"});
+    parts.push_back(
+        {"quadratic elements", How::kNone,
+         "linear ones of the corner nodes are written, which are too stiff in bending"});
   for (const PortableEffect& effect : model.effects)
     parts.push_back(EffectCounterpart(effect, model));
   for (const PortableGrip& grip : model.grips) {

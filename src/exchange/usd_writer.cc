@@ -23,13 +23,13 @@ std::string Quoted(std::string text) {
 Counterparts UsdCounterparts(const PortableModel& model) {
   Counterparts parts;
   if (model.mesh.Order() == 2)
-    parts.push_back({"quadratic elements", How::kNone, "linear ones of the corner nodes are written"});
+    parts.push_back(
+        {"quadratic elements", How::kNone, "linear ones of the corner nodes are written"});
   for (const PortableEffect& effect : model.effects)
     parts.push_back({effect.name, How::kNone,
                      "no schema of USD describes it; its values are custom attributes lacuna:*"});
   for (const PortableGrip& grip : model.grips)
-    parts.push_back({"grip " + grip.part.name,
-                     How::kNone,
+    parts.push_back({"grip " + grip.part.name, How::kNone,
                      "its nodes are a custom attribute lacuna:nodes:*, its motion is left out"});
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, How::kNone, "only its nodes are written"});
@@ -64,7 +64,8 @@ std::string UsdText(const PortableModel& given) {
   text += "]\n";
   for (size_t k = 0; k < model.effects.size(); ++k) {
     const PortableEffect& effect = model.effects[k];
-    fmt::format_to(end, "    custom string lacuna:effect{}:type = {}\n", k + 1, Quoted(effect.name));
+    fmt::format_to(end, "    custom string lacuna:effect{}:type = {}\n", k + 1,
+                   Quoted(effect.name));
     for (Eigen::Index p = 0; p < effect.values.size(); ++p)
       fmt::format_to(end, "    custom double lacuna:effect{}:{} = {}\n", k + 1,
                      effect.value_names[static_cast<size_t>(p)], effect.values[p]);

@@ -64,8 +64,9 @@ scanner: {cameras: 2, look_at: [0 m, 0 m, 0 m], distance: 0.4 m, field_of_view: 
 TEST(CommandLine, HelpNamesEveryCommand) {
   const Ending help = Lacuna("--help");
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"reconstruct", "fit", "compare", "diagnose", "add", "sweep",
-                              "simulate", "info", "validate", "effects", "explain"})
+  for (const char* command :
+       {"reconstruct", "fit", "compare", "diagnose", "add", "sweep", "simulate", "info", "validate",
+        "effects", "explain", "export", "import"})
     EXPECT_THAT(help.said, HasSubstr(command));
   EXPECT_EQ(Lacuna("--version").status, 0);
 }

@@ -17,8 +17,8 @@ CalculixResult Exported(const Cantilever& bar) {
   TemporaryFolder folder;
   const PortableModel model = bar.Describe();
   std::ofstream(folder / "model.inp") << InpText(model, InpDialect::kCalculix);
-  const CalculixResult result = RunCalculix(folder / "model.inp", folder / "calculix",
-                                            model.mesh.NodeCount(), model.frames);
+  const CalculixResult result =
+      RunCalculix(folder / "model.inp", folder / "calculix", model.mesh.NodeCount(), model.frames);
   EXPECT_TRUE(result.IsUsable()) << result.message;
   return result;
 }
@@ -28,8 +28,9 @@ DisplacementDifference Difference(const Cantilever& bar) {
   if (!result.IsUsable()) return {0, 1, 1};
   const DisplacementDifference difference =
       CompareDisplacements(bar.Displacements(), result.displacement);
-  std::cout << "largest displacement " << difference.largest_displacement << " m, largest difference "
-            << difference.largest << ", rms " << difference.rms << "\n";
+  std::cout << "largest displacement " << difference.largest_displacement
+            << " m, largest difference " << difference.largest << ", rms " << difference.rms
+            << "\n";
   return difference;
 }
 
@@ -69,7 +70,8 @@ TEST(Calculix, PassesThePatchTest) {
   const Eigen::VectorXi boundary = bar.model.body->boundary.node;
   const Eigen::Matrix3d gradient{{0.01, 0.002, 0}, {-0.003, 0.02, 0.004}, {0.001, 0, -0.01}};
   const Eigen::Matrix3Xd moved = (Eigen::Matrix3d::Identity() + gradient) * bar.mesh.nodes;
-  bar.model.grips = {{boundary, [=](double) { return Eigen::Matrix3Xd(moved(Eigen::all, boundary)); }}};
+  bar.model.grips = {
+      {boundary, [=](double) { return Eigen::Matrix3Xd(moved(Eigen::all, boundary)); }}};
   const CalculixResult result = Exported(bar);
   ASSERT_TRUE(result.IsUsable());
   const Eigen::MatrixXd exact = (moved - bar.mesh.nodes).reshaped();
@@ -86,7 +88,8 @@ TEST(Calculix, RingsDownAsLacunaDoes) {
       "stiffness_damping", {{"beta", 0.002}, {"young_modulus", 1e5}, {"poisson_ratio", 0.4}}));
   const Eigen::VectorXd share = BoundaryShares(*bar.model.body, bar.Tip());
   bar.options.held_force = Eigen::VectorXd::Zero(3 * share.size());
-  for (Eigen::Index i = 0; i < share.size(); ++i) bar.options.held_force[3 * i + 2] = 0.02 * share[i];
+  for (Eigen::Index i = 0; i < share.size(); ++i)
+    bar.options.held_force[3 * i + 2] = 0.02 * share[i];
   for (int k = 1; k <= 5; ++k) bar.frames.push_back(0.02 * k);
   bar.options.time_step = 2e-3;
   EXPECT_LT(Difference(bar).largest, 0.01);

@@ -51,10 +51,9 @@ struct Cantilever {
     std::vector<double> times;
     for (const double frame : described.frames) times.push_back(described.start + frame);
     Eigen::MatrixXd moved(3 * mesh.NodeCount(), static_cast<Eigen::Index>(times.size()) + 1);
-    const PredictionSummary summary =
-        Predict(model, options, times, {}, [&](int index, const PredictedState& state) {
-          moved.col(index + 1) = state.position;
-        });
+    const PredictionSummary summary = Predict(
+        model, options, times, {},
+        [&](int index, const PredictedState& state) { moved.col(index + 1) = state.position; });
     EXPECT_TRUE(summary.IsUsable()) << summary.message;
     moved.col(0) = summary.held;
     return moved.colwise() - Eigen::VectorXd(mesh.nodes.reshaped());

@@ -20,9 +20,8 @@ namespace {
 using testing::HasSubstr;
 
 ImportedModel Imported(const TemporaryFolder& folder, int order) {
-  std::ofstream(folder / "bar.inp")
-      << InpText(Cantilever("st_venant_kirchhoff", {2, 1, 1}, order).Describe(),
-                 InpDialect::kCalculix);
+  std::ofstream(folder / "bar.inp") << InpText(
+      Cantilever("st_venant_kirchhoff", {2, 1, 1}, order).Describe(), InpDialect::kCalculix);
   return ReadInp(folder / "bar.inp");
 }
 
@@ -38,15 +37,13 @@ TEST(ImportedExperiment, CanBeReadOnceItIsCompleted) {
     WriteImportedExperiment(model, "bar", folder / "bar.inp", folder / "study");
     EXPECT_EQ(ReadTetMesh(folder / "study/bar.msh").mesh.nodes, model.mesh.nodes);
     // What a user does: write the measurements, and use a node set.
-    std::ofstream(folder / "study/markers.csv")
-        << "t,tip_x,tip_y,tip_z\n0,0.08,0,0\n0.01,0.08,0,0\n0.02,0.08,0,-0.001\n0.03,0.08,0,-0.002\n";
+    std::ofstream(folder / "study/markers.csv") << "t,tip_x,tip_y,tip_z\n0,0.08,0,0\n0.01,0.08,0,"
+                                                   "0\n0.02,0.08,0,-0.001\n0.03,0.08,0,-0.002\n";
     const std::filesystem::path recording = folder / "study/recording.yaml";
-    const std::string used =
-        Replaced(Replaced(FileContent(recording), "# fixed:\n", "fixed:\n"), "#   - {name: CLAMP",
-                 "   - {name: CLAMP");
+    const std::string used = Replaced(Replaced(FileContent(recording), "# fixed:\n", "fixed:\n"),
+                                      "#   - {name: CLAMP", "   - {name: CLAMP");
     std::ofstream(recording) << used;
-    const PredictionStudy study =
-        ReadPredictionStudy(Config::Load(folder / "study/bar.yaml"));
+    const PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "study/bar.yaml"));
     EXPECT_EQ(study.density, 1000);
     EXPECT_EQ(study.effects.front()->Parameters(), Eigen::Vector2d(1e5, 0.4));
     const TetMesh body = MakeReferenceBody(study).mesh;

@@ -91,8 +91,10 @@ TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
   EXPECT_THAT(ErrorOf(Replaced(tet, "1.D0", "1e999")), HasSubstr(":6:"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "1.D0, 0., 0.", "1, 0")), HasSubstr(":6: the line ends"));
   EXPECT_THAT(ErrorOf(Replaced(tet, " 20, 1.D0", " 10, 1.")), HasSubstr(":6: node 10 appears"));
-  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 41\n*Nset")), HasSubstr(":11: there is no node"));
-  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 40, 10\n*Nset")), HasSubstr("more than 4 nodes"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 41\n*Nset")),
+              HasSubstr(":11: there is no node"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, " 40\n*Nset", " 40, 10\n*Nset")),
+              HasSubstr("more than 4 nodes"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "1, 2147483647, 1")),
               HasSubstr(":13: 2147483643 of the 2147483647 numbers do not exist"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "10, 30, 10", "10, 99999999999999999999")), HasSubstr(":13:"));

@@ -23,7 +23,8 @@ using testing::Not;
 
 std::vector<std::string> MissingParts(const PortableModel& model, InpDialect dialect) {
   std::vector<std::string> names;
-  for (const Counterpart& part : Missing(InpCounterparts(model, dialect))) names.push_back(part.part);
+  for (const Counterpart& part : Missing(InpCounterparts(model, dialect)))
+    names.push_back(part.part);
   return names;
 }
 
@@ -64,8 +65,8 @@ TEST(InpWriter, IsReadBackWithTheSameBits) {
 // and 8, 9, 10 between 4 and 1, 2, 3.
 TEST(InpWriter, PutsTheMidpointsOfEdgesWhereTheManualHasThem) {
   constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-  const ImportedModel read = WrittenAndRead(
-      Cantilever("linear", {2, 1, 1}, 2).Describe(), InpDialect::kCalculix);
+  const ImportedModel read =
+      WrittenAndRead(Cantilever("linear", {2, 1, 1}, 2).Describe(), InpDialect::kCalculix);
   ASSERT_EQ(read.mesh.Order(), 2);
   for (const auto tet : read.mesh.tets.colwise())
     for (int k = 0; k < 6; ++k) {
@@ -101,7 +102,8 @@ TEST(InpWriter, RefusesDampingThatIsNotProportionalToTheStiffness) {
               HasSubstr("*DAMPING, ALPHA=0, BETA=0.02\n"));
   bar.model.effects.back() = MakeEffect(
       "stiffness_damping", {{"beta", 0.01}, {"young_modulus", 2e5}, {"poisson_ratio", 0.3}});
-  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix), ElementsAre("stiffness_damping"));
+  EXPECT_THAT(MissingParts(bar.Describe(), InpDialect::kCalculix),
+              ElementsAre("stiffness_damping"));
   EXPECT_THAT(InpText(bar.Describe(), InpDialect::kCalculix), Not(HasSubstr("*DAMPING, ALPHA")));
 }
 

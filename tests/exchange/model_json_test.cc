@@ -45,9 +45,9 @@ TEST(GmshExport, PassesThroughGmshWithTheSameBits) {
       const TetMesh mesh = UnevenMesh(order);
       std::ofstream(folder / "model.msh")
           << GmshText(mesh, is_4 ? GmshVersion::k41 : GmshVersion::k22);
-      const std::string command =
-          "cd " + folder.Path().string() + " && gmsh -v 1 model.msh -save -save_all -format " +
-          (is_4 ? "msh22" : "msh41") + " -o other.msh >log 2>&1";
+      const std::string command = "cd " + folder.Path().string() +
+                                  " && gmsh -v 1 model.msh -save -save_all -format " +
+                                  (is_4 ? "msh22" : "msh41") + " -o other.msh >log 2>&1";
       ASSERT_EQ(std::system(command.c_str()), 0) << FileContent(folder / "log");
       const TetMeshFile read = ReadTetMesh(folder / "other.msh");
       EXPECT_EQ(read.mesh.tets, mesh.tets);
@@ -95,8 +95,8 @@ TEST(ModelJson, DescribesTranslationsAndTurns) {
   EXPECT_EQ(json.at("grips").at(0).at("displacement").size(), 3u);
   EXPECT_NEAR(json.at("grips").at(0).at("displacement").at(2).at(0).get<double>(), 2, 1e-12);
   bar.model.grips[0].motion = [rest](double time) { return Eigen::Matrix3Xd((1 + time) * rest); };
-  EXPECT_TRUE(ModelJson(bar.Describe(), "model.msh").at("grips").at(0).contains(
-      "displacements_of_nodes"));
+  EXPECT_TRUE(
+      ModelJson(bar.Describe(), "model.msh").at("grips").at(0).contains("displacements_of_nodes"));
 }
 
 }  // namespace

@@ -25,9 +25,9 @@ std::vector<std::string> Names(const Counterparts& parts) {
 
 Cantilever Pulled(int order) {
   Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, order);
-  bar.model.effects.push_back(std::make_shared<PrescribedForce>(
-      BoundaryShares(*bar.model.body, bar.Tip()),
-      [](double) { return Eigen::Vector3d(0, 0, 0.01); }));
+  bar.model.effects.push_back(
+      std::make_shared<PrescribedForce>(BoundaryShares(*bar.model.body, bar.Tip()),
+                                        [](double) { return Eigen::Vector3d(0, 0, 0.01); }));
   bar.model.effects.push_back(MakeEffect("mass_damping", {{"alpha", 2}}));
   bar.names.loads = {"pull"};
   bar.frames = {0.1};
@@ -83,9 +83,9 @@ TEST(UsdWriter, WritesTheMesh) {
   EXPECT_THAT(text, HasSubstr("point3f[] points = [(0, 0, 0), (0.04, 0, 0), (0.08, 0, 0)"));
   EXPECT_THAT(text, HasSubstr("custom int[] lacuna:nodes:CLAMP = [0, 3, 6, 9]"));
   EXPECT_THAT(text, HasSubstr("custom double lacuna:effect1:young_modulus = 100000"));
-  EXPECT_THAT(Names(UsdCounterparts(Pulled(1).Describe())),
-              ElementsAre("st_venant_kirchhoff", "gravity", "mass_damping", "grip clamp",
-                          "force pull"));
+  EXPECT_THAT(
+      Names(UsdCounterparts(Pulled(1).Describe())),
+      ElementsAre("st_venant_kirchhoff", "gravity", "mass_damping", "grip clamp", "force pull"));
 }
 
 }  // namespace
