@@ -20,8 +20,8 @@ struct DescribedRun {
 
 struct DescribedRunOptions {
   std::string recording;  // its name; empty: the first one of the run
-  double until = std::numeric_limits<double>::infinity();  // s, recorded time: later frames are
-                                                           // left out
+  // s, recorded time: later frames are left out.
+  double until = std::numeric_limits<double>::infinity();
   bool with_positions = false;  // predict the motion, too
 };
 
