@@ -19,11 +19,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text_file.h"
+#include "exchange/inp_writer.h"
 
 namespace lacuna {
 namespace {
-
-constexpr double kRampTime = 1;  // s, the duration of the first step (inp_writer.h)
 
 std::optional<std::filesystem::path> FindProgram(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -88,9 +87,9 @@ Eigen::MatrixXd ReadDisplacements(const std::string& text, Eigen::Index nodes,
     if (time != std::string::npos) {
       column = -1;
       if (line.find("displacements") == std::string::npos) continue;
-      const double at = std::strtod(line.c_str() + time + 8, nullptr) - kRampTime;
+      const double at = std::strtod(line.c_str() + time + 8, nullptr) - kInpRampTime;
       // Times have seven digits.
-      const double tolerance = 1e-6 * (kRampTime + std::max(at, 0.0));
+      const double tolerance = 1e-6 * (kInpRampTime + std::max(at, 0.0));
       for (size_t k = 0; k <= frames.size(); ++k)
         if (std::abs(at - (k == 0 ? 0 : frames[k - 1])) < tolerance)
           column = static_cast<Eigen::Index>(k);

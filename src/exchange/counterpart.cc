@@ -6,6 +6,26 @@
 #include "core/text_layout.h"
 
 namespace lacuna {
+namespace {
+
+std::vector<std::string> ProvenanceLines(const PortableModel& model) {
+  std::vector<std::string> lines{
+      fmt::format("Written by lacuna {} from the run {}", model.program_version, model.run),
+      fmt::format("Experiment {}, recording {}", model.experiment, model.recording),
+      "Units are SI: m, kg, s, N, Pa",
+      fmt::format("Time 0 of the motion is {} s on the model's clock", model.start)};
+  for (const PortableParameter& parameter : model.parameters) {
+    std::string line = fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "),
+                                   parameter.unit);
+    line += parameter.fitted ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})",
+                                           parameter.low, parameter.high)
+                             : " (held)";
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+}  // namespace
 
 Counterparts Missing(const Counterparts& counterparts) {
   Counterparts missing;
@@ -25,27 +45,21 @@ std::vector<std::string> CounterpartLines(const Counterparts& counterparts) {
   return lines;
 }
 
-std::vector<std::string> ProvenanceLines(const PortableModel& model) {
-  std::vector<std::string> lines{
-      fmt::format("Written by lacuna {} from the run {}", model.program_version, model.run),
-      fmt::format("Experiment {}, recording {}", model.experiment, model.recording),
-      "Units are SI: m, kg, s, N, Pa",
-      fmt::format("Time 0 of the motion is {} s on the model's clock", model.start)};
-  for (const PortableParameter& parameter : model.parameters) {
-    std::string line = fmt::format("{} = {} {}", parameter.name, fmt::join(parameter.values, ", "),
-                                   parameter.unit);
-    line += parameter.fitted ? fmt::format(" (fitted; 95 % interval {:.6g} to {:.6g})",
-                                           parameter.low, parameter.high)
-                             : " (held)";
-    lines.push_back(line);
-  }
-  return lines;
+std::string FileComment(const PortableModel& model, const Counterparts& counterparts,
+                        const std::string& prefix) {
+  std::string text;
+  const auto add = [&](const std::string& line) { text += Wrapped(line, prefix, prefix + "  "); };
+  for (const std::string& line : ProvenanceLines(model)) add(line);
+  add("The parts of the model:");
+  for (const std::string& line : CounterpartLines(counterparts)) add(line);
+  return text;
 }
 
-std::string Commented(const std::vector<std::string>& lines, const std::string& prefix) {
-  std::string text;
-  for (const std::string& line : lines) text += Wrapped(line, prefix, prefix + "  ");
-  return text;
+std::string XmlComment(const PortableModel& model, const Counterparts& counterparts) {
+  std::string text = FileComment(model, counterparts, "  ");
+  // Two hyphens would end the comment.
+  for (size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.erase(at, 1);
+  return "<!--\n" + text + "-->\n";
 }
 
 }  // namespace lacuna

@@ -25,11 +25,12 @@ using Counterparts = std::vector<Counterpart>;
 Counterparts Missing(const Counterparts& counterparts);
 // One line for each: "gravity: *DLOAD, GRAV", "corotational: converted: …", "drag: none: …".
 std::vector<std::string> CounterpartLines(const Counterparts& counterparts);
-// Where the model comes from, its units and its parameters, one line each, for the comment at the
-// top of a file.
-std::vector<std::string> ProvenanceLines(const PortableModel& model);
-// The lines as paragraphs of at most 100 characters, with `prefix` in front of each line.
-std::string Commented(const std::vector<std::string>& lines, const std::string& prefix);
+// The comment at the top of a file: where the model comes from, its units, its parameters and what
+// becomes of its parts, in lines of at most 100 characters with `prefix` in front of each.
+std::string FileComment(const PortableModel& model, const Counterparts& counterparts,
+                        const std::string& prefix);
+// The same as a comment of an XML file.
+std::string XmlComment(const PortableModel& model, const Counterparts& counterparts);
 
 }  // namespace lacuna
 

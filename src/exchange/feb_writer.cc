@@ -18,8 +18,7 @@ using How = Counterpart::Kind;
 constexpr int kMostBranches = 6;  // of FEBio's viscoelastic material
 
 bool IsWritten(const PortableEffect& branch, const PortableModel& model) {
-  return branch.kind == Kind::kViscoelasticBranch &&
-         std::abs(branch.values[2] - model.Elasticity().values[1]) <= 1e-9;
+  return branch.kind == Kind::kViscoelasticBranch && model.IsProportional(branch);
 }
 
 std::vector<PortableEffect> Branches(const PortableModel& model) {
@@ -69,15 +68,12 @@ class Writer {
   explicit Writer(const PortableModel& model) : model_(model), ramp_(RampTime(model)) {}
 
   std::string Text() {
-    std::string comment = Commented(ProvenanceLines(model_), "  ") + "  The parts of the model:\n" +
-                          Commented(CounterpartLines(FebCounterparts(model_)), "  ");
-    // Two hyphens end a comment in XML.
-    for (size_t at = 0; (at = comment.find("--", at)) != std::string::npos;) comment.erase(at, 1);
     Mesh();
     for (size_t g = 0; g < model_.grips.size(); ++g) Grip(model_.grips[g], g);
     Loads();
-    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!--\n" + comment +
-           "-->\n<febio_spec version=\"4.0\">\n<Module "
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
+           XmlComment(model_, FebCounterparts(model_)) +
+           "<febio_spec version=\"4.0\">\n<Module "
            "type=\"solid\"><units>SI</units></Module>\n" +
            Material() + mesh_ +
            "<MeshDomains><SolidDomain name=\"elements\" mat=\"lacuna\"/></MeshDomains>\n" +
@@ -180,16 +176,11 @@ class Writer {
         mesh_.insert(end, fmt::format("<NodeSet name=\"{}\">{}</NodeSet>\n", place,
                                       grip.part.nodes[column] + 1));
       }
-      for (int axis = 0; axis < 3; ++axis) {
-        Eigen::VectorXd values(static_cast<Eigen::Index>(model_.times.size()));
-        for (Eigen::Index k = 0; k < values.size(); ++k)
-          values[k] =
-              grip.displacements[static_cast<size_t>(k)](axis, static_cast<Eigen::Index>(column));
+      for (int axis = 0; axis < 3; ++axis)
         boundary_ += fmt::format(
             "<bc name=\"{0}_{1}\" node_set=\"{0}\" type=\"prescribed displacement\"><dof>{1}</dof>"
             "<value lc=\"{2}\">1</value><relative>0</relative></bc>\n",
-            place, "xyz"[axis], MotionCurve(values));
-      }
+            place, "xyz"[axis], MotionCurve(grip.Series(axis, static_cast<Eigen::Index>(column))));
     }
   }
 
@@ -215,11 +206,10 @@ class Writer {
   }
 
   void Loads() {
+    const Eigen::Vector3d gravity = model_.Gravity();
     for (int axis = 0; axis < 3; ++axis) {
-      if (const PortableEffect* gravity = model_.Find(Kind::kGravity);
-          gravity != nullptr && gravity->values[axis] != 0)
-        NodalLoad("weight", axis, model_.node_mass * gravity->values[axis],
-                  Curve({0, ramp_}, {0, 1}));
+      if (gravity[axis] != 0)
+        NodalLoad("weight", axis, model_.node_mass * gravity[axis], Curve({0, ramp_}, {0, 1}));
       for (size_t l = 0; l < model_.loads.size(); ++l) {
         const PortableLoad& load = model_.loads[l];
         if (load.force.row(axis).isZero(0)) continue;

@@ -11,9 +11,9 @@
 // Laws, with λ and μ from E and ν:
 //  * "isotropic elastic" is Hooke's law between the second Piola–Kirchhoff stress and the
 //    Green–Lagrange strain, which is St. Venant–Kirchhoff.
-//  * "neo-Hookean" is ψ = μ/2 (F:F − 3) − μ ln J + λ/2 (ln J)². With ln J = d − d²/2 + O(d³), d = J
-//  −
-//    1, this is μ/2 (F:F − 3) − μ d + (λ + μ)/2 d² + O(d³), Lacuna's law to second order in d.
+//  * "neo-Hookean" is ψ = μ/2 (F:F − 3) − μ ln J + λ/2 (ln J)². With ln J = d − d²/2 + O(d³) and
+//    d = J − 1, this is μ/2 (F:F − 3) − μ d + (λ + μ)/2 d² + O(d³), Lacuna's law to second order in
+//    d.
 //  * "viscoelastic" multiplies the rate of the elastic stress by 1 + Σ g exp(−t/τ), g = m/E, where
 //    the branch has the Poisson ratio of the material.
 #ifndef LACUNA_EXCHANGE_FEB_WRITER_H_

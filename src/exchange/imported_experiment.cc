@@ -16,7 +16,8 @@
 namespace lacuna {
 namespace {
 
-constexpr double kSoftModulus = 1e5;  // Pa, a start where the file has no elasticity
+// Values of a soft rubber, written with the mark TO DO where the file does not have its own.
+constexpr double kSoftModulus = 1e5;  // Pa
 constexpr double kSoftPoisson = 0.45;
 constexpr double kWaterDensity = 1000;  // kg/m³
 
@@ -52,14 +53,22 @@ std::string Recording(const ImportedModel& model, const std::string& name,
   return text;
 }
 
+bool HasElasticity(const ImportedMaterial* material) {
+  return material != nullptr && material->young_modulus.has_value();
+}
+
+double ModulusOf(const ImportedMaterial* material) {
+  return HasElasticity(material) ? *material->young_modulus : kSoftModulus;
+}
+
 std::string MaterialText(const ImportedMaterial* material) {
-  const bool is_known = material != nullptr && material->young_modulus.has_value();
+  const bool is_known = HasElasticity(material);
   const double density =
       material != nullptr && material->density ? *material->density : kWaterDensity;
   return fmt::format(
       "density: {} kg/m^3{}\nmaterial: {{law: {}, young_modulus: {} Pa, poisson_ratio: {}}}{}\n",
       density, material != nullptr && material->density ? "" : "   # TO DO: not in the file",
-      SaintVenantKirchhoffCard().type, is_known ? *material->young_modulus : kSoftModulus,
+      SaintVenantKirchhoffCard().type, ModulusOf(material),
       is_known ? *material->poisson_ratio : kSoftPoisson,
       is_known ? "" : "   # TO DO: not in the file");
 }
@@ -82,8 +91,7 @@ std::string Experiment(const ImportedModel& model, const std::string& name,
       "effects: []                       # TO DO: gravity, for instance; lacuna effects lists "
       "all\n",
       model.mesh.Order());
-  const double start =
-      material != nullptr && material->young_modulus ? *material->young_modulus : kSoftModulus;
+  const double start = ModulusOf(material);
   text += fmt::format(
       "fit:\n  parameters:\n    - {{name: young_modulus, min: {} Pa, max: {} Pa}}\n"
       "recordings:\n  - recording: .                  # the recording.yaml beside this file\n"
@@ -120,17 +128,13 @@ std::vector<std::string> WriteImportedExperiment(const ImportedModel& model,
         fmt::format("{}\n", fmt::join(model.node_sets[k].nodes, "\n"));
   MakeFolder(folder);
   const std::string mesh = name + ".msh";
-  for (const auto& [file, text] : texts)
+  std::vector<std::string> written{mesh};
+  for (const auto& [file, text] : texts) written.push_back(file);
+  for (const std::string& file : written)
     if (std::filesystem::exists(folder / file))
       throw InputError({(folder / file).string()}, "exists already; choose another --output");
-  if (std::filesystem::exists(folder / mesh))
-    throw InputError({(folder / mesh).string()}, "exists already; choose another --output");
   WriteTetMesh(folder / mesh, model.mesh);
-  std::vector<std::string> written{mesh};
-  for (const auto& [file, text] : texts) {
-    WriteFileAtomically(folder / file, text);
-    written.push_back(file);
-  }
+  for (const auto& [file, text] : texts) WriteFileAtomically(folder / file, text);
   return written;
 }
 

@@ -27,10 +27,7 @@ std::string Name(std::string_view text) {
   text = Trimmed(text);
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
     text = text.substr(1, text.size() - 2);
-  std::string name(text);
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
-  return name;
+  return InCapitals(text);
 }
 
 std::vector<std::string_view> Split(std::string_view text) {
@@ -44,6 +41,13 @@ std::vector<std::string_view> Split(std::string_view text) {
 }
 
 }  // namespace
+
+std::string InCapitals(std::string_view text) {
+  std::string capitals(text);
+  std::transform(capitals.begin(), capitals.end(), capitals.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+  return capitals;
+}
 
 InpLines::InpLines(const std::filesystem::path& file) : file_(file), content_(ReadTextFile(file)) {}
 

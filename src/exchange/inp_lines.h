@@ -15,6 +15,8 @@
 
 namespace lacuna {
 
+std::string InCapitals(std::string_view text);
+
 class InpLines {
  public:
   // Reads the whole file.

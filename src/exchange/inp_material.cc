@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 #include <glog/logging.h>
 
-#include <cmath>
-#include <iterator>
-
 #include "fem/lame_constants.h"
 
 namespace lacuna {
@@ -15,11 +12,6 @@ using Kind = PortableEffect::Kind;
 using How = Counterpart::Kind;
 
 double BulkModulus(const LameConstants& lame) { return lame.lambda + 2 * lame.mu / 3; }
-
-// Whether β K of the model's elasticity is the damping: the moduli are proportional.
-bool IsProportional(const PortableEffect& damping, const PortableEffect& elasticity) {
-  return std::abs(damping.values[2] - elasticity.values[1]) <= 1e-9;
-}
 
 Counterpart ElasticityCounterpart(const PortableEffect& law, InpDialect dialect) {
   const bool is_calculix = dialect == InpDialect::kCalculix;
@@ -55,7 +47,7 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
     case Kind::kMassDamping:
       return {effect.name, How::kExact, "*DAMPING, ALPHA"};
     case Kind::kStiffnessDamping:
-      if (!IsProportional(effect, model.Elasticity()))
+      if (!model.IsProportional(effect))
         return {
             effect.name, How::kNone,
             "its Poisson's ratio is not that of the material, so that it is not proportional to "
@@ -144,14 +136,10 @@ std::string InpMaterial(const PortableModel& model, InpDialect dialect) {
   AppendElasticity(model, has_branches, &text);
   if (has_branches) AppendBranches(model, &text);
   text += fmt::format("*DENSITY\n{}\n", InpNumber(model.density));
-  double alpha = 0, beta = 0;
-  for (const PortableEffect& effect : model.effects) {
-    if (effect.kind == Kind::kMassDamping) alpha += effect.values[0];
-    if (effect.kind == Kind::kStiffnessDamping && IsProportional(effect, model.Elasticity()))
-      beta += effect.values[0] * effect.values[1] / model.Elasticity().values[0];
-  }
-  if (alpha > 0 || beta > 0)
-    text += fmt::format("*DAMPING, ALPHA={}, BETA={}\n", InpNumber(alpha), InpNumber(beta));
+  const RayleighDamping damping = model.Damping();
+  if (damping.alpha > 0 || damping.beta > 0)
+    text += fmt::format("*DAMPING, ALPHA={}, BETA={}\n", InpNumber(damping.alpha),
+                        InpNumber(damping.beta));
   return text;
 }
 

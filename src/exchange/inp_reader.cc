@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 #include <string_view>
@@ -127,7 +126,7 @@ class Reader {
       }
       for (size_t k = 0; k < lines_.Fields().size(); ++k) {
         if (lines_.Fields()[k].empty()) continue;
-        const auto other = sets->find(Upper(lines_.Fields()[k]));
+        const auto other = sets->find(InCapitals(lines_.Fields()[k]));
         if (other != sets->end()) {
           if (&other->second != set) set->insert(other->second.begin(), other->second.end());
           continue;
@@ -145,13 +144,6 @@ class Reader {
   // Whether an unknown number may be that of an element of a type that is not read.
   bool MayBeSkipped(const Numbers& numbers) const {
     return &numbers == &elements_ && skips_elements_;
-  }
-
-  static std::string Upper(std::string_view text) {
-    std::string upper(text);
-    std::transform(upper.begin(), upper.end(), upper.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
-    return upper;
   }
 
   // first, last, step: all of these numbers must exist.

@@ -16,7 +16,6 @@
 namespace lacuna {
 namespace {
 
-constexpr double kRampTime = 1;  // s, of the first step
 constexpr const char* kAxes = "XYZ";
 
 // The shortest decimal number without exponent that is read back as the same double.
@@ -57,7 +56,7 @@ void AppendAmplitude(const std::string& name, const std::vector<double>& times,
   fmt::format_to(std::back_inserter(*text), "*AMPLITUDE, NAME={}, TIME=TOTAL TIME\n0., 0.", name);
   for (size_t k = 0; k < times.size(); ++k)
     fmt::format_to(std::back_inserter(*text), "{}{}, {}", (k + 1) % kPerLine == 0 ? "\n" : ", ",
-                   InpNumber(kRampTime + times[k]),
+                   InpNumber(kInpRampTime + times[k]),
                    InpNumber(values[static_cast<Eigen::Index>(k)]));
   *text += "\n";
 }
@@ -77,10 +76,7 @@ void AddGrip(const PortableGrip& grip, const std::string& set, const PortableMod
   const size_t columns = is_translation ? 1 : grip.part.nodes.size();
   for (size_t column = 0; column < columns; ++column)
     for (int axis = 0; axis < 3; ++axis) {
-      Eigen::VectorXd values(static_cast<Eigen::Index>(model.times.size()));
-      for (size_t k = 0; k < model.times.size(); ++k)
-        values[static_cast<Eigen::Index>(k)] =
-            grip.displacements[k](axis, static_cast<Eigen::Index>(column));
+      const Eigen::VectorXd values = grip.Series(axis, static_cast<Eigen::Index>(column));
       const std::string place = is_translation ? set : std::to_string(grip.part.nodes[column] + 1);
       if (values.isZero(0)) {
         sections->fixed += fmt::format("{0}, {1}, {1}\n", place, axis + 1);
@@ -212,9 +208,7 @@ std::string InpText(const PortableModel& model, InpDialect dialect) {
                                  model.Elasticity().name));
   const std::vector<std::string> sets = InpSetNames(model.regions);
   std::string text = fmt::format("*HEADING\nlacuna {}\n", model.run.substr(0, 60));
-  text += Commented(ProvenanceLines(model), "** ");
-  text += "** The parts of the model:\n";
-  text += Commented(CounterpartLines(InpCounterparts(model, dialect)), "** ");
+  text += FileComment(model, InpCounterparts(model, dialect), "** ");
   AppendMesh(model.mesh, &text);
   Sections sections;
   for (size_t k = 0; k < model.regions.size(); ++k) {

@@ -18,13 +18,16 @@
 
 namespace lacuna {
 
+// The duration of the first step, s, after which the motion begins.
+inline constexpr double kInpRampTime = 1;
+
 // The names of node sets for these parts: capital letters, digits and underscores, beginning with a
 // letter, unique and at most 80 characters long.
 std::vector<std::string> InpSetNames(const std::vector<NamedNodes>& parts);
 
 // The text of the file. Parts that InpCounterparts lists as missing are left out and named in the
-// comment at the top. Throws InputError where the elasticity law itself has no counterpart, or
-// where the frames show no motion after the start of a dynamic model.
+// comment at the top. Throws InputError where the elasticity law itself has no
+// counterpart.
 std::string InpText(const PortableModel& model, InpDialect dialect);
 
 }  // namespace lacuna

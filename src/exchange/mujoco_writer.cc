@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <vector>
 
 #include "core/error.h"
@@ -12,10 +11,6 @@ namespace {
 
 using Kind = PortableEffect::Kind;
 using How = Counterpart::Kind;
-
-bool IsProportional(const PortableEffect& damping, const PortableModel& model) {
-  return std::abs(damping.values[2] - model.Elasticity().values[1]) <= 1e-9;
-}
 
 Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model) {
   switch (effect.kind) {
@@ -33,7 +28,7 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
     case Kind::kGravity:
       return {effect.name, How::kExact, "gravity of option"};
     case Kind::kStiffnessDamping:
-      if (!IsProportional(effect, model))
+      if (!model.IsProportional(effect))
         return {effect.name, How::kNone, "its Poisson's ratio is not that of the material"};
       return {effect.name, How::kConverted,
               "damping of elasticity = beta E_damping/E, times the stiffness"};
@@ -46,10 +41,7 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
 
 Counterparts MujocoCounterparts(const PortableModel& model) {
   Counterparts parts;
-  if (model.mesh.Order() == 2)
-    parts.push_back(
-        {"quadratic elements", How::kNone,
-         "linear ones of the corner nodes are written, which are too stiff in bending"});
+  AddLostMidpoints(model, &parts);
   for (const PortableEffect& effect : model.effects)
     parts.push_back(EffectCounterpart(effect, model));
   parts.push_back({"masses", How::kConverted, "every node gets the same share of the mass"});
@@ -71,23 +63,13 @@ std::string MujocoText(const PortableModel& given) {
   const PortableEffect& law = model.Elasticity();
   if (!law.IsElasticity())
     throw InputError(law.name + ": this elasticity law cannot be written into a MuJoCo model");
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  double beta = 0;
-  for (const PortableEffect& effect : model.effects) {
-    if (effect.kind == Kind::kGravity) gravity += effect.values;
-    if (effect.kind == Kind::kStiffnessDamping && IsProportional(effect, model))
-      beta += effect.values[0] * effect.values[1] / law.values[0];
-  }
-  std::string comment = Commented(ProvenanceLines(given), "  ") + "  The parts of the model:\n" +
-                        Commented(CounterpartLines(MujocoCounterparts(given)), "  ");
-  // Two hyphens end a comment in XML.
-  for (size_t at = 0; (at = comment.find("--", at)) != std::string::npos;) comment.erase(at, 1);
+  const Eigen::Vector3d gravity = model.Gravity();
   std::vector<int> pins;
   for (const PortableGrip& grip : model.grips)
     if (grip.displacements.empty())
       pins.insert(pins.end(), grip.part.nodes.begin(), grip.part.nodes.end());
   return fmt::format(
-      "<!--\n{}-->\n<mujoco model=\"lacuna\">\n"
+      "{}<mujoco model=\"lacuna\">\n"
       "  <option timestep=\"{}\" gravity=\"{} {} {}\" integrator=\"implicitfast\"/>\n"
       "  <worldbody>\n"
       "    <flexcomp name=\"body\" type=\"gmsh\" file=\"model.msh\" dim=\"3\" mass=\"{}\" "
@@ -95,8 +77,8 @@ std::string MujocoText(const PortableModel& given) {
       "      <contact contype=\"0\" conaffinity=\"0\" selfcollide=\"none\" internal=\"false\"/>\n"
       "      <elasticity young=\"{}\" poisson=\"{}\" damping=\"{}\"/>\n{}"
       "    </flexcomp>\n  </worldbody>\n</mujoco>\n",
-      comment, model.time_step, gravity.x(), gravity.y(), gravity.z(), model.node_mass.sum(),
-      law.values[0], law.values[1], beta,
+      XmlComment(given, MujocoCounterparts(given)), model.time_step, gravity.x(), gravity.y(),
+      gravity.z(), model.node_mass.sum(), law.values[0], law.values[1], model.Damping().beta,
       pins.empty() ? "" : fmt::format("      <pin id=\"{}\"/>\n", fmt::join(pins, " ")));
 }
 

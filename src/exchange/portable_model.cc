@@ -126,6 +126,34 @@ const PortableEffect* PortableModel::Find(PortableEffect::Kind kind) const {
   return nullptr;
 }
 
+Eigen::VectorXd PortableGrip::Series(Eigen::Index axis, Eigen::Index node) const {
+  Eigen::VectorXd series(static_cast<Eigen::Index>(displacements.size()));
+  for (Eigen::Index k = 0; k < series.size(); ++k)
+    series[k] = displacements[static_cast<size_t>(k)](axis, node);
+  return series;
+}
+
+bool PortableModel::IsProportional(const PortableEffect& effect) const {
+  return std::abs(effect.values[2] - Elasticity().values[1]) <= 1e-9;
+}
+
+Eigen::Vector3d PortableModel::Gravity() const {
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
+  for (const PortableEffect& effect : effects)
+    if (effect.kind == Kind::kGravity) gravity += effect.values;
+  return gravity;
+}
+
+RayleighDamping PortableModel::Damping() const {
+  RayleighDamping damping;
+  for (const PortableEffect& effect : effects) {
+    if (effect.kind == Kind::kMassDamping) damping.alpha += effect.values[0];
+    if (effect.kind == Kind::kStiffnessDamping && IsProportional(effect))
+      damping.beta += effect.values[0] * effect.values[1] / Elasticity().values[0];
+  }
+  return damping;
+}
+
 PortableModel DescribeModel(const Model& model, const TetMesh& mesh,
                             const PredictionOptions& options, const std::vector<double>& frames,
                             const PortableNames& names) {

@@ -57,6 +57,8 @@ struct PortableGrip {
 
   // Whether all nodes have the same displacement at all times, up to rounding.
   bool IsTranslation() const;
+  // A component of the displacement of one node of `part` at all times, m.
+  Eigen::VectorXd Series(Eigen::Index axis, Eigen::Index node) const;
 };
 
 // A force that is spread over nodes with a fixed distribution.
@@ -72,6 +74,11 @@ struct PortableParameter {
   std::vector<double> values;
   bool fitted = false;
   double low = 0, high = 0;  // of a fitted parameter
+};
+
+// Damping forces α M v + β K v with the tangent stiffness K.
+struct RayleighDamping {
+  double alpha = 0, beta = 0;  // 1/s, s
 };
 
 struct PortableModel {
@@ -99,6 +106,12 @@ struct PortableModel {
   const PortableEffect& Elasticity() const { return effects.front(); }
   // The first effect of this kind, or null.
   const PortableEffect* Find(PortableEffect::Kind kind) const;
+  // Whether the Poisson's ratio of stiffness damping or of a branch is that of the material, so
+  // that its moduli are proportional to those of the material.
+  bool IsProportional(const PortableEffect& effect) const;
+  Eigen::Vector3d Gravity() const;  // m/s²
+  // The damping of the effects that are proportional; β refers to the material's own modulus.
+  RayleighDamping Damping() const;
   double Duration() const { return times.back(); }
 };
 

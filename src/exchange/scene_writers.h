@@ -18,6 +18,9 @@ namespace lacuna {
 // each end of its edge. A linear model is returned unchanged.
 PortableModel WithLinearElements(const PortableModel& model);
 
+// What WithLinearElements loses of a quadratic model.
+void AddLostMidpoints(const PortableModel& model, Counterparts* parts);
+
 // The texts name the mesh file "model.msh" (Gmsh 2.2), which is that of WithLinearElements; the USD
 // text holds the mesh itself, with points in single precision.
 Counterparts SofaCounterparts(const PortableModel& model);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <iterator>
 
 #include "core/error.h"
@@ -19,10 +18,6 @@ bool IsConstant(const PortableLoad& load) {
   const double size = load.force.cwiseAbs().maxCoeff();
   return (load.force.colwise() - Eigen::Vector3d(load.force.col(0))).cwiseAbs().maxCoeff() <=
          1e-12 * size;
-}
-
-bool IsProportional(const PortableEffect& damping, const PortableModel& model) {
-  return std::abs(damping.values[2] - model.Elasticity().values[1]) <= 1e-9;
 }
 
 Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel& model) {
@@ -46,7 +41,7 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
     case Kind::kMassDamping:
       return {effect.name, How::kExact, "rayleighMass"};
     case Kind::kStiffnessDamping:
-      if (!IsProportional(effect, model))
+      if (!model.IsProportional(effect))
         return {effect.name, How::kNone, "its Poisson's ratio is not that of the material"};
       return {effect.name, How::kConverted,
               "rayleighStiffness = beta E_damping/E, times the tangent stiffness"};
@@ -105,10 +100,7 @@ std::string LoadText(const PortableLoad& load) {
 
 Counterparts SofaCounterparts(const PortableModel& model) {
   Counterparts parts;
-  if (model.mesh.Order() == 2)
-    parts.push_back(
-        {"quadratic elements", How::kNone,
-         "linear ones of the corner nodes are written, which are too stiff in bending"});
+  AddLostMidpoints(model, &parts);
   for (const PortableEffect& effect : model.effects)
     parts.push_back(EffectCounterpart(effect, model));
   for (const PortableGrip& grip : model.grips) {
@@ -132,16 +124,9 @@ Counterparts SofaCounterparts(const PortableModel& model) {
 
 std::string SofaText(const PortableModel& given) {
   const PortableModel model = WithLinearElements(given);
-  double alpha = 0, beta = 0;
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  for (const PortableEffect& effect : model.effects) {
-    if (effect.kind == Kind::kMassDamping) alpha += effect.values[0];
-    if (effect.kind == Kind::kStiffnessDamping && IsProportional(effect, model))
-      beta += effect.values[0] * effect.values[1] / model.Elasticity().values[0];
-    if (effect.kind == Kind::kGravity) gravity += effect.values;
-  }
-  std::string text = Commented(ProvenanceLines(given), "# ") + "# The parts of the model:\n" +
-                     Commented(CounterpartLines(SofaCounterparts(given)), "# ");
+  const RayleighDamping damping = model.Damping();
+  const Eigen::Vector3d gravity = model.Gravity();
+  std::string text = FileComment(given, SofaCounterparts(given), "# ");
   text += fmt::format(
       "import os\n\n\ndef createScene(root):\n"
       "    root.gravity = [{}, {}, {}]\n    root.dt = {}\n"
@@ -157,8 +142,8 @@ std::string SofaText(const PortableModel& given) {
       "    body.addObject('MechanicalObject', template='Vec3d', src='@loader')\n"
       "    body.addObject('MeshMatrixMass', massDensity={}, lumping=True)\n"
       "    body.addObject({})\n",
-      gravity.x(), gravity.y(), gravity.z(), model.time_step, alpha, beta, model.density,
-      ForceField(model.Elasticity()));
+      gravity.x(), gravity.y(), gravity.z(), model.time_step, damping.alpha, damping.beta,
+      model.density, ForceField(model.Elasticity()));
   for (const PortableGrip& grip : model.grips) text += GripText(grip, model);
   for (const PortableLoad& load : model.loads)
     if (IsConstant(load)) text += LoadText(load);

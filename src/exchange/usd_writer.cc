@@ -39,13 +39,10 @@ Counterparts UsdCounterparts(const PortableModel& model) {
 std::string UsdText(const PortableModel& given) {
   const PortableModel model = WithLinearElements(given);
   const BoundarySurface boundary = ExtractBoundary(model.mesh);
-  std::vector<std::string> comment = ProvenanceLines(given);
-  comment.push_back("The parts of the model:");
-  for (const std::string& line : CounterpartLines(UsdCounterparts(given))) comment.push_back(line);
   std::string text =
       "#usda 1.0\n(\n    defaultPrim = \"body\"\n    metersPerUnit = 1\n    kilogramsPerUnit = 1\n"
       "    upAxis = \"Z\"\n)\n" +
-      Commented(comment, "# ") +
+      FileComment(given, UsdCounterparts(given), "# ") +
       "def TetMesh \"body\" (\n    prepend apiSchemas = [\"PhysicsMassAPI\"]\n)\n{\n";
   const auto end = std::back_inserter(text);
   fmt::format_to(end, "    float physics:density = {}\n    point3f[] points = [", model.density);
