@@ -77,27 +77,26 @@ class Fitter {
 
   bool IsOutOfBudget() const { return budget_.IsUsedUp(TimeStep()); }
 
-  Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start,
-                    const CalibrationOptions& options) {
+  Calibration Stage(const std::string& name, double horizon, const Eigen::VectorXd& start) {
     progress_.Begin(name, 0);
-    Calibration calibration = problem_.HasScans() ? FitScans(horizon, {start, 1, 0, ""}, options)
-                                                  : FitOnce(horizon, start, options);
+    Calibration calibration =
+        problem_.HasScans() ? FitScans(horizon, {start, 1, 0, ""}) : FitOnce(horizon, start, {});
     return Finished(std::move(calibration));
   }
 
   Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
-    if (!problem_.HasScans()) return Stage(name, ShortHorizon(problem_), start, {});
+    if (!problem_.HasScans()) return Stage(name, ShortHorizon(problem_), start);
     progress_.Begin(name, 0);
     const FarStart far = FindFarStart(problem_, start);
     budget_.Spend(far.predictions, TimeStep());
     evaluations_ += far.predictions;
     searched_ = far.summary;
-    return Finished(FitScans(ShortHorizon(problem_), far, {}));
+    return Finished(FitScans(ShortHorizon(problem_), far));
   }
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
     const Eigen::VectorXd& near = beginning.parameters.size() > 0 ? beginning.parameters : start;
-    Calibration calibration = Stage("fit", kUnlimited, near, {.near_rms = kLocalMinimumSuspected});
+    Calibration calibration = Stage("fit", kUnlimited, near);
     // The initial error is that at the caller's start values, not at the end of the first part.
     calibration.start_rms = Left(problem_, start);
     return calibration;
@@ -153,13 +152,13 @@ class Fitter {
     return values;
   }
 
-  Calibration FitScans(double horizon, const FarStart& start, const CalibrationOptions& options) {
+  Calibration FitScans(double horizon, const FarStart& start) {
     Calibration calibration;
     Eigen::VectorXd values = Approach(horizon, start);
-    CalibrationOptions of_round = options;
-    for (int iterations = 0; iterations < options.max_iterations;) {
-      of_round.max_iterations = std::min(kIterationsOfRound, options.max_iterations - iterations);
-      calibration = FitOnce(horizon, values, of_round);
+    const int most = CalibrationOptions{}.max_iterations;
+    for (int iterations = 0; iterations < most;) {
+      calibration = FitOnce(horizon, values,
+                            {.max_iterations = std::min(kIterationsOfRound, most - iterations)});
       if (calibration.estimates.empty() || calibration.is_out_of_budget) return calibration;
       const double moved = LargestChange(problem_.parameters(), calibration, values);
       values = calibration.parameters;
@@ -214,7 +213,7 @@ Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd
 
 Calibration RefineFit(const CalibrationProblem& problem, const Eigen::VectorXd& near,
                       Progress* progress, FitBudget* budget) {
-  return Fitter(problem, progress, budget).Stage("fit", kUnlimited, near, {.near_rms = kUnlimited});
+  return Fitter(problem, progress, budget).Stage("fit", kUnlimited, near);
 }
 
 Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,

@@ -29,7 +29,11 @@ constexpr int kMostSteps = 4;
 // The parameters are first sought with elements whose volume is smaller by kScoutRatio only, where
 // the finer mesh has a ratio that is larger by more than kScoutBelow.
 constexpr double kScoutRatio = 3, kScoutBelow = 1.5;
-constexpr double kSettled = 1;  // σ², smallest reduction of ‖difference‖² by a step
+// A step that promises to remove less than this share of ‖difference‖², or less than kSettled (σ²),
+// is not simulated but added to first order. What the parameters can remove is no longer large then
+// beside what remains, and every simulation of the other mesh costs more than several of the
+// study's.
+constexpr double kLeastReduction = 0.5, kSettled = 1;
 constexpr double kShortestStep = 1.0 / 4;  // fraction of a full step
 
 // The ratio of the element volumes: the study's over those of the other mesh.
@@ -152,7 +156,11 @@ class ChangeSearch {
       const Eigen::VectorXd& left = best.difference;
       const Eigen::VectorXd way = BestChange(model_, left, by_, change, prior_) - change;
       const double promised = left.squaredNorm() - (left + by_ * way).squaredNorm();
-      if (!(promised > kSettled)) break;
+      if (!(promised > std::max(kSettled, kLeastReduction * left.squaredNorm()))) {
+        change += way;
+        best.residual += misfit_.jacobian.leftCols(way.size()) * way;
+        break;
+      }
       Tried there = At(other, change + length * way, &latest);
       if (there.difference.size() > 0 && there.difference.squaredNorm() < left.squaredNorm()) {
         change += length * way;

@@ -100,7 +100,6 @@ ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVari
     amount.name = "nuisance";
     amount.start = amount.prior_mean = prior.mean;
     amount.prior_deviation = amount.typical = prior.deviation;
-    amount.is_linear = true;
     parameters_.push_back(amount);
   }
 }
@@ -217,8 +216,7 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
     return Calibrate(parameters, predict,
                      {.max_iterations = holds_effect ? kHoldIterations : kIterations,
                       .cost_tolerance = kTolerance,
-                      .max_predictions = kThresholds.refit.most_predictions,
-                      .near_rms = kInfinity});
+                      .max_predictions = kThresholds.refit.most_predictions});
   });
   baseline_.progress->End(calibration.usable ? "" : calibration.message);
   return calibration;

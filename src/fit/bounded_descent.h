@@ -1,9 +1,14 @@
 // The minimiser of a calibration: least squares with priors and bounds.
 //
-// Ceres minimises ½ ‖r(θ)‖² plus the priors in rounds, over unbounded coordinates in which no step
-// can leave the bounds. Between the rounds, Gauss–Newton steps with an active set
-// (active_bounds.h) put parameters on their bounds or release them, which the unbounded coordinates
-// cannot do.
+// Levenberg–Marquardt steps (Marquardt, SIAM J. Appl. Math. 11, 1963) within the bounds: each step
+// minimises the quadratic model of the cost, damped in proportion to the diagonal of the
+// information matrix, over the box that the bounds leave (active_bounds.h). Parameters therefore
+// reach their bounds, stay on them and leave them without a change of variables. The first steps
+// are undamped; damping begins with the first step that does not reduce the cost.
+//
+// A prediction costs much more than a step, so that few are made: a trial point is evaluated with
+// its Jacobian, because it usually becomes the next point, except after a rejected step; and a step
+// that promises too little is not tried.
 #ifndef LACUNA_FIT_BOUNDED_DESCENT_H_
 #define LACUNA_FIT_BOUNDED_DESCENT_H_
 
@@ -14,24 +19,24 @@
 #include "fit/calibrated_parameter.h"
 #include "fit/calibration_options.h"
 #include "fit/prediction_function.h"
-#include "fit/secant_predictions.h"
 
 namespace lacuna {
 
 struct DescentEnd {
-  Eigen::VectorXd parameters;     // θ, SI, within the bounds
+  Eigen::VectorXd parameters;     // θ, SI, within the bounds; the best that was found
+  Prediction prediction;          // at these parameters, with its Jacobian
   bool usable = false;            // whether the search has converged
   std::string message;            // why it has not
-  int iterations = 0;             // iterations of Ceres in all rounds
+  int iterations = 0;             // steps that were tried
+  int predictions = 0;            // evaluations of the prediction function
   bool is_out_of_budget = false;  // CalibrationOptions::max_predictions has ended it
 };
 
 // Searches from the starts of the parameters, of which there must be at least one. `first` is the
-// prediction at the starts and must be usable. With `is_near`, the first rounds use Broyden's
-// updates in place of exact Jacobians.
+// prediction at the starts; it must be usable and have its Jacobian.
 DescentEnd Descend(const std::vector<CalibratedParameter>& parameters,
-                   const CalibrationOptions& options, const Prediction& first, bool is_near,
-                   SecantPredictions* predictions);
+                   const CalibrationOptions& options, Prediction first,
+                   const PredictionFunction& predict);
 
 }  // namespace lacuna
 

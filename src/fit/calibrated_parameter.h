@@ -24,7 +24,6 @@ struct CalibratedParameter {
   // A change of φ that would matter to the user, > 0. The fit scales the parameter by it, and the
   // verdict kFlat compares the uncertainty with it.
   double typical = 1;
-  bool is_linear = false;  // ∂r/∂θ is the same for all values, so it is evaluated only once
 };
 
 // φ of a value θ. On a logarithmic scale the value must be positive.

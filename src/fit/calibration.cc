@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "fit/bounded_descent.h"
-#include "fit/secant_predictions.h"
 
 namespace lacuna {
 namespace {
@@ -162,34 +161,23 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     CHECK_GT(parameter.typical, 0) << parameter.name;
     calibration.parameters[k] = parameter.start;
   }
-  SecantPredictions predictions(predict, parameters);
-  const Prediction& first = predictions.At(calibration.parameters);
-  calibration.predictions = predictions.count();
-  if (!first.usable) {
-    calibration.message = "no prediction at the start: " + first.message;
-    return calibration;
-  }
-  calibration.start_rms = RootMeanSquare(first.residual);
-  if (count > 0) {
-    const bool is_near = calibration.start_rms <= options.near_rms;
-    const DescentEnd end = Descend(parameters, options, first, is_near, &predictions);
-    calibration.parameters = end.parameters;
-    calibration.usable = end.usable;
-    calibration.message = end.message;
-    calibration.iterations = end.iterations;
-    calibration.is_out_of_budget = end.is_out_of_budget;
-  } else {
-    calibration.usable = true;
-  }
-
-  const Prediction& last = predictions.ExactAt(calibration.parameters);
-  calibration.predictions = predictions.count();
+  Prediction last = predict(calibration.parameters, /*with_jacobian=*/count > 0);
+  calibration.predictions = 1;
   if (!last.usable) {
-    // The search asked for the residual only, and its derivative is not available there: a step at
-    // the limit of stability, for example.
-    calibration.usable = false;
-    calibration.message = "the motion at the solution cannot be linearised: " + last.message;
+    calibration.message = "no prediction at the start: " + last.message;
     return calibration;
+  }
+  calibration.start_rms = RootMeanSquare(last.residual);
+  calibration.usable = true;
+  if (count > 0) {
+    DescentEnd end = Descend(parameters, options, std::move(last), predict);
+    calibration.parameters = std::move(end.parameters);
+    calibration.usable = end.usable;
+    calibration.message = std::move(end.message);
+    calibration.iterations = end.iterations;
+    calibration.predictions += end.predictions;
+    calibration.is_out_of_budget = end.is_out_of_budget;
+    last = std::move(end.prediction);
   }
   calibration.rms = RootMeanSquare(last.residual);
   calibration.inflation = std::max(1.0, calibration.rms);

@@ -2,8 +2,9 @@
 //
 // Minimises ½ ‖r(θ)‖² + ½ Σ_k ((φ_k − φ⁰_k)/s_k)² over φ, where φ_k is θ_k or its logarithm, r is
 // the whitened residual (prediction_function.h) and the second term holds the Gaussian priors
-// (Tarantola, Inverse Problem Theory, SIAM 2005, §3.2). The minimiser is Ceres with the analytic
-// Jacobian ∂r/∂θ (bounded_descent.h); uncertainties come from the linearisation at the solution.
+// (Tarantola, Inverse Problem Theory, SIAM 2005, §3.2). The minimiser takes
+// Levenberg–Marquardt steps within the bounds, with the analytic Jacobian ∂r/∂θ
+// (bounded_descent.h); uncertainties come from the linearisation at the solution.
 #ifndef LACUNA_FIT_CALIBRATION_H_
 #define LACUNA_FIT_CALIBRATION_H_
 
@@ -23,7 +24,7 @@ struct Calibration {
   bool usable = false;
   std::string message;                       // why the result is not usable
   bool is_out_of_budget = false;             // CalibrationOptions::max_predictions ended the search
-  int iterations = 0;                        // iterations of the optimiser
+  int iterations = 0;                        // steps of the optimiser that were tried
   int predictions = 0;                       // evaluations of the prediction function
   Eigen::VectorXd parameters;                // θ, SI
   std::vector<ParameterEstimate> estimates;  // empty if the first prediction failed
