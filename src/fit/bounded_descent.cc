@@ -12,16 +12,18 @@
 namespace lacuna {
 namespace {
 
-// Damping, as a fraction of the diagonal of the information matrix, after the first rejected step.
-// It grows by a factor that doubles with each consecutive rejection, because a prediction is
-// expensive and the right order of magnitude unknown, and shrinks after steps that gained most of
-// what they promised. Below kLeastDamping it is dropped.
-constexpr double kFirstDamping = 1, kDampingFactor = 4, kLeastDamping = 0.01;
-// The fractions of the promised gain above which the damping shrinks and below which it grows.
+// The fractions of the promised gain above which a step may become longer and below which the next
+// one becomes shorter, and the factors by which its length changes. After a rejected step the
+// factor is that of the parabola through the two costs and the slope between them, within limits,
+// since a prediction is expensive and the right order of magnitude unknown.
 constexpr double kGoodGain = 0.75, kPoorGain = 0.25;
+constexpr double kLonger = 3, kShorter = 0.5, kMuchShorter = 0.1;
 // A step changes no parameter by more than this many typical changes: far outside of the region
 // that the data determine, a simulation takes long or fails.
 constexpr double kLongestStep = 100;
+// Where a full step promises enough but the radius leaves only little of it, as in a curved valley,
+// the search goes on to this fraction of the promise at which it ends elsewhere.
+constexpr double kLeastOfCurved = 0.1;
 // A search whose steps become shorter than this, in typical changes, ends.
 constexpr double kShortestStep = 1e-6;
 
@@ -60,11 +62,15 @@ class BoundedDescent {
     QuadraticCost model = Model();
     int rejected = 0;           // consecutive steps
     std::string failed_beside;  // why the last of them could not be predicted
-    for (double damping = 0;;) {
-      const Eigen::VectorXd step = Step(model, damping);
+    for (double radius = kInfinity;;) {
+      const Eigen::VectorXd step = Step(model, radius);
+      const double reach = LengthOf(step, model);
       const double promised = model.GainOf(step);  // fraction of the cost
       const double length = step.cwiseQuotient(typical_).lpNorm<Eigen::Infinity>();
-      if (!(promised > least_gain) || length < kShortestStep) {
+      const bool gains_little =
+          !(promised > kLeastOfCurved * least_gain) ||
+          (!(promised > least_gain) && !(model.GainOf(Step(model, kInfinity)) > least_gain));
+      if (gains_little || length < kShortestStep) {
         // If nothing near the best parameters can be predicted, they need not be a minimum.
         end_.usable = failed_beside.empty();
         if (!end_.usable)
@@ -84,16 +90,18 @@ class BoundedDescent {
         end_.parameters = values;
         end_.prediction = std::move(there);
         cost_ = cost;
-        if (gained > kGoodGain * promised)
-          damping = damping > kLeastDamping ? damping / kDampingFactor : 0;
+        if (gained > kGoodGain * promised && rejected == 0)
+          radius = std::max(radius, kLonger * reach);
         else if (gained < kPoorGain * promised)
-          damping = std::max(kFirstDamping, damping * kDampingFactor);
+          radius = kShorter * reach;
         rejected = 0;
         failed_beside.clear();
         model = Model();
       } else {
         failed_beside = there.usable ? "" : there.message;
-        damping = std::max(kFirstDamping, damping * std::pow(2, rejected) * kDampingFactor);
+        // promised / (2 promised − gained), where the cost falls by 2 promised per step at first.
+        const double turn = gained > -kInfinity ? promised / (2 * promised - gained) : 0;
+        radius = std::clamp(turn, kMuchShorter, kShorter) * reach;
         ++rejected;
       }
     }
@@ -160,8 +168,26 @@ class BoundedDescent {
     return model;
   }
 
-  // The step of φ that minimises the damped model within the bounds.
-  Eigen::VectorXd Step(const QuadraticCost& model, double damping) const {
+  // The length of a step relative to the curvature of each parameter alone: ‖√(diag H) step‖.
+  static double LengthOf(const Eigen::VectorXd& step, const QuadraticCost& model) {
+    return step.cwiseProduct(model.information.diagonal().cwiseSqrt()).norm();
+  }
+
+  // The step of φ within the bounds that minimises the model and is not longer than `radius`: that
+  // of the model with λ diag H added to H, for the least λ ≥ 0 that makes it short enough.
+  Eigen::VectorXd Step(const QuadraticCost& model, double radius) const {
+    Eigen::VectorXd step = DampedStep(model, 0);
+    if (!(LengthOf(step, model) > radius)) return step;
+    double low = -8, high = 8;  // of log10 λ
+    while (high - low > 0.05) {
+      const double middle = 0.5 * (low + high);
+      step = DampedStep(model, std::pow(10, middle));
+      (LengthOf(step, model) > radius ? low : high) = middle;
+    }
+    return DampedStep(model, std::pow(10, high));
+  }
+
+  Eigen::VectorXd DampedStep(const QuadraticCost& model, double damping) const {
     // In units of the typical changes, in which directions without influence are told from others.
     QuadraticCost scaled{model.cost, typical_.cwiseProduct(model.gradient),
                          typical_.asDiagonal() * model.information * typical_.asDiagonal()};

@@ -3,8 +3,9 @@
 // Levenberg–Marquardt steps (Marquardt, SIAM J. Appl. Math. 11, 1963) within the bounds: each step
 // minimises the quadratic model of the cost, damped in proportion to the diagonal of the
 // information matrix, over the box that the bounds leave (active_bounds.h). Parameters therefore
-// reach their bounds, stay on them and leave them without a change of variables. The first steps
-// are undamped; damping begins with the first step that does not reduce the cost.
+// reach their bounds, stay on them and leave them without a change of variables. The damping is the
+// least that keeps a step within a trust region, which is unlimited until the first step that does
+// not reduce the cost (Moré, Lect. Notes Math. 630, 1978).
 //
 // A prediction costs much more than a step, so that few are made: a trial point is evaluated with
 // its Jacobian, because it usually becomes the next point, except after a rejected step; and a step

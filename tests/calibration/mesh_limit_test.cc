@@ -81,7 +81,8 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   EXPECT_LT((finer->other - finer->own - with_steps).norm(), 0.3 * with_steps.norm());
   const Eigen::VectorXd again = ResidualAtRatio(coarse.problem, values, *finer, finer->ratio);
   ASSERT_EQ(again.size(), finer->other.size());
-  EXPECT_LT((again - finer->other).norm(), 1e-3 * (finer->other - finer->own).norm());
+  // The last step of the search is added to first order.
+  EXPECT_LT((again - finer->other).norm(), 0.01 * (finer->other - finer->own).norm());
   EXPECT_EQ(coarse.problem.Linearise(values, false).residual, before)
       << "a prediction depends on nothing that was predicted before it";
 }

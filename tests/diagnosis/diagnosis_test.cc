@@ -82,7 +82,11 @@ TEST(Diagnosis, NamesTheTimeErrorsOfSingleFrames) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kNuisance) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_THAT(diagnosis.effects, Contains("time_jitter"));
   EXPECT_GT(diagnosis.alternatives.nuisances_evidence, 50);
-  EXPECT_GT(diagnosis.alternatives.bare.without_nuisances, diagnosis.errors.without_nuisances);
+  // The time error of a frame says nothing about another frame, so held-out frames are missed alike
+  // with the nuisance and without it.
+  EXPECT_GT(diagnosis.errors.without_nuisances, 1.2);
+  EXPECT_NEAR(diagnosis.alternatives.bare.without_nuisances / diagnosis.errors.without_nuisances, 1,
+              0.1);
 }
 
 TEST(Diagnosis, HasNoPowerIfNoEffectIsDetectable) {
