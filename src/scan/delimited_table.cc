@@ -153,16 +153,27 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
   size_t width = 0;
   char delimiter = 0;
   int line_number = 0;
+  std::string_view comment;  // the last above the first row
   for (size_t at = 0; at < content.size();) {
     const size_t end = std::min(content.find('\n', at), content.size());
     const std::string_view line(content.data() + at, end - at);
     at = end + 1;
     ++line_number;
-    if (Trim(line).empty() || Trim(line).front() == '#') continue;
+    if (Trim(line).empty()) continue;
+    if (Trim(line).front() == '#') {
+      if (width == 0) comment = Trim(line);
+      continue;
+    }
+    if (width == 0 && Trim(line).substr(0, 3) == "***") continue;
     if (delimiter == 0) delimiter = FindDelimiter(Trim(line));
     const std::vector<std::string_view> fields = SplitFields(line, delimiter);
     if (width == 0) {
       width = fields.size();
+      if (!comment.empty()) {
+        comment.remove_prefix(std::min(comment.find_first_not_of('#'), comment.size()));
+        const std::vector<std::string_view> names = SplitFields(Trim(comment), delimiter);
+        if (names.size() == width) table.commented_header.assign(names.begin(), names.end());
+      }
       if (!AreNumbers(fields)) {
         table.header.assign(fields.begin(), fields.end());
         DoubtHeader(&table, line_number);

@@ -11,7 +11,8 @@
 
 namespace lacuna {
 
-// Lines starting with '#' and empty lines are skipped. The first line is the header when one of
+// Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped.
+// The first line is the header when one of
 // its entries is neither a number nor empty. The delimiter is the first of ';', ',' and tab that
 // occurs in the first line, and otherwise any run of blanks. Where the delimiter is not ',', and in
 // quotes, numbers may have a decimal comma. A byte order mark is not part of the first entry
@@ -21,8 +22,10 @@ struct DelimitedTable {
   std::vector<std::string> header;  // names of the columns; empty if the file has none
   Eigen::MatrixXd values;           // rows × columns; NaN for an empty entry and for "nan"
   std::vector<int> line;            // line of the file of each row, from 1
-  std::vector<std::string> notes;   // doubts about the first line, each of which begins with the
-                                    // name of the file
+  // Entries of the last comment above the first row, if it has as many as a row; empty if not.
+  std::vector<std::string> commented_header;
+  std::vector<std::string> notes;  // doubts about the first line, each of which begins with the
+                                   // name of the file
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number

@@ -8,11 +8,13 @@
 
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "scan/delimited_table.h"
+#include "scan/displacement_table.h"
 
 namespace lacuna {
 namespace {
@@ -164,12 +166,42 @@ bool AreUnitVectors(const Eigen::Matrix3Xd& vectors) {
   return ((vectors.colwise().norm().array() - 1).abs() < kRounding).all();
 }
 
+// The columns of a table of image correlation that the user or the header names.
+std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
+                                                   DelimitedTable* table) {
+  if (columns.position[0].empty()) return FindDisplacementColumns(table);
+  if (columns.displacement[0].empty()) return std::nullopt;
+  DisplacementColumns chosen;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    chosen.place[axis] = RequireColumn(*table, columns.position[axis]);
+    chosen.displacement[axis] = RequireColumn(*table, columns.displacement[axis]);
+  }
+  if (!columns.sigma.empty()) chosen.sigma = RequireColumn(*table, columns.sigma);
+  return chosen;
+}
+
 PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& columns,
-                     std::vector<std::string>* notes) {
-  const DelimitedTable table = ReadDelimitedTable(file);
-  if (notes != nullptr) notes->insert(notes->end(), table.notes.begin(), table.notes.end());
+                     std::vector<std::string>* notes, CorrelationTable* correlation) {
+  DelimitedTable table = ReadDelimitedTable(file);
   PointCloud cloud;
   cloud.normals.resize(3, 0);
+  if (const auto displacements = DisplacementsOf(columns, &table)) {
+    cloud.points = MovedPoints(table, *displacements);
+    if (displacements->has_common_names)
+      table.notes.push_back(
+          fmt::format("{}: the points are x, y, z plus the displacements u, v, w, as in tables of "
+                      "image correlation; `columns` can name others",
+                      file.string()));
+    if (correlation != nullptr) {
+      *correlation = {true, {}, displacements->length_unit};
+      if (displacements->id) {
+        const auto ids = table.values.col(*displacements->id);
+        correlation->ids.assign(ids.begin(), ids.end());
+      }
+    }
+  }
+  if (notes != nullptr) notes->insert(notes->end(), table.notes.begin(), table.notes.end());
+  if (cloud.Size() > 0) return cloud;
   if (!columns.position[0].empty()) {
     cloud.points = Columns(table, columns.position);
     if (!columns.normal[0].empty()) cloud.normals = Columns(table, columns.normal);
@@ -201,10 +233,23 @@ std::string LowerCaseExtension(const std::filesystem::path& file) {
 }  // namespace
 
 PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
-                         std::vector<std::string>* notes) {
+                         std::vector<std::string>* notes, CorrelationTable* correlation) {
   const std::string extension = LowerCaseExtension(file);
   if (extension == ".ply" || extension == ".pcd") return ReadWithPcl(file, extension == ".ply");
-  return ReadTable(file, columns, notes);
+  return ReadTable(file, columns, notes, correlation);
+}
+
+CorrelationTable ReadCorrelationTable(const std::filesystem::path& file,
+                                      const PointColumns& columns) {
+  CorrelationTable correlation;
+  const std::string extension = LowerCaseExtension(file);
+  if (extension == ".ply" || extension == ".pcd") return correlation;
+  try {
+    ReadTable(file, columns, nullptr, &correlation);
+  } catch (const InputError&) {
+    correlation = {};
+  }
+  return correlation;
 }
 
 void WritePointFile(const std::filesystem::path& file, const PointCloud& cloud) {

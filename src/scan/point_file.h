@@ -13,19 +13,36 @@ namespace lacuna {
 
 // The columns of a text table that contain a point: names in the header, or numbers counted from 1.
 // When they are left empty, the header must name x, y, z (and may name nx, ny, nz), or the table
-// must have exactly three columns, or six of which the last three are unit vectors.
+// must have exactly three columns, or six of which the last three are unit vectors. Displacements
+// are added where the header is that of a table of image correlation (displacement_table.h).
 struct PointColumns {
   std::array<std::string, 3> position;
   std::array<std::string, 3> normal;
+  std::array<std::string, 3> displacement;  // added to the position
+  std::string sigma;                        // negative or NaN: the point was not measured
+};
+
+// What a table of image correlation says about its points.
+struct CorrelationTable {
+  bool is_read = false;     // false: the file is none
+  std::vector<double> ids;  // of each row; empty where the table gives none
+  std::string length_unit;  // empty where the table gives none
 };
 
 // The points of `file` in its own length unit, row by row, including rows with NaN. The extension
 // decides on the format: .ply and .pcd (text or binary, float or double, with or without normals);
 // everything else is a text table (delimited_table.h). Throws InputError naming the file when it is
 // absent, truncated or malformed, or when it is unclear which columns are the coordinates.
-// Doubts about the first line of a table are appended to `notes`, if it is given.
+// What was taken for what, where a table leaves doubt, is appended to `notes`, if it is given.
+// `correlation`, if given, is filled where the file is a table of image correlation.
 PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
-                         std::vector<std::string>* notes = nullptr);
+                         std::vector<std::string>* notes = nullptr,
+                         CorrelationTable* correlation = nullptr);
+
+// What the same file says as a table of image correlation. is_read is false also for a file that
+// cannot be read, which ReadPointFile reports.
+CorrelationTable ReadCorrelationTable(const std::filesystem::path& file,
+                                      const PointColumns& columns);
 
 // Writes a binary little-endian PLY of doubles, with normals if the cloud has them. Atomic. Throws
 // InputError when the file cannot be written.

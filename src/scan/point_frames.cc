@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
+#include <unordered_map>
 
 #include "core/error.h"
 #include "core/npy.h"
@@ -20,6 +22,9 @@ PointColumns ReadPointColumns(const Config& frames) {
     columns.position = {map->Text("x"), map->Text("y"), map->Text("z")};
     const std::string nx = map->Text("nx", "");
     if (!nx.empty()) columns.normal = {nx, map->Text("ny"), map->Text("nz")};
+    const std::string u = map->Text("u", "");
+    if (!u.empty()) columns.displacement = {u, map->Text("v"), map->Text("w")};
+    if (!u.empty()) columns.sigma = map->Text("sigma", "");
   }
   return columns;
 }
@@ -40,15 +45,48 @@ Eigen::Matrix3Xi ReadConnectivity(const std::filesystem::path& file) {
   return rows.cast<int>().transpose();
 }
 
+std::string IdText(double id) { return fmt::format("{}", id); }
+
+// The columns of `points` in the order of `wanted`; NaN for points that the file does not have.
+Eigen::Matrix3Xd InOrderOf(const std::vector<double>& wanted, const std::vector<double>& ids,
+                           const Eigen::Matrix3Xd& points, const std::filesystem::path& file) {
+  std::unordered_map<double, Eigen::Index> row;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    if (!row.emplace(ids[i], static_cast<Eigen::Index>(i)).second)
+      throw InputError({file.string()}, fmt::format("lists the point {} twice", IdText(ids[i])));
+  }
+  Eigen::Matrix3Xd ordered = Eigen::Matrix3Xd::Constant(3, static_cast<Eigen::Index>(wanted.size()),
+                                                        std::numeric_limits<double>::quiet_NaN());
+  size_t found = 0;
+  for (size_t i = 0; i < wanted.size(); ++i) {
+    const auto at = row.find(wanted[i]);
+    if (at == row.end()) continue;
+    ordered.col(static_cast<Eigen::Index>(i)) = points.col(at->second);
+    ++found;
+  }
+  if (found == 0)
+    throw InputError({file.string()},
+                     "has none of the points of the first file; their numbers "
+                     "differ");
+  return ordered;
+}
+
 }  // namespace
 
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
-                std::vector<std::string>*) {
+                std::vector<std::string>* warnings) {
   source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
   source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
   ReadObjectChoice(frames, data, source);
-  source->tracked = frames.Flag("tracked", false);
   source->columns = ReadPointColumns(frames);
+  const CorrelationTable correlation = ReadCorrelationTable(source->files[0][0], source->columns);
+  source->tracked = frames.Flag("tracked", correlation.is_read);
+  if (source->tracked) source->ids = correlation.ids;
+  const std::string& unit = correlation.length_unit;
+  if (!unit.empty() && unit != data.length_unit) {
+    warnings->push_back(fmt::format("{} says that its lengths are in {}; recording.yaml says {}",
+                                    source->files[0][0].string(), unit, data.length_unit));
+  }
   const std::string triangles = frames.Text("triangles", "");
   if (!triangles.empty()) {
     source->connectivity_file = data.folder / triangles;
@@ -63,7 +101,14 @@ void ReadSource(const Config& frames, const DataLocation& data, PointFrames* sou
 }
 
 void LoadPoints(const PointFrames& source, Frame* frame) {
-  PointCloud raw = ReadPointFile(source.files[frame->index][0], source.columns, &frame->notes);
+  const std::filesystem::path& file = source.files[frame->index][0];
+  CorrelationTable correlation;
+  PointCloud raw = ReadPointFile(file, source.columns, &frame->notes, &correlation);
+  if (!source.ids.empty()) {
+    if (correlation.ids.empty())
+      throw InputError({file.string()}, "does not number its points, as the first file does");
+    raw.points = InOrderOf(source.ids, correlation.ids, raw.points, file);
+  }
   frame->repeated_count = ForgetRepeatedPoints(source.tracked, &raw.points);
   raw.points = source.world_from_file * raw.points;
   ForgetOtherObjects(source, source.connectivity, &raw.points, frame);

@@ -25,12 +25,17 @@ struct PointFrames : FileFrames {
 
   Similarity world_from_file;               // its length unit included
   PointColumns columns;                     // columns of text tables
+  std::vector<double> ids;                  // of the rows of all frames, where a table of image
+                                            // correlation gives them; empty: rows are in order
   bool tracked = false;                     // row i is the same material point in every frame
   Eigen::Matrix3Xi connectivity;            // 3 × m, rows of each frame, from 0; 3 × 0 without
   std::filesystem::path connectivity_file;  // empty without
   Eigen::Matrix3Xd sensors;  // 3 × c, m, where the points were seen from; 3 × 0: unknown
 };
 
+// The points of tables of image correlation (displacement_table.h) are tracked unless the recording
+// says otherwise; row i of a frame is then the point that row i of the first file identifies. Warns
+// when the first file gives another length unit than recording.yaml.
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
                 std::vector<std::string>* warnings);
 void LoadPoints(const PointFrames& source, Frame* frame);

@@ -1,0 +1,153 @@
+#include "scan/displacement_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+
+namespace lacuna {
+namespace {
+
+using Names = std::array<const char*, 3>;
+
+// Names of the places and of the displacements; those of programs before the common ones.
+struct KnownNames {
+  Names place, displacement;
+};
+constexpr KnownNames kKnown[] = {
+    {{"model_coordinates_x", "model_coordinates_y", "model_coordinates_z"},
+     {"model_displacement_x", "model_displacement_y", "model_displacement_z"}},
+    {{"x_undef", "y_undef", "z_undef"}, {"u", "v", "w"}},
+    {{"X", "Y", "Z"}, {"U", "V", "W"}},
+    {{"x", "y", "z"}, {"u", "v", "w"}}};
+// Names that a table of displacements in the plane has.
+constexpr std::pair<const char*, const char*> kInPlane[] = {{"displacement_x", "displacement_y"}};
+// The status flags of DICe of a correlation that has succeeded.
+const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
+
+// A name of a column without its unit, and the unit in brackets.
+struct NameAndUnit {
+  std::string name, unit;
+};
+NameAndUnit Separate(const std::string& header) {
+  const size_t open = header.find_first_of("[(");
+  if (open == std::string::npos) return {header, ""};
+  const size_t end = header.find_last_not_of(' ', open == 0 ? 0 : open - 1);
+  const size_t close = header.find_first_of("])", open);
+  return {open == 0 ? "" : header.substr(0, end + 1),
+          header.substr(open + 1, close == std::string::npos ? close : close - open - 1)};
+}
+
+std::string InLowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// The column of this name, in any case where there is only one.
+std::optional<Eigen::Index> Find(const std::vector<std::string>& header, const std::string& name) {
+  std::optional<Eigen::Index> similar;
+  for (size_t k = 0; k < header.size(); ++k) {
+    const std::string other = Separate(header[k]).name;
+    if (other == name) return static_cast<Eigen::Index>(k);
+    if (InLowerCase(other) != InLowerCase(name)) continue;
+    if (similar) return std::nullopt;
+    similar = static_cast<Eigen::Index>(k);
+  }
+  return similar;
+}
+
+std::optional<std::array<Eigen::Index, 3>> FindAll(const std::vector<std::string>& header,
+                                                   const Names& names) {
+  std::array<Eigen::Index, 3> columns{};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const std::optional<Eigen::Index> column = Find(header, names[axis]);
+    if (!column) return std::nullopt;
+    columns[axis] = *column;
+  }
+  return columns;
+}
+
+std::string UnitOf(const DelimitedTable& table, const DisplacementColumns& columns) {
+  std::string unit;
+  for (const auto& part : {columns.place, columns.displacement})
+    for (const Eigen::Index k : part) {
+      const std::string own = Separate(table.header[static_cast<size_t>(k)]).unit;
+      if (unit.empty()) unit = own;
+      if (own.empty() || own == unit) continue;
+      throw InputError({table.file.string()},
+                       fmt::format("gives \"{}\" beside columns in {}; places and displacements "
+                                   "must have one unit",
+                                   table.header[static_cast<size_t>(k)], unit));
+    }
+  return unit;
+}
+
+std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
+                                          const std::vector<std::string>& header) {
+  for (const KnownNames& known : kKnown) {
+    const auto place = FindAll(header, known.place);
+    const auto displacement = FindAll(header, known.displacement);
+    if (!place || !displacement) continue;
+    DisplacementColumns columns;
+    columns.place = *place;
+    columns.displacement = *displacement;
+    columns.sigma = Find(header, "sigma");
+    columns.status = Find(header, "status_flag");
+    columns.id = Find(header, "subset_id");
+    // ARAMIS writes "ID", and older exports "ID,ID".
+    for (const char* name : {"id", "id,id"})
+      if (!columns.id) columns.id = Find(header, name);
+    columns.has_common_names = InLowerCase(known.place[0]) == "x" && !columns.sigma;
+    return columns;
+  }
+  for (const auto& [x, y] : kInPlane)
+    if (Find(header, x) && Find(header, y))
+      throw InputError(
+          {table.file.string()},
+          fmt::format("gives displacements in the image plane only (\"{}\" and \"{}\"); a "
+                      "recording needs three components, as stereo correlation measures them",
+                      header[static_cast<size_t>(*Find(header, x))],
+                      header[static_cast<size_t>(*Find(header, y))]));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table) {
+  const bool has_header = !table->header.empty();
+  std::optional<DisplacementColumns> columns =
+      FindIn(*table, has_header ? table->header : table->commented_header);
+  if (!columns) return std::nullopt;
+  if (!has_header) table->header = table->commented_header;
+  columns->length_unit = UnitOf(*table, *columns);
+  return columns;
+}
+
+Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColumns& columns) {
+  const Eigen::MatrixXd& values = table.values;
+  const Eigen::Index rows = values.rows();
+  Eigen::Matrix3Xd places(3, rows), displacements(3, rows);
+  for (int axis = 0; axis < 3; ++axis) {
+    places.row(axis) = values.col(columns.place[static_cast<size_t>(axis)]).transpose();
+    displacements.row(axis) =
+        values.col(columns.displacement[static_cast<size_t>(axis)]).transpose();
+  }
+  const auto is_zero = (places.array() == 0 && displacements.array() == 0).colwise().all().eval();
+  const bool forgets_zeros = is_zero.count() > 1;
+  Eigen::Matrix3Xd points = places + displacements;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const bool has_failed = (columns.sigma && !(values(i, *columns.sigma) >= 0)) ||
+                            (columns.status && kSucceeded.count(values(i, *columns.status)) == 0) ||
+                            (forgets_zeros && is_zero[i]);
+    if (has_failed) points.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  return points;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,47 @@
+// Tables of image correlation: the place of each point in the reference state, its displacement
+// since, and a measure of its quality. A point of the frame lies at place + displacement.
+//
+// Recognised by the names of their columns, in any case and with or without a unit in brackets:
+//   VIC-3D CSV             X, Y, Z, U, V, W, sigma
+//   DICe, stereo           MODEL_COORDINATES_X …, MODEL_DISPLACEMENT_X …, SIGMA, STATUS_FLAG
+//   ARAMIS nodemaps        x_undef [mm] …, u [mm], v [mm], w [mm], behind # above the rows
+// Of places in pixels beside metric ones (x beside X) the exact name counts.
+#ifndef LACUNA_SCAN_DISPLACEMENT_TABLE_H_
+#define LACUNA_SCAN_DISPLACEMENT_TABLE_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+
+// Indices of columns, from 0.
+struct DisplacementColumns {
+  std::array<Eigen::Index, 3> place{}, displacement{};
+  std::optional<Eigen::Index> sigma;   // negative or NaN: the correlation failed
+  std::optional<Eigen::Index> status;  // the status flag of DICe
+  std::optional<Eigen::Index> id;      // identifies a point in all frames
+  std::string length_unit;             // as the header gives it, e.g. "mm"; empty: not given
+  // x, y, z, u, v, w without sigma: names that other tables may have, too.
+  bool has_common_names = false;
+};
+
+// The columns of a table of image correlation, or nothing where no names of displacements are in
+// the header. Where the table has no header, but the comment above its first row names such
+// columns, that comment becomes the header. Throws InputError, naming the file, when displacements
+// are given in the plane only, since the motion out of the plane is then unknown, and when places
+// and displacements have different units.
+std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table);
+
+// 3 × rows: place + displacement, in the table's unit; NaN where a point failed: where one of its
+// numbers is missing, sigma is negative or missing, the status is one of failure, or places and
+// displacements are zero in several rows.
+Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColumns& columns);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_DISPLACEMENT_TABLE_H_
