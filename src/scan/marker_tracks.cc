@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "scan/capture_tables.h"
 #include "scan/delimited_table.h"
 
 namespace lacuna {
@@ -27,37 +28,6 @@ std::string MatchStar(const std::string& column, const std::string& pattern) {
 
 std::string FillStar(std::string pattern, const std::string& name) {
   return pattern.replace(pattern.find('*'), 1, name);
-}
-
-// `rate` is the rate in Hz that the file states; 0 if it states none.
-void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate) {
-  for (Eigen::Index i = 0; i < times.size(); ++i) {
-    if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1])) {
-      const bool is_equal = i > 0 && times[i] == times[i - 1];
-      const std::string remedy =
-          rate > 0 ? fmt::format(
-                         "; the file states {:g} Hz: `rate: {:g} Hz` in recording.yaml "
-                         "replaces its times",
-                         rate, rate)
-                   : "; `rate`, `times` or `times_file` in recording.yaml replace its times";
-      throw InputError(
-          {file.string()},
-          fmt::format("frame {}: the time {} s does not follow the one before{}{}", i, times[i],
-                      is_equal ? ", perhaps because it was rounded" : "", remedy));
-    }
-  }
-}
-
-std::vector<std::string_view> Lines(std::string_view content) {
-  std::vector<std::string_view> lines;
-  for (size_t at = 0; at < content.size();) {
-    const size_t end = std::min(content.find('\n', at), content.size());
-    std::string_view line = content.substr(at, end - at);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    lines.push_back(line);
-    at = end + 1;
-  }
-  return lines;
 }
 
 struct TrcHeader {
@@ -97,12 +67,50 @@ TrcHeader ReadTrcHeader(const std::filesystem::path& file,
 
 }  // namespace
 
+void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate) {
+  for (Eigen::Index i = 0; i < times.size(); ++i) {
+    if (!std::isfinite(times[i]) || (i > 0 && times[i] <= times[i - 1])) {
+      const bool is_equal = i > 0 && times[i] == times[i - 1];
+      const std::string remedy =
+          rate > 0 ? fmt::format(
+                         "; the file states {:g} Hz: `rate: {:g} Hz` in recording.yaml "
+                         "replaces its times",
+                         rate, rate)
+                   : "; `rate`, `times` or `times_file` in recording.yaml replace its times";
+      throw InputError(
+          {file.string()},
+          fmt::format("frame {}: the time {} s does not follow the one before{}{}", i, times[i],
+                      is_equal ? ", perhaps because it was rounded" : "", remedy));
+    }
+  }
+}
+
+std::vector<std::string_view> SplitLines(std::string_view content) {
+  std::vector<std::string_view> lines;
+  for (size_t at = 0; at < content.size();) {
+    const size_t end = std::min(content.find('\n', at), content.size());
+    std::string_view line = content.substr(at, end - at);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    lines.push_back(line);
+    at = end + 1;
+  }
+  return lines;
+}
+
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
                               FileTimes times) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".c3d") return ReadC3d(file);
   if (extension == ".trc") return ReadTrc(file, times);
+  switch (CaptureTableOf(file)) {
+    case CaptureTable::kQualisys:
+      return ReadQualisysTsv(file, times);
+    case CaptureTable::kMotive:
+      return ReadMotiveCsv(file, times);
+    case CaptureTable::kNone:
+      break;
+  }
   return ReadMarkerCsv(file, columns, times);
 }
 
@@ -144,7 +152,7 @@ MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumn
 
 MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
   const std::string content = ReadFilledText(file);
-  const std::vector<std::string_view> lines = Lines(content);
+  const std::vector<std::string_view> lines = SplitLines(content);
   const TrcHeader header = ReadTrcHeader(file, lines);
   MarkerTracks tracks;
   tracks.length_unit = header.unit;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lacuna {
@@ -35,10 +36,11 @@ struct MarkerColumns {
 // Whether the times of a file are used, so that they have to ascend, or are replaced by others.
 enum class FileTimes { kUsed, kReplaced };
 
-// Reads a file in the format of its extension: .trc, .c3d, or else a CSV with a header. `columns`
-// applies to the CSV only. Throws InputError naming the file (and line) when it is absent,
-// truncated or malformed, when its counts contradict one another, or when times that are used do
-// not ascend. Times that are replaced are left out.
+// Reads a file in the format of its extension: .trc, .c3d, or else a table of a motion-capture
+// program (capture_tables.h) or a CSV with a header. `columns` applies to the latter only. Throws
+// InputError naming the file (and line) when it is absent, truncated or malformed, when its counts
+// contradict one another, or when times that are used do not ascend. Times that are replaced are
+// left out.
 MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
                               FileTimes times = FileTimes::kUsed);
 MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
@@ -52,6 +54,13 @@ MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes times = FileTi
 // ACTUAL_END_FIELD give the number of frames; without them a file that seems to hold more frames
 // than its header says leads to a warning.
 MarkerTracks ReadC3d(const std::filesystem::path& file);
+
+// Throws InputError naming the frame of `file` whose time (s) does not follow the one before.
+// `rate`: Hz, that the file states; 0 if it states none.
+void CheckTimes(const std::filesystem::path& file, const Eigen::VectorXd& times, double rate);
+
+// The lines of `content` without their ends, which may be those of Windows.
+std::vector<std::string_view> SplitLines(std::string_view content);
 
 // The tracks of the markers `names`, in that order. Throws InputError naming `file` and listing its
 // markers when one of them does not exist.
