@@ -15,7 +15,7 @@
 
 #include "core/error.h"
 #include "scan/delimited_table.h"
-#include "scan/marker_tracks.h"
+#include "scan/marker_files.h"
 
 namespace lacuna {
 namespace {

@@ -98,6 +98,18 @@ void DoubtFirstRow(DelimitedTable* table) {
 
 }  // namespace
 
+std::vector<std::string_view> SplitLines(std::string_view content) {
+  std::vector<std::string_view> lines;
+  for (size_t at = 0; at < content.size();) {
+    const size_t end = std::min(content.find('\n', at), content.size());
+    std::string_view line = content.substr(at, end - at);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    lines.push_back(line);
+    at = end + 1;
+  }
+  return lines;
+}
+
 std::vector<std::string_view> SplitFields(std::string_view line, char delimiter) {
   std::vector<std::string_view> fields;
   if (delimiter == ' ') {

@@ -12,11 +12,10 @@
 namespace lacuna {
 
 // Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped.
-// The first line is the header when one of
-// its entries is neither a number nor empty. The delimiter is the first of ';', ',' and tab that
-// occurs in the first line, and otherwise any run of blanks. Where the delimiter is not ',', and in
-// quotes, numbers may have a decimal comma. A byte order mark is not part of the first entry
-// (ReadTextFile).
+// The first line is the header when one of its entries is neither a number nor empty. The delimiter
+// is the first of ';', ',' and tab that occurs in the first line, and otherwise any run of blanks.
+// Where the delimiter is not ',', and in quotes, numbers may have a decimal comma. A byte order
+// mark is not part of the first entry (ReadTextFile).
 struct DelimitedTable {
   std::filesystem::path file;
   std::vector<std::string> header;  // names of the columns; empty if the file has none
@@ -39,6 +38,9 @@ std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::s
 
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
+
+// The lines of `content` without their ends, which may be those of Windows.
+std::vector<std::string_view> SplitLines(std::string_view content);
 
 // Cuts `line` at the delimiter (' ' stands for any run of blanks) and trims blanks around each
 // entry. A delimiter between quotes does not count. The entries refer to the memory of `line`.

@@ -11,6 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "scan/frame_points.h"
+#include "scan/marker_files.h"
 
 namespace lacuna {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "scan/marker_files.h"
 #include "scan/test_files.h"
 
 namespace lacuna {

@@ -1,4 +1,4 @@
-#include "scan/marker_tracks.h"
+#include "scan/marker_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

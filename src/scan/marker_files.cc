@@ -1,0 +1,176 @@
+#include "scan/marker_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/error.h"
+#include "scan/capture_tables.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+// The marker's name in `column` when it fits the pattern with its one star; empty otherwise.
+std::string MatchStar(const std::string& column, const std::string& pattern) {
+  const size_t star = pattern.find('*');
+  const std::string before = pattern.substr(0, star);
+  const std::string after = pattern.substr(star + 1);
+  if (column.size() <= before.size() + after.size()) return "";
+  if (column.rfind(before, 0) != 0) return "";
+  if (column.substr(column.size() - after.size()) != after) return "";
+  return column.substr(before.size(), column.size() - before.size() - after.size());
+}
+
+std::string FillStar(std::string pattern, const std::string& name) {
+  return pattern.replace(pattern.find('*'), 1, name);
+}
+
+struct TrcHeader {
+  Eigen::Index frame_count = 0;
+  Eigen::Index marker_count = 0;
+  std::string unit;
+  double rate = 0;  // Hz; 0 if it is not stated
+};
+
+TrcHeader ReadTrcHeader(const std::filesystem::path& file,
+                        const std::vector<std::string_view>& lines) {
+  if (lines.size() < 6 || lines[0].find("PathFileType") == std::string_view::npos) {
+    throw InputError({file.string()}, "is not a TRC file or ends within its header");
+  }
+  const std::vector<std::string_view> keys = SplitFields(lines[1], '\t');
+  const std::vector<std::string_view> values = SplitFields(lines[2], '\t');
+  TrcHeader header;
+  const auto whole_number = [&](std::string_view key, std::string_view text) {
+    const std::optional<double> value = ParseNumber(text);
+    if (!value || !(*value >= 1 && *value < 1e8) || *value != std::floor(*value)) {
+      throw InputError({file.string(), 3, 1},
+                       fmt::format("{}: got \"{}\"; expected a whole number ≥ 1", key, text));
+    }
+    return static_cast<Eigen::Index>(*value);
+  };
+  for (size_t i = 0; i < std::min(keys.size(), values.size()); ++i) {
+    if (keys[i] == "NumFrames") header.frame_count = whole_number(keys[i], values[i]);
+    if (keys[i] == "NumMarkers") header.marker_count = whole_number(keys[i], values[i]);
+    if (keys[i] == "Units") header.unit = values[i];
+    if (keys[i] == "DataRate") header.rate = ParseNumber(values[i]).value_or(0);
+  }
+  if (header.frame_count == 0 || header.marker_count == 0) {
+    throw InputError({file.string(), 2, 1}, "NumFrames or NumMarkers is missing");
+  }
+  return header;
+}
+
+}  // namespace
+
+MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
+                              FileTimes times) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".c3d") return ReadC3d(file);
+  if (extension == ".trc") return ReadTrc(file, times);
+  switch (CaptureTableOf(file)) {
+    case CaptureTable::kQualisys:
+      return ReadQualisysTsv(file, times);
+    case CaptureTable::kMotive:
+      return ReadMotiveCsv(file, times);
+    case CaptureTable::kNone:
+      break;
+  }
+  return ReadMarkerCsv(file, columns, times);
+}
+
+MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
+                           FileTimes times) {
+  const DelimitedTable table = ReadDelimitedTable(file);
+  MarkerTracks tracks;
+  tracks.warnings = table.notes;
+  for (const std::string& column : table.header) {
+    const std::string name = MatchStar(column, columns.x);
+    if (!name.empty()) tracks.names.push_back(name);
+  }
+  if (tracks.names.empty()) {
+    throw InputError({file.string(), 1, 1},
+                     fmt::format("no column is named like \"{}\"; its columns are {}", columns.x,
+                                 fmt::join(table.header, ", ")));
+  }
+  const Eigen::Index frame_count = table.values.rows();
+  tracks.positions.assign(frame_count, Eigen::Matrix3Xd(3, tracks.names.size()));
+  for (size_t marker = 0; marker < tracks.names.size(); ++marker) {
+    int axis = 0;
+    for (const std::string& pattern : {columns.x, columns.y, columns.z}) {
+      const Eigen::Index column = RequireColumn(table, FillStar(pattern, tracks.names[marker]));
+      for (Eigen::Index frame = 0; frame < frame_count; ++frame) {
+        tracks.positions[frame](axis, marker) = table.values(frame, column);
+      }
+      ++axis;
+    }
+  }
+  if (!columns.time.empty()) {
+    const Eigen::Index time = RequireColumn(table, columns.time);
+    if (times == FileTimes::kUsed) {
+      tracks.times = table.values.col(time);
+      CheckTimes(file, tracks.times, 0);
+    }
+  }
+  return tracks;
+}
+
+MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes use) {
+  const std::string content = ReadFilledText(file);
+  const std::vector<std::string_view> lines = SplitLines(content);
+  const TrcHeader header = ReadTrcHeader(file, lines);
+  MarkerTracks tracks;
+  tracks.length_unit = header.unit;
+  const std::vector<std::string_view> names = SplitFields(lines[3], '\t');
+  for (size_t i = 2; i < names.size(); ++i) {
+    if (!names[i].empty()) tracks.names.emplace_back(names[i]);
+  }
+  if (static_cast<Eigen::Index>(tracks.names.size()) != header.marker_count) {
+    throw InputError({file.string(), 4, 1}, fmt::format("names {} markers where NumMarkers says {}",
+                                                        tracks.names.size(), header.marker_count));
+  }
+  constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> times;
+  for (size_t row = 5; row < lines.size(); ++row) {
+    const std::vector<std::string_view> fields = SplitFields(lines[row], '\t');
+    if (std::all_of(fields.begin(), fields.end(), [](auto field) { return field.empty(); })) {
+      continue;
+    }
+    const int line_number = static_cast<int>(row) + 1;
+    const size_t expected = 2 + 3 * tracks.names.size();
+    const bool has_too_many = std::any_of(fields.begin() + std::min(expected, fields.size()),
+                                          fields.end(), [](auto f) { return !f.empty(); });
+    // Some programs omit the empty entries behind the last marker that was seen.
+    if (fields.size() < 2 || has_too_many) {
+      throw InputError({file.string(), line_number, 1},
+                       fmt::format("has {} entries; expected {}", fields.size(), expected));
+    }
+    Eigen::Matrix3Xd positions = Eigen::Matrix3Xd::Constant(3, tracks.names.size(), kUnseen);
+    for (size_t i = 1; i < std::min(expected, fields.size()); ++i) {
+      const std::optional<double> value = ParseNumber(fields[i]);
+      if (!value) {
+        const int column = static_cast<int>(fields[i].data() - lines[row].data()) + 1;
+        throw InputError({file.string(), line_number, column},
+                         fmt::format("got \"{}\"; expected a number", fields[i]));
+      }
+      if (i == 1) times.push_back(*value);
+      if (i >= 2) positions((i - 2) % 3, (i - 2) / 3) = *value;
+    }
+    tracks.positions.push_back(std::move(positions));
+  }
+  if (static_cast<Eigen::Index>(times.size()) != header.frame_count) {
+    throw InputError({file.string()}, fmt::format("holds {} frames where NumFrames says {}",
+                                                  times.size(), header.frame_count));
+  }
+  if (use == FileTimes::kReplaced) return tracks;
+  tracks.times = Eigen::Map<const Eigen::VectorXd>(times.data(), times.size());
+  CheckTimes(file, tracks.times, header.rate);
+  return tracks;
+}
+
+}  // namespace lacuna

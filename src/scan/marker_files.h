@@ -1,0 +1,39 @@
+// Reads the files in which motion-capture systems record the tracks of markers.
+#ifndef LACUNA_SCAN_MARKER_FILES_H_
+#define LACUNA_SCAN_MARKER_FILES_H_
+
+#include <filesystem>
+#include <string>
+
+#include "scan/marker_tracks.h"
+
+namespace lacuna {
+
+// How a CSV names its columns. A star represents the marker's name: "*_x" finds tip1_x, base1_x.
+struct MarkerColumns {
+  std::string time;  // column with the time in seconds; empty: the file has none
+  std::string x = "*_x", y = "*_y", z = "*_z";
+};
+
+// Reads a file in the format of its extension: .trc, .c3d, or else a table of a motion-capture
+// program (capture_tables.h) or a CSV with a header. `columns` applies to the latter only. Throws
+// InputError naming the file (and line) when it is absent, truncated or malformed, when its counts
+// contradict one another, or when times that are used do not ascend. Times that are replaced are
+// left out.
+MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerColumns& columns,
+                              FileTimes times = FileTimes::kUsed);
+MarkerTracks ReadMarkerCsv(const std::filesystem::path& file, const MarkerColumns& columns,
+                           FileTimes times = FileTimes::kUsed);
+MarkerTracks ReadTrc(const std::filesystem::path& file, FileTimes times = FileTimes::kUsed);
+
+// Reads the 3-D points of a C3D file (The C3D File Format User Guide, https://www.c3d.org),
+// integers or floating-point numbers written on Intel, DEC or SGI/MIPS processors. A point with a
+// negative residual was not seen. Times start at 0. Where the 16-bit frame numbers of the header
+// do not suffice, the parameters POINT:FRAMES, POINT:LONG_FRAMES or TRIAL:ACTUAL_START_FIELD and
+// ACTUAL_END_FIELD give the number of frames; without them a file that seems to hold more frames
+// than its header says leads to a warning.
+MarkerTracks ReadC3d(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_MARKER_FILES_H_
