@@ -25,12 +25,11 @@ using ::testing::IsEmpty;
 // docs and README draw the same order. "record" holds the plain data of a run, "report" the text
 // that is made from it.
 const std::map<std::string, int> kLayers = {
-    {"core", 1},        {"geometry", 2},   {"search", 2},         {"scan", 3},
-    {"surface", 3},     {"meshing", 3},    {"registration", 3},   {"record", 3},
-    {"fem", 4},         {"analysis", 4},   {"effects", 5},        {"fit", 5},
-    {"report", 5},      {"experiment", 6}, {"reconstruction", 7}, {"prediction", 7},
-    {"calibration", 8}, {"paper", 8},      {"comparison", 9},     {"diagnosis", 9},
-    {"exchange", 9},    {"sweep", 10},     {"trials", 10},        {"app", 11},
+    {"core", 1},       {"geometry", 2},     {"search", 2}, {"scan", 3},       {"surface", 3},
+    {"meshing", 3},    {"registration", 3}, {"record", 3}, {"fem", 4},        {"analysis", 4},
+    {"effects", 5},    {"fit", 5},          {"report", 5}, {"experiment", 6}, {"reconstruction", 7},
+    {"prediction", 7}, {"calibration", 8},  {"paper", 8},  {"comparison", 9}, {"diagnosis", 9},
+    {"exchange", 9},   {"plan", 10},        {"sweep", 10}, {"trials", 10},    {"app", 11},
 };
 
 // A run of yesterday can be explained without running it again.

@@ -19,6 +19,7 @@ void AddFit(CLI::App* app, OutputOptions* output, std::function<int()>* command)
 void AddAdd(CLI::App* app, OutputOptions* output, std::function<int()>* command);
 void AddCompare(CLI::App* app, OutputOptions* output, std::function<int()>* command);
 void AddDiagnose(CLI::App* app, OutputOptions* output, std::function<int()>* command);
+void AddPlan(CLI::App* app, OutputOptions* output, std::function<int()>* command);
 void AddReport(CLI::App* app, OutputOptions* output, std::function<int()>* command);
 void AddTable1(CLI::App* app, OutputOptions* output, std::function<int()>* command);
 void AddSweep(CLI::App* app, std::function<int()>* command);

@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   lacuna::AddFit(&app, &output, &command);
   lacuna::AddCompare(&app, &output, &command);
   lacuna::AddDiagnose(&app, &output, &command);
+  lacuna::AddPlan(&app, &output, &command);
   lacuna::AddAdd(&app, &output, &command);
   lacuna::AddReport(&app, &output, &command);
   lacuna::AddTable1(&app, &output, &command);

@@ -29,6 +29,10 @@ std::filesystem::path OriginFile(const std::filesystem::path& run) {
   return run / "diagnosis" / "of_fit.json";
 }
 
+std::filesystem::path DecisionFolder(const std::filesystem::path& run) {
+  return run / "diagnosis" / "decision";
+}
+
 json OriginOf(const std::filesystem::path& run, const DiagnosisOptions& options) {
   return {{"version", kDiagnosisVersion},
           {"fit", HashFile(FinishedStage(run, "calibration") / "calibration.json")},
@@ -86,6 +90,14 @@ json OriginOfWhatStands(const std::filesystem::path& run) {
   return origin.value("of", json());
 }
 
+// Whether the diagnosis that stands there is of the fit that stands there, with whatever options.
+bool IsOfThisFit(const std::filesystem::path& run) {
+  const json stands = OriginOfWhatStands(run), expected = OriginOf(run, {});
+  for (const char* what : {"version", "fit", "fit_key"})
+    if (!stands.contains(what) || stands.at(what) != expected.at(what)) return false;
+  return true;
+}
+
 }  // namespace
 
 bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options) {
@@ -104,7 +116,7 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   MakeFolder(ResultFile(run).parent_path());
   RefitStore kept(ResultFile(run).parent_path() / "refits.json", OriginOf(run, options));
   const Diagnosis diagnosis = Diagnose(problem, fitted.values, options, progress, &kept);
-  SaveDecisionInput(diagnosis.decision_input, ResultFile(run).parent_path() / "decision");
+  SaveDecisionInput(diagnosis.decision_input, DecisionFolder(run));
   WriteDiagnosisFile(RecordOf(diagnosis), ResultFile(run));
   const json origin = {{"schema_version", 2},
                        {"of", OriginOf(run, options)},
@@ -154,11 +166,14 @@ ScoredEffect DiagnosedEffect(const FittedRun& fitted, const std::filesystem::pat
   }
 }
 
+std::optional<KeptDiagnosis> FindDiagnosis(const std::filesystem::path& run) {
+  if (!IsOfThisFit(run)) return std::nullopt;
+  return KeptDiagnosis{ReadDiagnosisFile(ResultFile(run)), LoadDecisionInput(DecisionFolder(run))};
+}
+
 std::optional<ScoredEffect> FindDiagnosed(const FittedRun& fitted, const std::filesystem::path& run,
                                           const std::string& type) {
-  const json stands = OriginOfWhatStands(run), expected = OriginOf(run, {});
-  for (const char* what : {"version", "fit", "fit_key"})
-    if (!stands.contains(what) || stands.at(what) != expected.at(what)) return std::nullopt;
+  if (!IsOfThisFit(run)) return std::nullopt;
   for (const RecordedEffect& effect : ReadDiagnosisFile(ResultFile(run)).ranking)
     if (effect.type == type) return DiagnosedEffect(fitted, run, effect);
   return std::nullopt;

@@ -9,6 +9,7 @@
 
 #include "calibration/calibration_run.h"
 #include "core/progress.h"
+#include "diagnosis/decision_input.h"
 #include "diagnosis/diagnosis.h"
 #include "record/diagnosis_record.h"
 
@@ -22,6 +23,15 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
 
 // Whether RunDiagnosis would read one back.
 bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& options);
+
+// A diagnosis that was read back, with what its decision was made from.
+struct KeptDiagnosis {
+  DiagnosisRecord record;
+  DecisionInput decision;
+};
+// The diagnosis of the fit that stands in this folder, with whatever options; nothing where there
+// is none. Throws InputError when its files cannot be read.
+std::optional<KeptDiagnosis> FindDiagnosis(const std::filesystem::path& run);
 
 // An effect of the ranking that RunDiagnosis left in this folder, where its refit ended, or as
 // first order expects it. Throws InputError when it is not there.

@@ -34,7 +34,6 @@ class SimulatedDecisions {
       draws_.push_back(noise_.Draw(input.seed + 2, static_cast<uint64_t>(k)));
   }
 
-  const ProjectedHypotheses& beside_nothing() const { return beside_nothing_; }
   const ResidualProducts& draw(int k) const { return draws_[static_cast<size_t>(k)]; }
 
   // What the rules say of a residual: names, or none; whether something unknown is left.
@@ -99,27 +98,6 @@ class SimulatedDecisions {
   std::map<int, NullOfVariant> nulls_;
 };
 
-// The best variant of an effect in the recorded residual, and its amounts there.
-struct FoundEffect {
-  std::vector<int> columns;
-  Eigen::VectorXd amounts;
-
-  bool IsNothing() const { return columns.empty() || amounts.isZero(0); }
-};
-
-FoundEffect Find(const DecisionInput& input, const ProjectedHypotheses& beside_nothing,
-                 const std::string& effect) {
-  const Eigen::VectorXd projected = beside_nothing.Project(input.baseline.model.toward());
-  FoundEffect found;
-  for (const NamedEvidence& named :
-       SumVariants(input.baseline, beside_nothing.LogBayesFactors(projected)))
-    if (named.kind == HypothesisKind::kEffect && named.name == effect) {
-      found.columns = input.baseline.hypotheses[named.best].columns;
-      found.amounts = beside_nothing.AmountsOf(named.best, projected).value;
-    }
-  return found;
-}
-
 // The products of the residual that an effect leaves in a model without it, and noise:
 // r = ε − C a.
 ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& effect,
@@ -132,20 +110,36 @@ ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& eff
   return noise;
 }
 
+std::vector<FoundEffect> FindAll(const HypothesisSpace& space,
+                                 const std::vector<std::string>& effects) {
+  std::vector<FoundEffect> found;
+  for (const std::string& effect : effects) found.push_back(FindEffect(space, effect));
+  return found;
+}
+
 }  // namespace
+
+FoundEffect FindEffect(const HypothesisSpace& space, const std::string& effect) {
+  const ProjectedHypotheses beside_nothing(space);
+  const Eigen::VectorXd projected = beside_nothing.Project(space.model.toward());
+  FoundEffect found{.name = effect, .columns = {}, .amounts = {}};
+  for (const NamedEvidence& named : SumVariants(space, beside_nothing.LogBayesFactors(projected)))
+    if (named.kind == HypothesisKind::kEffect && named.name == effect) {
+      found.columns = space.hypotheses[named.best].columns;
+      found.amounts = beside_nothing.AmountsOf(named.best, projected).value;
+    }
+  return found;
+}
 
 std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
                                          const std::vector<std::string>& effects) {
   SimulatedDecisions decisions(input);
   std::vector<RecordedPower> power;
-  std::vector<std::string> truths = {""};
-  truths.insert(truths.end(), effects.begin(), effects.end());
-  for (const std::string& truth : truths) {
-    FoundEffect effect;
-    if (!truth.empty()) {
-      effect = Find(input, decisions.beside_nothing(), truth);
-      if (effect.IsNothing()) continue;
-    }
+  std::vector<FoundEffect> truths = {FoundEffect{}};
+  for (FoundEffect& effect : FindAll(input.baseline, effects)) truths.push_back(std::move(effect));
+  for (const FoundEffect& effect : truths) {
+    const std::string& truth = effect.name;
+    if (!truth.empty() && effect.IsNothing()) continue;
     RecordedPower& own = power.emplace_back();
     if (!truth.empty()) own.truth = {truth};
     std::map<std::string, int> wrong;
@@ -179,7 +173,11 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
 
 std::vector<RecordedSeparation> Separations(const DecisionInput& input,
                                             const std::vector<std::string>& effects) {
-  const HypothesisSpace& space = input.baseline;
+  return SeparationsOf(input.baseline, FindAll(input.baseline, effects));
+}
+
+std::vector<RecordedSeparation> SeparationsOf(const HypothesisSpace& space,
+                                              const std::vector<FoundEffect>& effects) {
   const ProjectedHypotheses beside_nothing(space);
   // The squared distance of the prediction of `found` from the nearest one of another effect.
   const auto distance = [&](const FoundEffect& found, const std::string& other) {
@@ -195,15 +193,13 @@ std::vector<RecordedSeparation> Separations(const DecisionInput& input,
     }
     return std::max(0.0, least) / space.variance;
   };
-  std::vector<FoundEffect> found;
-  for (const std::string& effect : effects) found.push_back(Find(input, beside_nothing, effect));
   std::vector<RecordedSeparation> separations;
   for (size_t a = 0; a < effects.size(); ++a)
     for (size_t b = a + 1; b < effects.size(); ++b) {
-      if (found[a].IsNothing() || found[b].IsNothing()) continue;
+      if (effects[a].IsNothing() || effects[b].IsNothing()) continue;
       separations.push_back(
-          {effects[a], effects[b],
-           std::min(distance(found[a], effects[b]), distance(found[b], effects[a]))});
+          {effects[a].name, effects[b].name,
+           std::min(distance(effects[a], effects[b].name), distance(effects[b], effects[a].name))});
     }
   return separations;
 }

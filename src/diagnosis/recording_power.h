@@ -7,6 +7,7 @@
 #ifndef LACUNA_DIAGNOSIS_RECORDING_POWER_H_
 #define LACUNA_DIAGNOSIS_RECORDING_POWER_H_
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,18 @@
 #include "record/decision_record.h"
 
 namespace lacuna {
+
+// An effect at a size: the columns of one of its variants in a space, and its amounts.
+struct FoundEffect {
+  std::string name;
+  std::vector<int> columns;  // indices in HypothesisSpace::model; empty: it was not found
+  Eigen::VectorXd amounts;   // per column, in its unit
+
+  bool IsNothing() const { return columns.empty() || amounts.isZero(0); }
+};
+
+// The best variant of an effect in the residual of the space, to first order, with its amounts.
+FoundEffect FindEffect(const HypothesisSpace& space, const std::string& effect);
 
 // `effects`: the effects that are taken for the truth, one after another, after "nothing". The
 // result depends on the arguments and on DecisionInput::seed alone.
@@ -25,6 +38,9 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
 // directions.
 std::vector<RecordedSeparation> Separations(const DecisionInput& input,
                                             const std::vector<std::string>& effects);
+// The same for effects at given sizes, which need not be those of the residual of `space`.
+std::vector<RecordedSeparation> SeparationsOf(const HypothesisSpace& space,
+                                              const std::vector<FoundEffect>& effects);
 
 }  // namespace lacuna
 

@@ -4,6 +4,8 @@
 // the volume around each node, so that the result converges as the mesh is refined. With r well
 // below the element size the mass falls on the nearest nodes, and its place is only resolved to the
 // element size. It adds no stiffness and no rotational inertia beyond that of the nodes.
+#include "effects/attached_mass.h"
+
 #include <glog/logging.h>
 
 #include "effects/added_mass.h"
@@ -78,6 +80,13 @@ class AttachedMassEffect final : public CloneableEffect<AttachedMassEffect, Adde
 };
 
 }  // namespace
+
+std::shared_ptr<const Effect> MakeAttachedMass(double mass, const Eigen::Vector3d& place,
+                                               double radius, const Eigen::Vector3d& gravity) {
+  Eigen::VectorXd parameters(8);
+  parameters << mass, place, radius, gravity;
+  return std::make_shared<AttachedMassEffect>(parameters);
+}
 
 CatalogueEntry AttachedMass() {
   return {&AttachedMassEffect::TheCard(), CatalogueEntry::Kind::kEffect,

@@ -220,7 +220,13 @@ std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::pa
     return fmt::format(
         "lacuna add {0} {1}, or lacuna diagnose {0} --until-done; lacuna explain {1}", run.string(),
         diagnosis.effects.front());
-  if (!diagnosis.next_steps.empty()) return DescribeNextSteps(diagnosis);
+  if (!diagnosis.next_steps.empty()) {
+    const std::string steps = DescribeNextSteps(diagnosis);
+    return diagnosis.verdict == Verdict::kAmbiguous
+               ? fmt::format("{}; lacuna plan {} computes which recording would decide", steps,
+                             run.string())
+               : steps;
+  }
   if (diagnosis.verdict == Verdict::kNotInLibrary)
     return fmt::format(
         "lacuna compare {} shows where and when the model fails; docs/expression.md explains how "

@@ -5,7 +5,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "report/quantity_text.h"
@@ -13,16 +12,6 @@
 
 namespace lacuna {
 namespace {
-
-// "Viscoelastic branch (Maxwell element of a Prony series)" as "viscoelastic branch".
-std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name) {
-  std::string title = TitleOf(diagnosis, name);
-  if (const size_t at = title.find(" ("); at != std::string::npos) title.erase(at);
-  const bool is_abbreviation = title.substr(0, title.find(' ')).ends_with('.');
-  if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
-    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
-  return title;
-}
 
 std::string Lengths(const ModelErrors& errors) {
   return fmt::format("{}, {:.1f} times the noise", Millimetres(errors.held_out_rms),
@@ -107,8 +96,10 @@ std::string AmbiguousSentence(const DiagnosisRecord& diagnosis) {
   std::vector<std::string> titles;
   for (const std::string& name : diagnosis.effects)
     titles.push_back(WithProbability(diagnosis, name));
-  return fmt::format("Something is missing, but these recordings cannot tell which of these: {}.{}",
-                     fmt::join(titles, ", or "), NextStep(diagnosis));
+  return fmt::format(
+      "Something is missing, but these recordings cannot tell which of these: {}.{} `lacuna plan` "
+      "computes which recording would.",
+      fmt::join(titles, ", or "), NextStep(diagnosis));
 }
 
 std::string NuisanceSentence(const DiagnosisRecord& diagnosis) {

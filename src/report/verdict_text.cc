@@ -5,6 +5,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <variant>
 #include <vector>
@@ -193,6 +194,15 @@ std::string VerdictWithNames(const Conclusion& conclusion) {
   if (conclusion.effects.empty()) return VerdictName(conclusion.verdict);
   return fmt::format("{} {{{}}}", VerdictName(conclusion.verdict),
                      fmt::join(conclusion.effects, ", "));
+}
+
+std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name) {
+  std::string title = TitleOf(diagnosis, name);
+  if (const size_t at = title.find(" ("); at != std::string::npos) title.erase(at);
+  const bool is_abbreviation = title.substr(0, title.find(' ')).ends_with('.');
+  if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
+    title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  return title;
 }
 
 std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {

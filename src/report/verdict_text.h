@@ -14,6 +14,10 @@ std::string VerdictWithNames(const Conclusion& conclusion);
 // The title of an effect, what a nuisance is, or the name itself where the record has neither.
 std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
 
+// The title within a sentence, without what it has in brackets: "Viscoelastic branch (Maxwell
+// element of a Prony series)" as "viscoelastic branch".
+std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name);
+
 // Why the verdict was reached, in whole sentences on one line.
 std::string ExplainVerdict(const DiagnosisRecord& diagnosis);
 

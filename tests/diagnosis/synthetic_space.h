@@ -45,7 +45,9 @@ struct SyntheticSpace {
   }
 
   void Add(HypothesisKind kind, const std::string& name, const Eigen::MatrixXd& own) {
-    WeighedHypothesis hypothesis{.kind = kind, .name = name};
+    WeighedHypothesis hypothesis;
+    hypothesis.kind = kind;
+    hypothesis.name = name;
     for (Eigen::Index k = 0; k < own.cols(); ++k) {
       hypothesis.columns.push_back(static_cast<int>(columns.cols()));
       columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);

@@ -104,7 +104,7 @@ TEST(Headline, AnAmbiguousVerdictNamesTheSetAndTheExperiment) {
   EXPECT_EQ(Headline({model}).at(1),
             "Something is missing, but these recordings cannot tell which of these: viscoelastic "
             "branch (60 %), or drag of the surrounding medium (40 %). To decide: Film it in a "
-            "vacuum.");
+            "vacuum. `lacuna plan` computes which recording would.");
 }
 
 TEST(Headline, EveryOtherVerdictHasItsSentence) {

@@ -1,4 +1,4 @@
-// A folder of the test's own, gone when the test is over.
+// A folder of the test's (or the test suite's) own, gone when the object is.
 #ifndef LACUNA_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define LACUNA_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
@@ -15,10 +15,11 @@ namespace lacuna {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    const auto* all = ::testing::UnitTest::GetInstance();
+    const auto* test = all->current_test_info();  // none while a suite is set up
     path_ = std::filesystem::path(::testing::TempDir()) /
-            ("lacuna_" + std::string(test->test_suite_name()) + "_" + test->name() + "_" +
-             std::to_string(getpid()));
+            ("lacuna_" + std::string(all->current_test_suite()->name()) + "_" +
+             (test ? test->name() : "suite") + "_" + std::to_string(getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

@@ -1,0 +1,25 @@
+// Plans the next recording of a run that was fitted and diagnosed, and keeps the plan in
+// <run>/plan.
+#ifndef LACUNA_PLAN_PLAN_RUN_H_
+#define LACUNA_PLAN_PLAN_RUN_H_
+
+#include <filesystem>
+#include <optional>
+
+#include "core/progress.h"
+#include "record/plan_record.h"
+
+namespace lacuna {
+
+// The file of <run>/plan that RunPlan() writes.
+std::filesystem::path PlanFile(const std::filesystem::path& run);
+
+// Plays the stock protocols (protocol.h), those of the file `protocols` (protocol_reader.h), or
+// both, and writes plan.json. Throws InputError when the run is not fitted or not diagnosed, when
+// nothing is left to be decided, and for errors in `protocols`; Interrupted.
+PlanRecord RunPlan(const std::filesystem::path& run,
+                   const std::optional<std::filesystem::path>& protocols, Progress* progress);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_PLAN_PLAN_RUN_H_

@@ -1,0 +1,326 @@
+#include "plan/planner.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "calibration/linear_misfit.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "diagnosis/adequacy.h"
+#include "diagnosis/candidates.h"
+#include "diagnosis/decision_rules.h"
+#include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/projected_hypotheses.h"
+#include "plan/joined_space.h"
+#include "plan/planned_recording.h"
+#include "report/verdict_text.h"
+
+namespace lacuna {
+namespace {
+
+using Kind = HypothesisProbability::Kind;
+
+// Simulated recordings per protocol and rival: frequencies to within 0.035.
+constexpr int kDraws = 200;
+// Of a normal distribution: the half width of the 95 % interval.
+constexpr double kHalfWidth95 = 1.96;
+
+// The influence of everything that is weighed on a planned recording.
+struct Influence {
+  std::string message;  // why the model cannot play the protocol
+  PlannedColumns columns;
+  double seconds = 0;
+};
+
+class Planner {
+ public:
+  Planner(const DiagnosedRun& run, PlanRecord* record);
+
+  PlannedOutcome Play(const Protocol& protocol) const;
+
+ private:
+  Influence InfluenceOf(const Protocol& protocol) const;
+  // The nuisances of the planned recording: those of the recording that it changes.
+  Eigen::VectorXd ValuesOf(const CalibrationProblem& planned, const Protocol& protocol) const;
+  // Whether all variants of the effect are candidates with a derivative, not pilots.
+  bool HasDerivatives(const std::string& effect) const;
+  const CandidateEffect& Find(const WeighedHypothesis& hypothesis) const;
+  void Predict(const JoinedSpace& space, PlannedOutcome* outcome) const;
+  // Of each rival, to first order.
+  std::map<std::string, double> EvidenceIn(const HypothesisSpace& space,
+                                           const ProjectedHypotheses& projected,
+                                           const Eigen::VectorXd& toward) const;
+
+  const DiagnosedRun& run_;
+  const CalibrationProblem problem_;
+  PredictionStudy study_;  // at the fitted values, with the noise of the run
+  std::vector<CandidateEffect> candidates_;
+  PlanRecord* record_;
+  HypothesisSpace now_;
+  std::vector<FoundEffect> found_;  // the rivals, in now_
+};
+
+std::vector<std::string> NamesOf(const std::vector<PlannedRival>& rivals) {
+  std::vector<std::string> names;
+  for (const PlannedRival& rival : rivals) names.push_back(rival.effect);
+  return names;
+}
+
+Planner::Planner(const DiagnosedRun& run, PlanRecord* record)
+    : run_(run), problem_(run.fitted.study, run.fitted.mesh), record_(record) {
+  study_ = problem_.StudyAt(run.fitted.values);
+  study_.time_step = run.diagnosis.time_step;
+  candidates_ = MakeCandidates({*problem_.body(),
+                                study_.effects,
+                                study_.time_step,
+                                Duration(study_),
+                                {},
+                                study_.candidates,
+                                GrippedNodes(problem_.models().front().model())});
+  std::erase_if(record->rivals, [&](const PlannedRival& rival) {
+    const bool is_known = HasDerivatives(rival.effect);
+    if (!is_known) record->not_predicted.push_back(rival.effect);
+    return !is_known;
+  });
+  now_ = SpaceOfRivals(run.decision.baseline, NamesOf(record->rivals));
+  for (const PlannedRival& rival : record->rivals) found_.push_back(FindEffect(now_, rival.effect));
+}
+
+bool Planner::HasDerivatives(const std::string& effect) const {
+  const std::vector<WeighedHypothesis>& all = run_.decision.baseline.hypotheses;
+  return std::all_of(all.begin(), all.end(), [&](const WeighedHypothesis& hypothesis) {
+    return hypothesis.name != effect ||
+           std::any_of(candidates_.begin(), candidates_.end(),
+                       [&](const CandidateEffect& candidate) {
+                         return candidate.type == effect && candidate.variant == hypothesis.variant;
+                       });
+  });
+}
+
+const CandidateEffect& Planner::Find(const WeighedHypothesis& hypothesis) const {
+  const auto found =
+      std::find_if(candidates_.begin(), candidates_.end(), [&](const CandidateEffect& candidate) {
+        return candidate.type == hypothesis.name && candidate.variant == hypothesis.variant;
+      });
+  CHECK(found != candidates_.end()) << hypothesis.name << " " << hypothesis.variant;
+  return *found;
+}
+
+Eigen::VectorXd Planner::ValuesOf(const CalibrationProblem& planned,
+                                  const Protocol& protocol) const {
+  const Eigen::Index of_model = static_cast<Eigen::Index>(study_.fitted.size());
+  Eigen::VectorXd values = planned.Start();
+  values.head(of_model) = run_.fitted.values.head(of_model);
+  for (size_t r = 0; r < study_.recordings.size(); ++r) {
+    const PredictedRecording& item = study_.recordings[r];
+    if (item.name != protocol.recording || !item.hold) continue;
+    const Eigen::VectorXd own = problem_.NuisanceOf(r, run_.fitted.values);
+    values.segment<3>(of_model) = PlannedHoldForce(protocol, own.head<3>());
+  }
+  return values;
+}
+
+Influence Planner::InfluenceOf(const Protocol& protocol) const {
+  Influence influence;
+  PlannedRecording planned = PlanRecording(protocol, study_, run_.fitted.mesh);
+  influence.seconds = planned.Seconds();
+  PredictionStudy study = study_;
+  study.recordings = {std::move(planned.item)};
+  const CalibrationProblem problem(study, run_.fitted.mesh);
+  const Eigen::VectorXd values = ValuesOf(problem, protocol);
+
+  std::vector<MisfitDirection> directions;
+  for (const WeighedHypothesis& hypothesis : now_.hypotheses) {
+    const CandidateEffect& candidate = Find(hypothesis);
+    for (const int parameter : candidate.amplitude)
+      directions.push_back({.perturbation = {.effect = candidate.effect, .parameter = parameter}});
+  }
+  const Eigen::Index of_effects = static_cast<Eigen::Index>(directions.size());
+  const GripMotions grips = MakeGripMotions(problem);
+  directions.insert(directions.end(), grips.directions.begin(), grips.directions.end());
+  LinearisedMisfit misfit = problem.Linearise(values, true, directions);
+  if (!misfit.usable) {
+    influence.message = misfit.message;
+    return influence;
+  }
+  const Eigen::Index known = static_cast<Eigen::Index>(problem.parameters().size());
+  const Eigen::Index of_model = static_cast<Eigen::Index>(study.fitted.size());
+  const Eigen::MatrixXd grip_columns =
+      misfit.jacobian.rightCols(misfit.jacobian.cols() - known - of_effects);
+  Eigen::MatrixXd own = misfit.jacobian.middleCols(of_model, known - of_model);
+  std::vector<LinearPrior> own_priors = PriorsAbout(problem.parameters(), values);
+  own_priors.erase(own_priors.begin(), own_priors.begin() + of_model);
+  const auto add_own = [&](const NuisanceCandidate& nuisance) {
+    const Eigen::Index before = own.cols();
+    own.conservativeResize(Eigen::NoChange, before + nuisance.columns.cols());
+    own.rightCols(nuisance.columns.cols()) = nuisance.columns;
+    own_priors.insert(own_priors.end(), nuisance.priors.begin(), nuisance.priors.end());
+  };
+  for (const NuisanceCandidate& nuisance :
+       ModelNuisances({problem, values, misfit, grips, grip_columns}))
+    if (nuisance.card.is_always_in_model) add_own(nuisance);
+  for (LinearPrior& prior : own_priors) prior = {0, prior.deviation, false};
+
+  const auto whiten = [&](const Eigen::MatrixXd& columns) {
+    return WhitenedRows(columns, misfit, run_.diagnosis.noise.correlation_time, false);
+  };
+  influence.columns = {whiten(misfit.jacobian.leftCols(of_model)), whiten(own),
+                       std::move(own_priors),
+                       whiten(misfit.jacobian.middleCols(known, of_effects))};
+  return influence;
+}
+
+std::map<std::string, double> Planner::EvidenceIn(const HypothesisSpace& space,
+                                                  const ProjectedHypotheses& projected,
+                                                  const Eigen::VectorXd& toward) const {
+  std::map<std::string, double> evidence;
+  for (const NamedEvidence& named :
+       SumVariants(space, projected.LogBayesFactors(projected.Project(toward))))
+    evidence[named.name] = named.evidence;
+  return evidence;
+}
+
+void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
+  const HypothesisSpace& joined = space.joined();
+  const ProjectedHypotheses beside(joined), beside_now(now_);
+  const std::map<std::string, double> before = EvidenceIn(now_, beside_now, now_.model.toward());
+  std::vector<HypothesisProbability> kept;  // nothing, and the rivals
+  for (const HypothesisProbability& one : run_.diagnosis.decision.probabilities)
+    if (one.kind == Kind::kNothing ||
+        (one.kind == Kind::kEffect && before.count(one.names.front()) > 0))
+      kept.push_back(one);
+  for (size_t k = 0; k < found_.size(); ++k) {
+    int right = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const std::map<std::string, double> after = EvidenceIn(
+          joined, beside,
+          space.DrawToward(found_[k], run_.decision.seed + k, static_cast<uint64_t>(draw)));
+      std::vector<HypothesisProbability> posterior = kept;
+      for (HypothesisProbability& one : posterior)
+        if (one.kind == Kind::kEffect)
+          one.evidence += after.at(one.names.front()) - before.at(one.names.front());
+      SetPosterior(&posterior);
+      const Naming naming = NameFrom(posterior);
+      if (naming.level == Naming::Level::kCommon &&
+          naming.names == std::vector<std::string>{found_[k].name})
+        ++right;
+    }
+    outcome->named.push_back(static_cast<double>(right) / kDraws);
+    outcome->probability += record_->rivals[k].probability * outcome->named.back();
+  }
+  std::vector<FoundEffect> found_then;
+  for (const FoundEffect& effect : found_) found_then.push_back(space.InJoined(effect));
+  const std::vector<RecordedSeparation> now = SeparationsOf(now_, found_);
+  const std::vector<RecordedSeparation> then = SeparationsOf(joined, found_then);
+  for (size_t k = 0; k < now.size(); ++k)
+    outcome->pairs.push_back({now[k].first, now[k].second, now[k].lambda, then[k].lambda});
+  const Eigen::VectorXd projected_now = beside_now.Project(now_.model.toward());
+  const Eigen::VectorXd projected = beside.Project(joined.model.toward());
+  for (const FoundEffect& effect : found_) {
+    for (size_t h = 0; h < now_.hypotheses.size(); ++h) {
+      if (now_.hypotheses[h].columns != effect.columns) continue;
+      const std::vector<CandidateAmount> amounts = AmountsOf(Find(now_.hypotheses[h]));
+      const Eigen::MatrixXd covariance_now = beside_now.AmountsOf(h, projected_now).covariance;
+      const Eigen::MatrixXd covariance = beside.AmountsOf(h, projected).covariance;
+      for (size_t a = 0; a < amounts.size(); ++a) {
+        const Eigen::Index at = static_cast<Eigen::Index>(a);
+        outcome->sizes.push_back({effect.name, amounts[a].name, amounts[a].unit, effect.amounts[at],
+                                  kHalfWidth95 * std::sqrt(covariance_now(at, at)),
+                                  kHalfWidth95 * std::sqrt(covariance(at, at))});
+      }
+    }
+  }
+}
+
+PlannedOutcome Planner::Play(const Protocol& protocol) const {
+  PlannedOutcome outcome;
+  outcome.name = protocol.name;
+  outcome.what = DescribeProtocol(protocol);
+  Influence influence;
+  try {
+    influence = InfluenceOf(protocol);
+  } catch (const InputError& problem) {
+    influence.message = problem.what();
+  }
+  outcome.seconds = influence.seconds;
+  outcome.message = influence.message;
+  if (outcome.IsPlayable()) Predict(JoinedSpace(now_, influence.columns), &outcome);
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<PlannedRival> RivalsOf(const DiagnosisRecord& diagnosis) {
+  const std::vector<HypothesisProbability>& all = diagnosis.decision.probabilities;
+  std::map<std::string, double> probability;
+  std::vector<std::string> order;
+  for (const size_t k : NameFrom(all).kept) {
+    const HypothesisProbability& one = all[k];
+    if (one.kind != Kind::kEffect && one.kind != Kind::kPair) continue;
+    for (const std::string& name : one.names) {
+      if (probability.try_emplace(name, 0.0).second) order.push_back(name);
+      if (one.kind == Kind::kEffect) probability[name] += one.probability;
+    }
+  }
+  std::vector<PlannedRival> rivals;
+  for (const std::string& name : order) {
+    PlannedRival rival{name, ShortTitle(diagnosis, name), probability[name], 0};
+    for (const RecordedPower& power : diagnosis.decision.power)
+      if (power.truth == std::vector<std::string>{name}) rival.named_now = power.named;
+    rivals.push_back(std::move(rival));
+  }
+  return rivals;
+}
+
+PlanRecord MakePlan(const DiagnosedRun& run, const std::vector<Protocol>& protocols,
+                    Progress* progress) {
+  PlanRecord record;
+  record.run = run.fitted.study.name;
+  record.verdict = VerdictWithNames(run.diagnosis);
+  const std::vector<HypothesisProbability>& all = run.diagnosis.decision.probabilities;
+  record.rivals = RivalsOf(run.diagnosis);
+  size_t kept = 0;
+  for (const size_t k : NameFrom(all).kept) {
+    ++kept;
+    if (all[k].kind == Kind::kNuisance) record.also_left.push_back(all[k].names.front());
+  }
+  if (record.rivals.empty() || kept < 2)
+    throw InputError(fmt::format(
+        "the diagnosis of {} has left no rivals: there is nothing that a further recording would "
+        "have to decide",
+        record.run));
+  while (record.rivals.size() > kMostPlannedRivals) {
+    record.not_predicted.push_back(record.rivals.back().effect);
+    record.rivals.pop_back();
+  }
+  const Planner planner(run, &record);  // leaves out rivals whose influence it cannot predict
+  if (record.rivals.empty())
+    throw InputError(
+        fmt::format("the influence of {} on another recording cannot be predicted to "
+                    "first order",
+                    fmt::join(record.not_predicted, ", ")));
+  double sum = 0;
+  for (const PlannedRival& rival : record.rivals) sum += rival.probability;
+  for (PlannedRival& rival : record.rivals)
+    rival.probability =
+        sum > 0 ? rival.probability / sum : 1 / static_cast<double>(record.rivals.size());
+  progress->Begin("plan", static_cast<int64_t>(protocols.size()));
+  record.outcomes.resize(protocols.size());
+  std::atomic<int64_t> done = 0;
+  ParallelFor(static_cast<int64_t>(protocols.size()), 1, [&](int64_t k) {
+    record.outcomes[static_cast<size_t>(k)] = planner.Play(protocols[static_cast<size_t>(k)]);
+    progress->Report(++done);
+  });
+  progress->End(fmt::format("{} protocols", protocols.size()));
+  SortOutcomes(&record.outcomes);
+  return record;
+}
+
+}  // namespace lacuna

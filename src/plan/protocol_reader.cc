@@ -1,0 +1,82 @@
+#include "plan/protocol_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "core/suggestion.h"
+
+namespace lacuna {
+namespace {
+
+// The largest factor on the duration and on the pull: beyond it a slip of the keyboard is likelier.
+constexpr double kLargestFactor = 100;
+constexpr int kMostMarkers = 1000;
+
+std::string ReadBase(const Config& item, const PredictionStudy& study) {
+  if (!item.Has("recording")) return PlannableRecording(study).name;
+  const std::string name = item.Text("recording");
+  std::vector<std::string> known;
+  for (const PredictedRecording& recording : study.recordings) {
+    if (recording.name != name) {
+      known.push_back(recording.name);
+    } else if (recording.scans != nullptr) {
+      item.Fail("recording", "shows scans; only recordings of markers can be planned yet");
+    } else {
+      return name;
+    }
+  }
+  item.Fail("recording",
+            fmt::format("the run has no recording \"{}\"{}", name, Suggestion(name, known)));
+}
+
+Eigen::Vector3d ReadTurn(const Config& turn) {
+  const Eigen::Vector3d axis = turn.Vector("axis", kDimensionless);
+  if (axis.norm() == 0) turn.Fail("axis", "expected a direction other than 0");
+  constexpr double kHalf = std::numbers::pi;
+  return turn.Quantity("angle", kAngle, {-kHalf, kHalf, false, false}) * axis.normalized();
+}
+
+Protocol ReadProtocol(const Config& item, const PredictionStudy& study) {
+  const Bounds factor{0, kLargestFactor, true, false};
+  Protocol protocol;
+  protocol.name = item.Text("name");
+  if (protocol.name.empty()) item.Fail("name", "is empty");
+  protocol.recording = ReadBase(item, study);
+  protocol.duration = item.Number("duration", factor, protocol.duration);
+  protocol.pull = item.Number("pull", factor, protocol.pull);
+  if (const auto turn = item.OptionalChild("turn")) protocol.turn = ReadTurn(*turn);
+  if (const auto shake = item.OptionalChild("shake"))
+    protocol.shake = Protocol::Shake{shake->Vector("amplitude", kLength),
+                                     shake->Quantity("frequency", kRate, kPositive)};
+  if (const auto weight = item.OptionalChild("weight"))
+    protocol.weight = Protocol::Weight{weight->Quantity("mass", kMass, kPositive),
+                                       weight->Vector("place", kLength),
+                                       weight->Quantity("radius", kLength, kPositive)};
+  protocol.more_markers = item.Integer("more_markers", 0, kMostMarkers, 0);
+  return protocol;
+}
+
+}  // namespace
+
+ProtocolFile ReadProtocols(const Config& config, const PredictionStudy& study) {
+  config.Integer("schema_version", 1, 1);
+  ProtocolFile file;
+  file.stock = config.Flag("stock", file.stock);
+  file.items = config.Items("protocols");
+  if (file.items.empty()) config.Fail("protocols", "is empty");
+  for (const Config& item : file.items) {
+    Protocol protocol = ReadProtocol(item, study);
+    for (const Protocol& other : file.protocols)
+      if (other.name == protocol.name)
+        item.Fail("name",
+                  fmt::format("\"{}\" is already the name of another protocol", protocol.name));
+    file.protocols.push_back(std::move(protocol));
+  }
+  config.RefuseUnknownKeys();
+  return file;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,91 @@
+#include "record/plan_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <tuple>
+
+#include "core/atomic_file.h"
+#include "core/json_number.h"
+
+namespace lacuna {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSchemaVersion = 1;
+// Recordings whose probabilities of a right name differ by less count as equally good.
+constexpr double kNoticeable = 0.05;
+
+json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival>& rivals) {
+  json named = json::object(), pairs = json::array(), sizes = json::array();
+  for (size_t k = 0; k < outcome.named.size(); ++k) named[rivals[k].effect] = outcome.named[k];
+  for (const PlannedPair& pair : outcome.pairs)
+    pairs.push_back({{"first", pair.first},
+                     {"second", pair.second},
+                     {"lambda_now", pair.lambda_now},
+                     {"lambda_then", pair.lambda_then}});
+  for (const PlannedSize& size : outcome.sizes)
+    sizes.push_back({{"effect", size.effect},
+                     {"parameter", size.parameter},
+                     {"unit", size.unit},
+                     {"value", NumberOrNull(size.value)},
+                     {"half_width_now", NumberOrNull(size.half_width_now)},
+                     {"half_width_then", NumberOrNull(size.half_width_then)}});
+  return {{"name", outcome.name},
+          {"what", outcome.what},
+          {"seconds", outcome.seconds},
+          {"message", outcome.message},
+          {"named", named},
+          {"probability", outcome.probability},
+          {"pairs", pairs},
+          {"sizes", sizes},
+          {"experiment", outcome.experiment}};
+}
+
+}  // namespace
+
+double PlannedOutcome::LeastLambda() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PlannedPair& pair : pairs) least = std::min(least, pair.lambda_then);
+  return least;
+}
+
+bool PlanRecord::IsSeparable() const {
+  return std::any_of(outcomes.begin(), outcomes.end(), [](const PlannedOutcome& outcome) {
+    return outcome.IsPlayable() && outcome.LeastLambda() >= kSeparableLambda;
+  });
+}
+
+void SortOutcomes(std::vector<PlannedOutcome>* outcomes) {
+  const auto key = [](const PlannedOutcome& outcome) {
+    return std::make_tuple(!outcome.IsPlayable(), -std::round(outcome.probability / kNoticeable),
+                           outcome.seconds, -outcome.LeastLambda());
+  };
+  std::stable_sort(
+      outcomes->begin(), outcomes->end(),
+      [&](const PlannedOutcome& a, const PlannedOutcome& b) { return key(a) < key(b); });
+}
+
+void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file) {
+  json rivals = json::array(), outcomes = json::array();
+  for (const PlannedRival& rival : record.rivals)
+    rivals.push_back({{"effect", rival.effect},
+                      {"title", rival.title},
+                      {"probability", rival.probability},
+                      {"named_now", rival.named_now}});
+  for (const PlannedOutcome& outcome : record.outcomes)
+    outcomes.push_back(OutcomeToJson(outcome, record.rivals));
+  const json all = {{"schema_version", kSchemaVersion},
+                    {"run", record.run},
+                    {"verdict", record.verdict},
+                    {"rivals", rivals},
+                    {"also_left", record.also_left},
+                    {"not_predicted", record.not_predicted},
+                    {"is_separable", record.IsSeparable()},
+                    {"outcomes", outcomes}};
+  WriteFileAtomically(file, all.dump(2) + "\n");
+}
+
+}  // namespace lacuna

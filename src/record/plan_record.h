@@ -1,0 +1,78 @@
+// Which next recording would decide between the effects that a diagnosis has left: plan/plan.json
+// in the run's folder.
+//
+// λ is the squared distance of the predictions of two effects in units of the noise, after
+// everything that is fitted has been projected out (RecordedSeparation). "Now" is with the
+// recordings of the run alone, "then" with the planned one joined to them.
+#ifndef LACUNA_RECORD_PLAN_RECORD_H_
+#define LACUNA_RECORD_PLAN_RECORD_H_
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lacuna {
+
+// With this λ two effects are told apart in about four recordings of five.
+inline constexpr double kSeparableLambda = 12;
+
+// An effect that the diagnosis could not rule out.
+struct PlannedRival {
+  std::string effect, title;  // "mass_damping"; within a sentence
+  double probability = 0;     // of the diagnosis, among the rivals; they sum to 1
+  double named_now = 0;       // how often recordings like those of the run lead to its name alone
+};
+
+struct PlannedPair {
+  std::string first, second;
+  double lambda_now = 0, lambda_then = 0;
+};
+
+// One of the parameters that define the size of a rival, SI, with the half-width of its 95 %
+// interval, which its prior limits where the recordings do not determine it.
+struct PlannedSize {
+  std::string effect, parameter, unit;
+  double value = 0, half_width_now = 0, half_width_then = 0;
+};
+
+// What a planned recording would tell.
+struct PlannedOutcome {
+  std::string name;                // of the protocol
+  std::string what;                // what is done, in words
+  double seconds = 0;              // of recording
+  std::string message;             // why the model cannot play it; empty: it can
+  std::vector<double> named;       // for each rival: the probability of its name, if it is missing
+  double probability = 0;          // of the right name, rivals weighted by their probability
+  std::vector<PlannedPair> pairs;  // of rivals
+  std::vector<PlannedSize> sizes;
+  std::string experiment;  // the YAML file that was written, relative to plan.json
+
+  bool IsPlayable() const { return message.empty(); }
+  // The smallest λ of a pair with the recording; infinite where there is no pair.
+  double LeastLambda() const;
+};
+
+struct PlanRecord {
+  std::string run;                     // the name of the experiment
+  std::string verdict;                 // of the diagnosis, with its names
+  std::vector<PlannedRival> rivals;    // the most probable one first
+  std::vector<std::string> also_left;  // nuisances that the diagnosis has not ruled out either
+  std::vector<std::string>
+      not_predicted;                     // rivals whose influence on a planned recording is unknown
+  std::vector<PlannedOutcome> outcomes;  // the best first; those that cannot be played last
+
+  // Whether some planned recording raises λ of every pair to kSeparableLambda.
+  bool IsSeparable() const;
+};
+
+// Sorts by the probability of the right name, rounded to 5 % because a simulation does not know it
+// better; where that is the same, by the shorter recording, then by the larger least λ, then by the
+// order given. What cannot be played comes last.
+void SortOutcomes(std::vector<PlannedOutcome>* outcomes);
+
+// Throws InputError when the file cannot be written.
+void WritePlanFile(const PlanRecord& record, const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_RECORD_PLAN_RECORD_H_

@@ -1,0 +1,123 @@
+#include "report/plan_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/text_layout.h"
+#include "report/quantity_text.h"
+
+namespace lacuna {
+namespace {
+
+// A recording is recommended only if the right name is at least this probable with it.
+constexpr double kWorthMaking = 0.5;
+
+std::string Joined(const std::vector<std::string>& phrases) {
+  if (phrases.empty()) return "";
+  if (phrases.size() == 1) return phrases.front();
+  const std::vector<std::string> first(phrases.begin(), phrases.end() - 1);
+  return fmt::format("{} and {}", fmt::join(first, ", "), phrases.back());
+}
+
+std::string Question(const PlanRecord& plan) {
+  std::vector<std::string> rivals;
+  double now = 0;
+  for (const PlannedRival& rival : plan.rivals) {
+    rivals.push_back(fmt::format("{} ({})", rival.title, PercentText(rival.probability)));
+    now += rival.probability * rival.named_now;
+  }
+  std::string text =
+      rivals.size() == 1
+          ? fmt::format("Whether {} is missing, or something else, is open.", plan.rivals[0].title)
+          : fmt::format("The diagnosis cannot tell apart {}.", Joined(rivals));
+  text += fmt::format(" Recordings like these lead to the right name in {} of such cases.",
+                      PercentText(now));
+  if (!plan.also_left.empty())
+    text += fmt::format(
+        " Errors of the measurement or of the discretisation could explain it, too "
+        "({}); a plan does not count them.",
+        fmt::join(plan.also_left, ", "));
+  if (!plan.not_predicted.empty())
+    text += fmt::format(" Not planned for: {}.", fmt::join(plan.not_predicted, ", "));
+  return text;
+}
+
+std::string Advice(const PlanRecord& plan) {
+  if (plan.outcomes.empty() || !plan.outcomes.front().IsPlayable())
+    return "The model can play none of these recordings.";
+  const PlannedOutcome& best = plan.outcomes.front();
+  std::vector<std::string> named;
+  for (size_t k = 0; k < plan.rivals.size(); ++k)
+    named.push_back(
+        fmt::format("{} if it is {}", PercentText(best.named[k]), plan.rivals[k].title));
+  if (best.probability < kWorthMaking)
+    return fmt::format(
+        "None of the {} recordings that were tried is likely to decide it. The best, "
+        "{} ({:.2g} s), would lead to the right name in {} of cases: {}.",
+        plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability),
+        Joined(named));
+  return fmt::format(
+      "Record next: {} ({:.2g} s). With it the right name is expected in {} of "
+      "cases: {}.",
+      best.what, best.seconds, PercentText(best.probability), Joined(named));
+}
+
+std::string LambdaText(double lambda) {
+  return std::isfinite(lambda) ? fmt::format("{:.3g}", lambda) : "–";
+}
+
+std::string Table(const PlanRecord& plan) {
+  size_t width = DisplayWidth("recording");
+  for (const PlannedOutcome& outcome : plan.outcomes)
+    width = std::max(width, DisplayWidth(outcome.name));
+  std::string table = "  " + PaddedRight("recording", width + 2) + PaddedLeft("right name", 10) +
+                      PaddedLeft("least λ", 10) + PaddedLeft("length", 10) + "\n";
+  for (const PlannedOutcome& outcome : plan.outcomes) {
+    if (!outcome.IsPlayable()) continue;
+    table += "  " + PaddedRight(outcome.name, width + 2) +
+             PaddedLeft(PercentText(outcome.probability), 10) +
+             PaddedLeft(LambdaText(outcome.LeastLambda()), 10) +
+             PaddedLeft(fmt::format("{:.2f} s", outcome.seconds), 10) + "\n";
+  }
+  return table;
+}
+
+std::string Sizes(const PlannedOutcome& best) {
+  std::string lines;
+  for (const PlannedSize& size : best.sizes)
+    lines +=
+        fmt::format("  {}.{}: {:.3g} ± {:.2g} {}, now ± {:.2g} {}\n", size.effect, size.parameter,
+                    size.value, size.half_width_then, size.unit, size.half_width_now, size.unit);
+  return lines;
+}
+
+}  // namespace
+
+std::string PlanSummary(const PlanRecord& plan) {
+  return Wrapped(Question(plan), "", "") + Wrapped(Advice(plan), "", "");
+}
+
+std::string PlanReport(const PlanRecord& plan) {
+  std::string text = PlanSummary(plan) + "\n" + Table(plan);
+  text += "\n" + Wrapped(
+                     "λ is the squared distance between the predictions of two rivals in units of "
+                     "the noise, for the pair that is hardest to tell apart; λ = 12 tells two "
+                     "effects apart in four cases of five.",
+                     "", "");
+  if (!plan.outcomes.empty() && plan.outcomes.front().IsPlayable() &&
+      !plan.outcomes.front().sizes.empty())
+    text +=
+        "\nExpected 95 % intervals with the best recording, if the effect is the missing one:\n" +
+        Sizes(plan.outcomes.front());
+  for (const PlannedOutcome& outcome : plan.outcomes)
+    if (!outcome.IsPlayable())
+      text += "\n" + Wrapped(fmt::format("{} cannot be made: {}", outcome.name, outcome.message),
+                             "", "  ");
+  return text;
+}
+
+}  // namespace lacuna

@@ -1,0 +1,132 @@
+// What is planned for a bar whose model lacks a damping, so that drag and mass damping are rivals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "calibration/calibration_run.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "diagnosis/diagnosis_run.h"
+#include "plan/plan_run.h"
+#include "plan/planner.h"
+#include "prediction/prediction_study_reader.h"
+#include "report/plan_report.h"
+#include "support/held_bar.h"
+#include "support/temporary_folder.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+ProgressOptions Silent() {
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  return silent;
+}
+
+// A recording that is too noisy for its rivals: mass damping and drag act alike.
+class PlanOfABar : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    HeldBarTruth truth;
+    truth.alpha = 3;
+    truth.noise = 4e-4;
+    WriteBarRecording(folder_.Path(), FilmHeldBar(truth));
+    std::ofstream(folder_ / "bar.yaml") << BarExperiment(
+        folder_.Path(),
+        {{"  - {type: mass_damping, alpha: 1 1/s}\n", ""},
+         {", {name: mass_damping.alpha}", ""},
+         {"noise: 0.05 mm", "noise: 0.4 mm"},
+         {"max_volume: 1000 mm^3", "max_volume: 2000 mm^3, preserve_surface: false"},
+         {"name: bar\n", "name: bar\noutput: run\n"}});
+    Progress silent(Silent());
+    RunCalibration(ReadPredictionStudy(Config::Load(folder_ / "bar.yaml")), &silent);
+    const FittedRun fitted = OpenRun(Run());
+    RunDiagnosis(fitted, Run(), {}, &silent);
+  }
+  std::filesystem::path Run() const { return folder_ / "run"; }
+  PlanRecord Plan(const std::vector<Protocol>& protocols) const {
+    const FittedRun fitted = OpenRun(Run());
+    const KeptDiagnosis kept = *FindDiagnosis(Run());
+    Progress silent(Silent());
+    return MakePlan({fitted, kept.record, kept.decision}, protocols, &silent);
+  }
+  Protocol Named(const std::string& name) const {
+    Protocol protocol;
+    protocol.name = name;
+    protocol.recording = OpenRun(Run()).study.recordings.front().name;
+    return protocol;
+  }
+
+  TemporaryFolder folder_;
+};
+
+// One test, because the diagnosis that it starts from takes most of its time.
+TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
+  Protocol again = Named("again"), stronger = Named("stronger"), away = Named("away");
+  stronger.pull = 2;
+  away.weight = Protocol::Weight{0.001, {1, 0, 0}, 0.01};
+  const PlanRecord plan = Plan({away, again, stronger});
+  ASSERT_GE(plan.rivals.size(), 2u) << plan.verdict;
+  double sum = 0;
+  for (const PlannedRival& rival : plan.rivals) sum += rival.probability;
+  EXPECT_NEAR(sum, 1, 1e-9);
+  ASSERT_EQ(plan.outcomes.size(), 3u);
+  EXPECT_EQ(plan.outcomes[0].name, "stronger");
+  EXPECT_EQ(plan.outcomes[1].name, "again");
+  EXPECT_THAT(plan.outcomes[2].message, HasSubstr("away from the object"));  // the last
+  const PlannedOutcome &best = plan.outcomes[0], &repeated = plan.outcomes[1];
+  ASSERT_EQ(best.pairs.size(), repeated.pairs.size());
+  ASSERT_FALSE(best.pairs.empty());
+  for (size_t k = 0; k < best.pairs.size(); ++k) {
+    const PlannedPair &a = repeated.pairs[k], &b = best.pairs[k];
+    // The repetition has all frames of the recording, which the fit has not; its mesh and step
+    // errors are taken to be new.
+    EXPECT_GT(a.lambda_then, 1.4 * a.lambda_now) << a.first << " " << a.second;
+    EXPECT_LT(a.lambda_then, 3 * a.lambda_now) << a.first << " " << a.second;
+    EXPECT_GT(b.lambda_then, a.lambda_then) << a.first << " " << a.second;
+  }
+  for (const PlannedSize& size : best.sizes) {
+    EXPECT_GT(size.half_width_then, 0) << size.effect;
+    EXPECT_LT(size.half_width_then, size.half_width_now) << size.effect;
+  }
+  EXPECT_GE(best.probability, repeated.probability);
+
+  // It does not depend on the number of threads.
+  Protocol turned = Named("turned");
+  turned.turn = Eigen::Vector3d::UnitY();
+  const int threads = ThreadCount();
+  const auto with = [&](int count) {
+    SetThreadCount(count);
+    const PlanRecord plan = Plan({again, turned});
+    const std::filesystem::path file = folder_ / "plan.json";
+    WritePlanFile(plan, file);
+    std::ifstream stream(file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string one = with(1);
+  EXPECT_EQ(with(2), one);
+  SetThreadCount(threads);
+
+  // It is kept with the run and told in words.
+  std::ofstream(folder_ / "protocols.yaml")
+      << "schema_version: 1\nstock: false\nprotocols:\n  - {name: harder, pull: 3}\n";
+  Progress silent(Silent());
+  const PlanRecord kept = RunPlan(Run(), folder_ / "protocols.yaml", &silent);
+  std::ifstream stream(PlanFile(Run()));
+  const nlohmann::json written = nlohmann::json::parse(stream);
+  EXPECT_EQ(written.at("outcomes").size(), 1u);
+  EXPECT_EQ(written.at("outcomes")[0].at("name"), "harder");
+  const std::string text = PlanReport(kept);
+  EXPECT_THAT(text, HasSubstr("The diagnosis cannot tell apart"));
+  EXPECT_THAT(text, HasSubstr("3 times the pull"));
+  EXPECT_THAT(text, HasSubstr("least λ"));
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,147 @@
+#include "plan/planned_recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "core/error.h"
+#include "plan/planned_bar.h"
+#include "scan/recorded_grip.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::HasSubstr;
+
+class PlannedRecordingOfABar : public ::testing::Test {
+ protected:
+  Protocol Named(const std::string& name) const {
+    Protocol protocol;
+    protocol.name = name;
+    protocol.recording = bar_.Name();
+    return protocol;
+  }
+  PlannedRecording Plan(const Protocol& protocol) const {
+    return PlanRecording(protocol, bar_.study, bar_.mesh);
+  }
+  std::string ErrorOf(const Protocol& protocol) const {
+    try {
+      Plan(protocol);
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+    return "";
+  }
+
+  PlannedBar bar_;
+};
+
+TEST_F(PlannedRecordingOfABar, FitsAllFramesOfARepetition) {
+  const PlannedRecording planned = Plan(Named("again"));
+  EXPECT_EQ(planned.item.name, "again");
+  EXPECT_EQ(planned.item.frames.size(), static_cast<size_t>(kFrames));
+  EXPECT_TRUE(std::isinf(planned.item.fit_until));
+  EXPECT_NEAR(planned.Seconds(), 0.01 * (kFrames - 1), 1e-12);
+  EXPECT_TRUE(planned.fixture.isApprox(Eigen::Isometry3d::Identity()));
+}
+
+TEST_F(PlannedRecordingOfABar, LastsLongerWithTheSameSpacing) {
+  Protocol protocol = Named("longer");
+  protocol.duration = 2;
+  const PlannedRecording planned = Plan(protocol);
+  const std::vector<double>& times = planned.item.recording.times;
+  const double last = 0.01 * (kFrames - 1);
+  EXPECT_NEAR(times.back(), kRelease + 2 * (last - kRelease), 0.0051);
+  for (size_t k = 1; k < times.size(); ++k) EXPECT_NEAR(times[k] - times[k - 1], 0.01, 1e-9);
+  protocol.duration = 0.01;
+  EXPECT_EQ(ErrorOf(protocol), "");  // the frames before the release are still there
+}
+
+TEST_F(PlannedRecordingOfABar, TurnsTheClampAndTheHandButNotGravity) {
+  Protocol protocol = Named("turned");
+  protocol.turn = 0.5 * std::numbers::pi * Eigen::Vector3d::UnitY();
+  const PlannedRecording planned = Plan(protocol);
+  const RecordedObject& object = planned.item.recording.object;
+  EXPECT_TRUE(object.fixed.empty());
+  ASSERT_EQ(object.grips.size(), 1u);
+  const RecordedGrip& clamp = object.grips[0];
+  EXPECT_TRUE(MotionAt(clamp, clamp.times[0]).isApprox(Eigen::Isometry3d::Identity(), 1e-12));
+  const double during = planned.item.recording.times[5];
+  EXPECT_TRUE(MotionAt(clamp, during).isApprox(planned.fixture, 1e-9));
+  // The bar points down: x → −z.
+  EXPECT_TRUE((planned.fixture.linear() * Eigen::Vector3d::UnitX())
+                  .isApprox(-Eigen::Vector3d::UnitZ(), 1e-9));
+  EXPECT_TRUE(PlannedHoldForce(protocol, Eigen::Vector3d(1, 0, 0))
+                  .isApprox(-Eigen::Vector3d::UnitZ(), 1e-9));
+  protocol.pull = 3;
+  EXPECT_NEAR(PlannedHoldForce(protocol, Eigen::Vector3d(1, 0, 0)).norm(), 3, 1e-12);
+}
+
+TEST_F(PlannedRecordingOfABar, ShakesTheClampFromTheReleaseOn) {
+  Protocol protocol = Named("shaken");
+  protocol.shake = Protocol::Shake{{0, 0.004, 0}, 5};
+  const RecordedGrip clamp = Plan(protocol).item.recording.object.grips.at(0);
+  EXPECT_LT(MotionAt(clamp, 0.5 * kRelease).translation().norm(), 1e-12);
+  // Half a period of sin² after the release, between two poses of the path.
+  EXPECT_NEAR(MotionAt(clamp, kRelease + 0.1).translation().y(), 0.004, 2e-5);
+  EXPECT_NEAR(MotionAt(clamp, kRelease + 0.05).translation().y(), 0.002, 8e-5);
+}
+
+TEST_F(PlannedRecordingOfABar, HasFurtherMarkersFarFromTheOthers) {
+  Protocol protocol = Named("markers");
+  protocol.more_markers = 6;
+  const Markers markers = Plan(protocol).item.recording.markers;
+  ASSERT_EQ(markers.names.size(), static_cast<size_t>(kMarkers + 6));
+  ASSERT_EQ(markers.places.cols(), kMarkers + 6);
+  for (Eigen::Index a = kMarkers; a < markers.places.cols(); ++a) {
+    for (Eigen::Index b = 0; b < a; ++b)
+      EXPECT_GT((markers.places.col(a) - markers.places.col(b)).norm(), 0.004) << a << " " << b;
+    EXPECT_GT(markers.places(0, a), 0.002);  // not in the clamp
+  }
+  protocol.more_markers = 1000;
+  EXPECT_THAT(ErrorOf(protocol), HasSubstr("has room for"));
+}
+
+TEST_F(PlannedRecordingOfABar, SaysWhatCannotBeDone) {
+  Protocol weight = Named("weight");
+  weight.weight = Protocol::Weight{0.005, {0.2, 0, 0}, 0.004};
+  EXPECT_THAT(ErrorOf(weight), HasSubstr("120 mm away from the object"));
+  Protocol other = Named("other");
+  other.recording = "nobody";
+  EXPECT_THAT(ErrorOf(other), HasSubstr("has no recording \"nobody\""));
+  bar_.study.recordings[0].recording.object.fixed.clear();
+  Protocol turn = Named("turn");
+  turn.turn = Eigen::Vector3d::UnitX();
+  EXPECT_THAT(ErrorOf(turn), HasSubstr("turn: nothing holds the object"));
+  bar_.study.recordings[0].hold.reset();
+  Protocol pull = Named("pull");
+  pull.pull = 2;
+  EXPECT_THAT(ErrorOf(pull), HasSubstr("nothing pulls"));
+}
+
+TEST(PlannedRecordingAboveATable, DoesNotMoveTheClampThroughIt) {
+  // A table 12 mm below the middle of the bar.
+  const std::map<std::string, std::string> with_table = {
+      {"  - {type: mass_damping, alpha: 1 1/s}\n",
+       "  - {type: mass_damping, alpha: 1 1/s}\n"
+       "  - {type: plane_contact, stiffness: 100 MPa/m, offset: -12 mm}\n"}};
+  const PlannedBar bar(with_table);
+  Protocol protocol;
+  protocol.name = "shaken";
+  protocol.recording = bar.Name();
+  protocol.shake = Protocol::Shake{{0, 0, 0.004}, 5};
+  EXPECT_NO_THROW(PlanRecording(protocol, bar.study, bar.mesh));
+  protocol.shake->amplitude.z() = -0.004;
+  try {
+    PlanRecording(protocol, bar.study, bar.mesh);
+    ADD_FAILURE() << "the clamp moved through the table";
+  } catch (const InputError& problem) {
+    EXPECT_THAT(problem.what(), HasSubstr("clamp would be"));
+    EXPECT_THAT(problem.what(), HasSubstr("mm behind the plane"));
+  }
+}
+
+}  // namespace
+}  // namespace lacuna

@@ -1,0 +1,96 @@
+#include "plan/protocol_reader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/error.h"
+#include "plan/planned_bar.h"
+
+namespace lacuna {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Field;
+using ::testing::HasSubstr;
+
+class ProtocolReader : public ::testing::Test {
+ protected:
+  ProtocolFile Read(const std::string& text) const {
+    return ReadProtocols(Config::Parse(text, "protocols.yaml"), bar_.study);
+  }
+  std::string ErrorOf(const std::string& text) const {
+    try {
+      Read(text);
+    } catch (const InputError& problem) {
+      return problem.what();
+    }
+    return "";
+  }
+
+  PlannedBar bar_;
+};
+
+TEST_F(ProtocolReader, ReadsEveryKey) {
+  const ProtocolFile file = Read(R"(schema_version: 1
+stock: false
+protocols:
+  - name: sideways
+    duration: 2
+    pull: 1.5
+    turn: {axis: [0, 2, 0], angle: 90 deg}
+    shake: {amplitude: [0, 5 mm, 0], frequency: 8 Hz}
+    weight: {mass: 5 g, place: [70 mm, 0, 0], radius: 4 mm}
+    more_markers: 8
+  - {name: again}
+)");
+  EXPECT_FALSE(file.stock);
+  ASSERT_EQ(file.protocols.size(), 2u);
+  const Protocol& protocol = file.protocols[0];
+  EXPECT_EQ(protocol.recording, bar_.Name());
+  EXPECT_EQ(protocol.duration, 2);
+  EXPECT_EQ(protocol.pull, 1.5);
+  EXPECT_TRUE(protocol.turn.isApprox(0.5 * std::numbers::pi * Eigen::Vector3d::UnitY()));
+  ASSERT_TRUE(protocol.shake && protocol.weight);
+  EXPECT_NEAR(protocol.shake->amplitude.y(), 0.005, 1e-12);
+  EXPECT_NEAR(protocol.shake->frequency, 8, 1e-12);
+  EXPECT_NEAR(protocol.weight->mass, 0.005, 1e-12);
+  EXPECT_EQ(protocol.more_markers, 8);
+  EXPECT_THAT(DescribeProtocol(protocol), HasSubstr("clamp turned by 90° about y"));
+  EXPECT_THAT(DescribeProtocol(file.protocols[1]), HasSubstr("once more"));
+}
+
+TEST_F(ProtocolReader, NamesWhatIsWrongAndWhere) {
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols: []\n"), HasSubstr("protocols.yaml:2"));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, pul: 2}\n"), HasSubstr("pul"));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a}\n  - {name: a}\n"),
+              HasSubstr("protocols[1].name: \"a\" is already the name of another"));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, recording: baa}\n"),
+              HasSubstr("has no recording \"baa\""));
+  EXPECT_THAT(ErrorOf("schema_version: 1\nprotocols:\n  - {name: a, pull: 0}\n"),
+              HasSubstr("pull"));
+  EXPECT_THAT(
+      ErrorOf(
+          "schema_version: 1\nprotocols:\n  - {name: a, turn: {axis: [0, 0, 0], angle: 1 deg}}\n"),
+      HasSubstr("axis"));
+}
+
+TEST_F(ProtocolReader, StockSuitsTheRecording) {
+  const std::vector<Protocol> stock = StockProtocols(bar_.study, bar_.mesh);
+  for (const char* name : {"repeat", "longer", "pull twice", "turn about y", "shake along z",
+                           "added mass", "more markers"})
+    EXPECT_THAT(stock, Contains(Field(&Protocol::name, name)));
+  // A turn about the vertical changes nothing.
+  EXPECT_THAT(stock, ::testing::Not(Contains(Field(&Protocol::name, "turn about z"))));
+  PredictionStudy loose = bar_.study;
+  loose.recordings[0].hold.reset();
+  loose.recordings[0].recording.object.fixed.clear();
+  for (const Protocol& protocol : StockProtocols(loose, bar_.mesh)) {
+    EXPECT_EQ(protocol.pull, 1) << protocol.name;
+    EXPECT_TRUE(protocol.turn.isZero(0) && !protocol.shake) << protocol.name;
+  }
+}
+
+}  // namespace
+}  // namespace lacuna
