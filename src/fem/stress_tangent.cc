@@ -18,38 +18,43 @@ Vector9d Dyad(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   return dyad;
 }
 
-// Rows a of one matrix of entries, from kFirst to the end of its group of four nodes, and their
-// columns b ≥ kFirst: entry_ab += Σ_j (g_a)_j right_jb.
-template <int kNodes, int kWidth, int kFirst>
-[[gnu::always_inline]] inline void AddRows(const double* gradient, const double (&right)[3][kWidth],
-                                           double* entry) {
-  constexpr int kEnd = std::min(kFirst + 4, kNodes);
-  for (int a = kFirst; a < kEnd; ++a) {
+// Four neighbouring entries. Left to itself, the compiler unrolls these short loops and keeps
+// scalars.
+typedef double Four __attribute__((vector_size(4 * sizeof(double)), may_alias));
+
+// Rows a of one matrix of entries, from node 4 kFirst to the last one, and in each group of four
+// rows the columns from the group's first node on: entry_ab += Σ_j (g_a)_j right_jb.
+template <int kNodes, int kGroups, int kFirst>
+[[gnu::always_inline]] inline void AddRows(const double* gradient, const Four (&right)[3][kGroups],
+                                           Four* entry) {
+  constexpr int kEnd = std::min(4 * (kFirst + 1), kNodes);
+  for (int a = 4 * kFirst; a < kEnd; ++a) {
     const double x = gradient[a], y = gradient[kNodes + a], z = gradient[2 * kNodes + a];
-    double* row = entry + a * kWidth;
-    for (int b = kFirst; b < kWidth; ++b)
+    Four* row = entry + a * kGroups;
+    for (int b = kFirst; b < kGroups; ++b)
       row[b] += x * right[0][b] + y * right[1][b] + z * right[2][b];
   }
-  if constexpr (kEnd < kNodes) AddRows<kNodes, kWidth, kEnd>(gradient, right, entry);
+  if constexpr (kEnd < kNodes) AddRows<kNodes, kGroups, kFirst + 1>(gradient, right, entry);
 }
 
 // Inlined into one function for each instruction set.
 template <int kNodes>
 [[gnu::always_inline]] inline void AddToEntries(const double* tangent, const double* gradient,
                                                 double scale, double* entry) {
-  constexpr int kWidth = ElementStiffness<kNodes>::kWidth;
-  alignas(64) double g[3][kWidth] = {};
+  constexpr int kGroups = ElementStiffness<kNodes>::kWidth / 4;
+  Four g[3][kGroups] = {};
   for (int l = 0; l < 3; ++l)
-    for (int b = 0; b < kNodes; ++b) g[l][b] = scale * gradient[kNodes * l + b];
+    for (int b = 0; b < kNodes; ++b) g[l][b / 4][b % 4] = scale * gradient[kNodes * l + b];
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) {
-      alignas(64) double right[3][kWidth];  // [j][b] = Σ_l C_ijkl (g_b)_l
+      Four right[3][kGroups];  // [j][b] = Σ_l C_ijkl (g_b)_l
       for (int j = 0; j < 3; ++j) {
         const double* C = tangent + (i + 3 * j) + 9 * k;
-        for (int b = 0; b < kWidth; ++b)
+        for (int b = 0; b < kGroups; ++b)
           right[j][b] = C[0] * g[0][b] + C[27] * g[1][b] + C[54] * g[2][b];
       }
-      AddRows<kNodes, kWidth, 0>(gradient, right, entry + (i + 3 * k) * kNodes * kWidth);
+      AddRows<kNodes, kGroups, 0>(gradient, right,
+                                  reinterpret_cast<Four*>(entry) + (i + 3 * k) * kNodes * kGroups);
     }
   }
 }
