@@ -7,9 +7,8 @@
 
 #include "analysis/linear_evidence.h"
 #include "calibration/linear_misfit.h"
+#include "calibration/other_elements.h"
 #include "core/error.h"
-#include "experiment/reference_body.h"
-#include "prediction/predicted_body.h"
 
 namespace lacuna {
 namespace {
@@ -110,14 +109,15 @@ double OtherMesh::ToRatio(double other_ratio) const {
   return (1 - std::pow(other_ratio, -kVolumePower)) * ToLimit();
 }
 
-std::unique_ptr<const CalibrationProblem> WithOtherElements(const PredictionStudy& study,
-                                                            double ratio) {
-  PredictionStudy other = study;
-  other.mesh.tets.max_volume /= ratio;
+std::optional<ProblemOnOtherMesh> WithOtherElements(const PredictionStudy& study,
+                                                    const TetMesh& own, double ratio) {
+  const std::optional<OtherElements> other = MeshWithOtherElements(study, own, ratio);
+  if (!other) return std::nullopt;
   try {
-    return std::make_unique<const CalibrationProblem>(study, MakeReferenceBody(other).mesh);
+    return ProblemOnOtherMesh{std::make_unique<const CalibrationProblem>(study, other->mesh),
+                              other->ratio};
   } catch (const InputError&) {
-    return nullptr;  // a shape that cannot be meshed otherwise gives no estimate
+    return std::nullopt;  // for example, a region that holds no node of this mesh
   }
 }
 
@@ -206,21 +206,22 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only) {
   const PredictionStudy study = WithLongSteps(problem);
-  OtherMesh mesh{RatioFor(problem), Eigen::VectorXd::Zero(values.size()), {}, {}};
-  const auto other_problem = WithOtherElements(study, mesh.ratio);
-  if (other_problem == nullptr) return std::nullopt;
-  mesh.own = CalibrationProblem(study, problem.body()->mesh)
-                 .Linearise(values, false, {}, nullptr, &misfit)
-                 .residual;
+  const TetMesh& own = problem.body()->mesh;
+  const double ratio = RatioFor(problem);
+  const auto other = WithOtherElements(study, own, ratio);
+  if (!other) return std::nullopt;
+  OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
+  mesh.own = CalibrationProblem(study, own).Linearise(values, false, {}, nullptr, &misfit).residual;
   const ChangeSearch search(problem, values, misfit, mesh.own, fitted_only);
   if (mesh.ratio > kScoutBelow * kScoutRatio) {
     // Most of the way is found with elements that cost little.
-    if (const auto scout = WithOtherElements(study, kScoutRatio)) {
-      const ChangeSearch::Found found = search.Run(*scout, mesh.change);
-      if (found.residual.size() > 0) mesh.change = found.change / mesh.ToRatio(kScoutRatio);
+    const auto scout = WithOtherElements(study, own, kScoutRatio);
+    if (scout && mesh.ratio > kScoutBelow * scout->ratio) {
+      const ChangeSearch::Found found = search.Run(*scout->problem, mesh.change);
+      if (found.residual.size() > 0) mesh.change = found.change / mesh.ToRatio(scout->ratio);
     }
   }
-  ChangeSearch::Found found = search.Run(*other_problem, mesh.change);
+  ChangeSearch::Found found = search.Run(*other->problem, mesh.change);
   if (found.residual.size() == 0) return std::nullopt;
   mesh.change = std::move(found.change);
   mesh.other = std::move(found.residual);
@@ -230,10 +231,10 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
 Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                 const OtherMesh& known, double ratio) {
   const PredictionStudy study = WithLongSteps(problem);
-  const auto other = WithOtherElements(study, ratio);
-  if (other == nullptr) return {};
-  const Eigen::VectorXd change = known.ToRatio(ratio) * known.change;
-  return other->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
+  const auto other = WithOtherElements(study, problem.body()->mesh, ratio);
+  if (!other) return {};
+  const Eigen::VectorXd change = known.ToRatio(other->ratio) * known.change;
+  return other->problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
 }
 
 std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,

@@ -24,7 +24,7 @@ namespace lacuna {
 // is nearly the same on both and cancels in the difference, while the simulations of a finer mesh
 // cost a third.
 struct OtherMesh {
-  double ratio = 0;        // volume of the study's elements over that of the other ones
+  double ratio = 0;        // mean volume of the study's elements over that of the other ones
   Eigen::VectorXd change;  // change of the parameters from the study's values (MovedBy)
   // Residuals with the longer steps, m, in the rows of the study's linearised misfit: of the
   // study's mesh, and of the other one with the changed parameters.
@@ -38,8 +38,8 @@ struct OtherMesh {
 };
 
 // `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. Returns nothing where another mesh cannot be made, for example because the mesh was
-// given, or cannot be simulated. Throws Interrupted.
+// frames alone. Returns nothing where another mesh cannot be made (calibration/other_elements.h) or
+// cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
                                        const LinearisedMisfit& misfit, bool fitted_only);
@@ -50,10 +50,15 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
 Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                                 const OtherMesh& known, double ratio);
 
-// The problem with elements whose volume is smaller by this ratio; null where the shape cannot be
-// meshed so. The study must outlive it.
-std::unique_ptr<const CalibrationProblem> WithOtherElements(const PredictionStudy& study,
-                                                            double ratio);
+// The study's problem on another mesh (calibration/other_elements.h); nothing where that mesh
+// cannot be made or a region holds none of its nodes. `own`: the study's mesh. The study must
+// outlive the problem.
+struct ProblemOnOtherMesh {
+  std::unique_ptr<const CalibrationProblem> problem;
+  double ratio = 1;  // as in OtherMesh
+};
+std::optional<ProblemOnOtherMesh> WithOtherElements(const PredictionStudy& study,
+                                                    const TetMesh& own, double ratio);
 
 // The values to which the study, fitted to `values`, would be fitted with infinitely fine elements.
 // Returns nothing where MakeOtherMesh does.

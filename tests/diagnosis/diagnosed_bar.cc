@@ -8,11 +8,11 @@
 namespace lacuna {
 
 Diagnosis DiagnoseBar(const HeldBarTruth& truth, const std::map<std::string, std::string>& replaced,
-                      const DiagnosisOptions& options) {
+                      const DiagnosisOptions& options, const std::array<int, 3>& cells) {
   const TemporaryFolder folder;
   WriteBarRecording(folder.Path(), FilmHeldBar(truth));
   const PredictionStudy study = ReadBarStudy(folder.Path(), replaced);
-  const TetMesh mesh = BarMesh({7, 1, 1}, 2);
+  const TetMesh mesh = BarMesh(cells, 2);
   const CalibrationProblem problem(study, mesh);
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;

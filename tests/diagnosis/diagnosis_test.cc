@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -52,6 +53,23 @@ TEST(Diagnosis, NamesNoEffectIfNothingIsMissing) {
   const Diagnosis diagnosis = DiagnoseBar({}, {});
   EXPECT_NE(diagnosis.verdict, Verdict::kMissing) << ExplainVerdict(RecordOf(diagnosis));
   EXPECT_NE(diagnosis.verdict, Verdict::kAmbiguous) << ExplainVerdict(RecordOf(diagnosis));
+}
+
+// Six tetrahedra miss the truth by far more than the damping does.
+TEST(Diagnosis, DoesNotTakeTheErrorOfAVeryCoarseMeshForAnEffect) {
+  HeldBarTruth truth;
+  truth.alpha = 6;
+  truth.noise = 4e-4;
+  std::map<std::string, std::string> replaced = kWithoutDamping;
+  replaced["noise: 0.05 mm"] = "noise: 0.4 mm";
+  const Diagnosis diagnosis = DiagnoseBar(truth, replaced, {}, {1, 1, 1});
+  ASSERT_EQ(diagnosis.verdict, Verdict::kAmbiguous) << ExplainVerdict(RecordOf(diagnosis));
+  EXPECT_THAT(diagnosis.effects, Contains("mass_damping"));
+  const auto mesh = std::find_if(
+      diagnosis.nuisances.begin(), diagnosis.nuisances.end(),
+      [](const ScoredNuisance& nuisance) { return nuisance.candidate.card.name == "mesh"; });
+  ASSERT_NE(mesh, diagnosis.nuisances.end());
+  EXPECT_GT(mesh->candidate.columns.cwiseAbs().maxCoeff(), truth.noise);
 }
 
 // Without a time step in the experiment, the first fit starts with half of the frame spacing.
