@@ -78,6 +78,8 @@ struct LinearSolver::Implementation {
   void MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
   void ZeroFixed(Eigen::VectorXd* v) const;
   void SetRotation(const std::vector<Eigen::Matrix3d>* rotations);
+  void SetFactorRotations(const std::vector<Eigen::Matrix3d>* rotations);
+  void CountSolve(double spent_before);
 
   enum class Outcome { kConverged, kIndefinite, kTooManyIterations, kBrokenDown };
   Outcome Iterate(const BlockMatrix& A, double b_norm, bool may_renew, Eigen::VectorXd* x,
@@ -174,6 +176,21 @@ void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d
   }
 }
 
+// Those of a new factor.
+void LinearSolver::Implementation::SetFactorRotations(
+    const std::vector<Eigen::Matrix3d>* rotations) {
+  rotation.clear();
+  factor_rotations.clear();
+  if (rotations != nullptr) factor_rotations = *rotations;
+}
+
+// Drops the factor if from now on keeping it would increase the average cost of a solve.
+void LinearSolver::Implementation::CountSolve(double spent_before) {
+  const double average = spent_before / std::max(solves, 1);
+  ++solves;
+  if (solves > 1 && spent - spent_before > average) kept = Kept::kNone;
+}
+
 // Starts from the combination of earlier solutions with the smallest error in the energy norm
 // (Fischer 1998) and stores its residual in `residual`. Since motion is smooth, this gains one or
 // two digits for a few products with A.
@@ -204,7 +221,6 @@ void LinearSolver::Implementation::StartFromEarlierSolutions(const BlockMatrix& 
 // Whether a new factorisation would be cheaper than finishing the iteration at its rate so far.
 bool LinearSolver::Implementation::RenewalPays(int iterations, double first_residual,
                                                double present_residual, double target) const {
-  if (iterations < kIterationsToJudge) return false;
   const double digits_gained = std::log(first_residual / present_residual);
   const double digits_missing = std::log(present_residual / target);
   const double iterations_missing = digits_missing * iterations / std::max(digits_gained, 1e-3);
@@ -222,7 +238,8 @@ LinearSolver::Implementation::Outcome LinearSolver::Implementation::Iterate(
   for (int k = 0;; ++k) {
     const double norm = residual.norm();
     if (norm <= target) return Outcome::kConverged;
-    if (may_renew && RenewalPays(k, first_norm, norm, target)) return Outcome::kTooManyIterations;
+    if (may_renew && k >= kIterationsToJudge && RenewalPays(k, first_norm, norm, target))
+      return Outcome::kTooManyIterations;
     if (k == kMaxIterations) return Outcome::kTooManyIterations;
     ApplyFactor(residual, &preconditioned);
     const double rho = residual.dot(preconditioned);
@@ -265,19 +282,14 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
   Outcome outcome = Outcome::kTooManyIterations;
   if (options.method == LinearSolverOptions::Method::kKeptFactor && kept != Kept::kNone) {
     SetRotation(rotations);
-    const double average = spent / std::max(solves, 1);
     const double before = spent;
     outcome = Iterate(A, b_norm, /*may_renew=*/true, x, &summary);
-    ++solves;
-    // From now on, keeping the factor would increase the average cost of a solve.
-    if (spent - before > average) kept = Kept::kNone;
+    CountSolve(before);
   }
   if (outcome == Outcome::kTooManyIterations || outcome == Outcome::kBrokenDown) {
     summary.factorised = true;
     if (Factorise(A)) {
-      rotation.clear();
-      factor_rotations.clear();
-      if (rotations != nullptr) factor_rotations = *rotations;
+      SetFactorRotations(rotations);
       outcome = Iterate(A, b_norm, /*may_renew=*/false, x, &summary);
       ++solves;
     } else {
@@ -322,6 +334,40 @@ LinearSolveSummary LinearSolver::Solve(const BlockMatrix& A, const Eigen::Vector
                                        Eigen::VectorXd* x,
                                        const std::vector<Eigen::Matrix3d>* node_rotations) {
   return implementation_->Solve(A, b, x, node_rotations);
+}
+
+bool LinearSolver::KeepsFactors() const {
+  return implementation_->options.method == LinearSolverOptions::Method::kKeptFactor;
+}
+
+bool LinearSolver::HasFactor() const {
+  return implementation_->kept != Implementation::Kept::kNone;
+}
+
+bool LinearSolver::Factorise(const BlockMatrix& A,
+                             const std::vector<Eigen::Matrix3d>& node_rotations) {
+  if (!implementation_->Factorise(A)) return false;
+  implementation_->SetFactorRotations(&node_rotations);
+  return true;
+}
+
+void LinearSolver::ApplyFactor(const Eigen::VectorXd& r,
+                               const std::vector<Eigen::Matrix3d>& node_rotations,
+                               Eigen::VectorXd* z) {
+  CHECK(HasFactor());
+  implementation_->SetRotation(&node_rotations);
+  implementation_->ApplyFactor(r, z);
+}
+
+bool LinearSolver::IsRenewalCheaper(int applications, double first, double present,
+                                    double target) const {
+  return implementation_->RenewalPays(applications, first, present, target);
+}
+
+void LinearSolver::CountApplications(int applications) {
+  const double before = implementation_->spent;
+  implementation_->spent += applications * implementation_->iteration_cost;
+  implementation_->CountSolve(before);
 }
 
 void LinearSolver::DropFactor() { implementation_->kept = Implementation::Kept::kNone; }

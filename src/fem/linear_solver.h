@@ -59,6 +59,22 @@ class LinearSolver {
   LinearSolveSummary Solve(const BlockMatrix& A, const Eigen::VectorXd& b, Eigen::VectorXd* x,
                            const std::vector<Eigen::Matrix3d>* node_rotations = nullptr);
 
+  // The kept factor M ≈ A by itself, with which newton.h approaches a solution without assembling
+  // A.
+  bool KeepsFactors() const;  // whether the method does
+  bool HasFactor() const;     // whether there is one
+  // Replaces it by a factor of A; returns false, without a factor, if A is not positive definite.
+  bool Factorise(const BlockMatrix& A, const std::vector<Eigen::Matrix3d>& node_rotations);
+  // z = M⁻¹ r at the free nodes and 0 at the fixed ones, with M rotated with the nodes. CHECKs that
+  // there is a factor.
+  void ApplyFactor(const Eigen::VectorXd& r, const std::vector<Eigen::Matrix3d>& node_rotations,
+                   Eigen::VectorXd* z);
+  // Whether a new factor is expected to cost less than the further applications, where so many have
+  // reduced a residual from `first` to `present`, until it is `target`.
+  bool IsRenewalCheaper(int applications, double first, double present, double target) const;
+  // Counts so many applications as one solve, for the decision when to renew the factor.
+  void CountApplications(int applications);
+
   // Discards the kept factor, for a next matrix that differs much from the last one.
   void DropFactor();
 

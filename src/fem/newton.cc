@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "fem/node_rotations.h"
 
@@ -21,13 +23,59 @@ struct Iterate {
   std::optional<double> potential;  // J; NaN if there is none; evaluated on demand
 };
 
+// Steps −M⁻¹ r with a fixed factor M of a tangent, each combined with the earlier ones so that the
+// residual becomes smallest to first order, in the norm of M⁻¹ (Anderson 1965; for a linear
+// equation this is the method of minimal residuals, Walker & Ni 2011).
+class ChordSteps {
+ public:
+  // The step from an iterate with residual r, where `image` is M⁻¹ r. The iterate is that to which
+  // the step before has led.
+  Eigen::VectorXd Next(const Eigen::VectorXd& residual, const Eigen::VectorXd& image) {
+    if (steps_.empty()) {
+      first_residual_ = residual.norm();
+    } else {
+      changes_.push_back(residual - residual_);
+      images_.push_back(image - image_);
+    }
+    residual_ = residual;
+    image_ = image;
+    // Minimises ‖r − Σ γ Δr‖, and steps by −M⁻¹ (r − Σ γ Δr) − Σ γ Δx.
+    const Eigen::Index count = static_cast<Eigen::Index>(steps_.size());
+    Eigen::MatrixXd products(count, count);
+    Eigen::VectorXd right(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j)
+        products(i, j) = products(j, i) = images_[i].dot(changes_[j]);
+      right[i] = images_[i].dot(residual);
+    }
+    const Eigen::VectorXd weight = products.ldlt().solve(right);
+    Eigen::VectorXd step = -image;
+    for (Eigen::Index i = 0; i < count; ++i) step += weight[i] * (images_[i] - steps_[i]);
+    steps_.push_back(step);
+    return step;
+  }
+
+  int Count() const { return static_cast<int>(steps_.size()); }
+  double FirstResidual() const { return first_residual_; }
+
+ private:
+  std::vector<Eigen::VectorXd> steps_, changes_, images_;  // of the position, of r, and of M⁻¹ r
+  Eigen::VectorXd residual_, image_;
+  double first_residual_ = 0;
+};
+
 class Newton {
  public:
   Newton(const NewtonProblem& problem, LinearSolver* solver, BlockMatrix* tangent)
       : problem_(problem), solver_(*solver), tangent_(*tangent) {}
 
   NewtonSummary Run(const Eigen::VectorXd& target, Eigen::VectorXd* position) {
-    Iterate at = Evaluate(*position);
+    Iterate at;
+    if (IterateWithFactor(target, *position, &at)) {
+      *position = at.position;
+      return Finish(at);
+    }
+    at = Evaluate(*position);
     if (MoveFixedNodes(target, &at)) {
       while (!IsConverged(at)) {
         if (summary_.iterations >= problem_.max_iterations) {
@@ -86,6 +134,64 @@ class Newton {
     rounding_ = std::min(rounding_, 4 * std::numeric_limits<double>::epsilon() * stiffest *
                                         at.position.lpNorm<Eigen::Infinity>() *
                                         std::sqrt(static_cast<double>(at.position.size())));
+  }
+
+  Eigen::VectorXd WithFixedAt(const Eigen::VectorXd& target, Eigen::VectorXd position) const {
+    for (size_t i = 0; i < problem_.fixed.size(); ++i)
+      if (problem_.fixed[i]) position.segment<3>(3 * i) = target.segment<3>(3 * i);
+    return position;
+  }
+
+  // Approaches the solution with the factor M of an earlier tangent, without assembling the present
+  // one, so that a step of a smooth motion costs little more than a few residuals. The factor is
+  // renewed once where that is cheaper than to go on. In statics a factor of a convexified tangent
+  // might lead to an unstable equilibrium, so that only steps with inertia are taken in this way.
+  // Returns false where the residual does not fall in spite of a new factor.
+  bool IterateWithFactor(const Eigen::VectorXd& target, const Eigen::VectorXd& start, Iterate* at) {
+    constexpr int kMostIterations = 16;
+    // The largest ratio of a new residual to the old one, with an old factor and with a new one.
+    constexpr double kSufficientRatio = 0.5, kTolerableRatio = 0.9;
+    if (!problem_.equation.has_inertia() || !solver_.KeepsFactors()) return false;
+    *at = Evaluate(WithFixedAt(target, start));
+    if (!at->residual.allFinite()) return false;
+    rotations_ = NodeRotations(problem_.equation.body(), at->position);
+    ChordSteps steps;
+    bool is_new = false;
+    for (int iteration = 0; !IsConverged(*at); ++iteration) {
+      if (iteration == std::min(kMostIterations, problem_.max_iterations)) return false;
+      ++summary_.iterations;
+      if (!is_new && (!solver_.HasFactor() || IsRenewalCheaper(steps, *at))) {
+        if (!RenewFactor(*at)) return false;
+        is_new = true;
+        steps = {};
+      }
+      Eigen::VectorXd image;
+      solver_.ApplyFactor(at->residual, rotations_, &image);
+      Iterate next = Evaluate(at->position + steps.Next(at->residual, image));
+      const double ratio = next.residual.norm() / at->residual.norm();
+      if (ratio <= (is_new ? kTolerableRatio : kSufficientRatio)) {
+        *at = std::move(next);
+      } else if (is_new) {
+        return false;
+      } else {
+        solver_.DropFactor();
+      }
+    }
+    if (steps.Count() > 0) solver_.CountApplications(steps.Count());
+    return true;
+  }
+
+  bool IsRenewalCheaper(const ChordSteps& steps, const Iterate& at) const {
+    constexpr int kStepsToJudge = 2;
+    return steps.Count() >= kStepsToJudge &&
+           solver_.IsRenewalCheaper(steps.Count(), steps.FirstResidual(), at.residual.norm(),
+                                    problem_.relative_tolerance * at.force_scale);
+  }
+
+  bool RenewFactor(const Iterate& at) {
+    problem_.equation.Tangent(at.position, /*convexify=*/false, &tangent_);
+    rotations_ = NodeRotations(problem_.equation.body(), at.position);
+    return solver_.Factorise(tangent_, rotations_);
   }
 
   // Solves tangent · step = right() with the exact tangent or, if that is not positive definite,
@@ -153,11 +259,7 @@ class Newton {
       };
       if (!SolveLinearised(*at, right, &step)) return false;
     }
-    Eigen::VectorXd moved = at->position + step + motion;
-    for (size_t i = 0; i < problem_.fixed.size(); ++i) {
-      if (problem_.fixed[i]) moved.segment<3>(3 * i) = target.segment<3>(3 * i);
-    }
-    *at = Evaluate(moved);
+    *at = Evaluate(WithFixedAt(target, at->position + step + motion));
     convexify_ = false;
     return true;
   }

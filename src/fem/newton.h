@@ -1,9 +1,11 @@
 // Newton's method for the positions at the end of a time step.
 //
 // Solves r(x) = applied force at the free nodes, where r is the residual of the equation of motion
-// (step_equation.h). The tangent is exact, or a positive definite approximation where the exact one
-// is indefinite. Steps are globalised by a line search on the potential of r, or on the work of r
-// along the step if r has no potential.
+// (step_equation.h). Steps with inertia are first tried with the kept factor of an earlier tangent
+// and Anderson's mixing, for which the present tangent is not assembled; most steps of a smooth
+// motion end there. Otherwise the tangent is exact, or a positive definite approximation where the
+// exact one is indefinite, and steps are globalised by a line search on the potential of r, or on
+// the work of r along the step if r has no potential.
 #ifndef LACUNA_FEM_NEWTON_H_
 #define LACUNA_FEM_NEWTON_H_
 
@@ -29,13 +31,13 @@ struct NewtonSummary {
   enum class Status { kNotRun, kConverged, kNoConvergence, kLinearSolverFailed };
   Status status = Status::kNotRun;
   std::string message;
-  int iterations = 0;
+  int iterations = 0;   // of both kinds
   double residual = 0;  // ‖r − applied‖∞ over the free nodes, N
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
-// Starts at `*position` (3n, m). The first, linearised iteration moves the fixed nodes to their
-// places in `target` (3n, m), so that their neighbours follow. `tangent` is used as working memory.
+// Starts at `*position` (3n, m). The fixed nodes are moved to their places in `target` (3n, m); a
+// linearised iteration lets their neighbours follow. `tangent` is used as working memory.
 // On failure the summary says why, and `*position` is the last iterate.
 NewtonSummary SolveByNewton(const NewtonProblem& problem, const Eigen::VectorXd& target,
                             LinearSolver* solver, BlockMatrix* tangent, Eigen::VectorXd* position);

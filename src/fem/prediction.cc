@@ -121,7 +121,9 @@ PredictionSummary Predict(
   CHECK_GT(options.time_step, 0);
   PredictionSummary summary;
   Stepper stepper(model, options.step);
-  TangentLinear linear(model, perturbations, !options.reactions.empty());
+  TangentLinear linear(
+      model, perturbations,
+      {.with_reactions = !options.reactions.empty(), .tolerance = options.sensitivity_tolerance});
   MotionHistory history = RestHistory(model);
   history.time = options.start_time;
 

@@ -38,6 +38,7 @@ struct PredictionOptions {
   Eigen::VectorXd held_guess = {};
   double time_step = 0.005;  // s, upper limit; a smaller one is slower and more accurate (OrderOf)
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
+  double sensitivity_tolerance = 1e-7;  // TangentLinearOptions::tolerance
   // The grips whose reactions are wanted (grip_reaction.h), by their indices in Model::grips.
   std::vector<size_t> reactions = {};
 };

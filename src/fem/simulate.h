@@ -33,7 +33,7 @@ struct StepSummary {
   enum class Status { kNotRun, kConverged, kNoConvergence, kInvertedElement, kLinearSolverFailed };
   Status status = Status::kNotRun;
   std::string message;  // why the step failed, with time and node or element
-  int iterations = 0;   // Newton iterations
+  int iterations = 0;   // NewtonSummary::iterations
   int factorisations = 0;
   int load_increments = 0;  // 0: reached directly
   double residual = 0;      // ‖r‖∞ over the free nodes, N

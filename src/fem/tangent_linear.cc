@@ -45,7 +45,7 @@ struct TangentLinear::Implementation {
   BlockMatrix tangent, skew, rate_tangent;
   std::vector<Eigen::Index> of_grips;  // perturbations of the motion of grips
   double element_size;                 // m
-  bool with_reactions;
+  TangentLinearOptions options;
   // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
@@ -54,7 +54,7 @@ struct TangentLinear::Implementation {
   std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
 
   Implementation(const Model& the_model, std::vector<Perturbation> the_perturbations,
-                 bool wants_reactions)
+                 const TangentLinearOptions& the_options)
       : model(the_model),
         perturbations(std::move(the_perturbations)),
         fixed(GrippedNodes(model)),
@@ -64,7 +64,7 @@ struct TangentLinear::Implementation {
         skew(model.body->pattern),
         rate_tangent(model.body->pattern),
         element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())),
-        with_reactions(wants_reactions) {
+        options(the_options) {
     const Eigen::Index size = 3 * model.body->NodeCount();
     position = velocity = reaction = Eigen::MatrixXd::Zero(size, Count());
     for (const auto& effect : model.effects) {
@@ -266,8 +266,7 @@ struct TangentLinear::Implementation {
   std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd residual,
                                          const Update& update) {
     constexpr int kMaxIterations = 60;
-    constexpr double kTolerance = 1e-7;  // relative residual of each column
-    const Eigen::RowVectorXd wanted = kTolerance * right.colwise().norm();
+    const Eigen::RowVectorXd wanted = options.tolerance * right.colwise().norm();
     Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
     ClearFixed(&residual);
     double last = residual.norm();
@@ -309,7 +308,7 @@ struct TangentLinear::Implementation {
       AddTangentForces(equation, end, {.velocity = rate}, position_history, &right);
       AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
     }
-    if (with_reactions) reaction = -right;
+    if (options.with_reactions) reaction = -right;
     const Eigen::MatrixXd gripped = GripColumns(equation, at);
     if (!of_grips.empty()) {
       const Eigen::MatrixXd moved = gripped(Eigen::all, of_grips);
@@ -330,8 +329,8 @@ struct TangentLinear::Implementation {
     const Eigen::MatrixXd moved = *solution + gripped;
     const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
                                                 : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
-    if (with_reactions) reaction += tangent * moved;
-    if (with_reactions && has_skew) reaction += skew * moved;
+    if (options.with_reactions) reaction += tangent * moved;
+    if (options.with_reactions && has_skew) reaction += skew * moved;
     AdvanceMemories(equation, end, moved, speed);
     previous_position = std::move(position);
     previous_velocity = std::move(velocity);
@@ -345,9 +344,8 @@ struct TangentLinear::Implementation {
 };
 
 TangentLinear::TangentLinear(const Model& model, std::vector<Perturbation> perturbations,
-                             bool with_reactions)
-    : implementation_(
-          std::make_unique<Implementation>(model, std::move(perturbations), with_reactions)) {}
+                             const TangentLinearOptions& options)
+    : implementation_(std::make_unique<Implementation>(model, std::move(perturbations), options)) {}
 TangentLinear::~TangentLinear() = default;
 TangentLinear::TangentLinear(TangentLinear&&) noexcept = default;
 TangentLinear& TangentLinear::operator=(TangentLinear&&) noexcept = default;

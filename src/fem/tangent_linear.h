@@ -50,13 +50,20 @@ struct TangentLinearSummary {
   bool IsUsable() const { return status == Status::kSolved; }
 };
 
+struct TangentLinearOptions {
+  bool with_reactions = false;  // whether reaction() is computed, for a product with the tangent
+                                // per step
+  // The linear systems of models whose tangent is not symmetric are solved by iteration, to this
+  // residual of each perturbation relative to its right-hand side. Larger: fewer iterations.
+  double tolerance = 1e-7;
+};
+
 // Not thread-safe: one object per simulation.
 class TangentLinear {
  public:
-  // All sensitivities are 0 at first. `with_reactions`: reaction() is computed too, for one product
-  // with the tangent per step.
+  // All sensitivities are 0 at first.
   TangentLinear(const Model& model, std::vector<Perturbation> perturbations,
-                bool with_reactions = false);
+                const TangentLinearOptions& options = {});
   ~TangentLinear();
   TangentLinear(TangentLinear&&) noexcept;
   TangentLinear& operator=(TangentLinear&&) noexcept;
@@ -73,7 +80,7 @@ class TangentLinear {
   const Eigen::MatrixXd& velocity() const;
   // dr/dp there (3n × perturbations, N per unit), less the derivative of an external force: at
   // gripped nodes that of the force by which the grip holds the node, at free nodes 0 up to the
-  // accuracy of the solution. Zero before the first step, and without `with_reactions`.
+  // accuracy of the solution. Zero before the first step, and where it is not computed.
   const Eigen::MatrixXd& reaction() const;
 
  private:
