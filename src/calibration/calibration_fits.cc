@@ -224,8 +224,11 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   Calibration calibration = fitter.Whole(
       start, beginning != nullptr ? *beginning : fitter.Beginning("fit, first part", start));
   if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
-  // Equilibria have no period, and FindFarStart has tried other moduli.
-  if (problem.HasScans() && problem.study().scheme == TimeScheme::kQuasiStatic) return calibration;
+  // Equilibria have no period, so that other moduli lead to the same minimum. FindFarStart has
+  // tried others for scans.
+  if (problem.study().scheme == TimeScheme::kQuasiStatic &&
+      (calibration.usable || problem.HasScans()))
+    return calibration;
 
   const std::vector<ModelParameter>& fitted = problem.study().fitted;
   double least = calibration.usable ? calibration.rms : kUnlimited;

@@ -21,6 +21,9 @@ constexpr double kLonger = 3, kShorter = 0.5, kMuchShorter = 0.1;
 // A step changes no parameter by more than this many typical changes: far outside of the region
 // that the data determine, a simulation takes long or fails.
 constexpr double kLongestStep = 100;
+// The largest part of the way to an open bound that a step takes. The linearised model knows
+// nothing of what happens at the bound, and predictions there may take tens of times longer.
+constexpr double kOfWayToOpenBound = 0.8;
 // Where a full step promises enough but the radius leaves only little of it, as in a curved valley,
 // the search goes on to this fraction of the promise at which it ends elsewhere.
 constexpr double kLeastOfCurved = 0.1;
@@ -194,9 +197,12 @@ class BoundedDescent {
     scaled.information.diagonal() *= 1 + damping;
     Eigen::VectorXd low(count_), high(count_);
     for (Eigen::Index k = 0; k < count_; ++k) {
-      const double here = ToFree(parameter(k), end_.parameters[k]);
-      low[k] = std::clamp((low_[k] - here) / typical_[k], -kLongestStep, 0.0);
-      high[k] = std::clamp((high_[k] - here) / typical_[k], 0.0, kLongestStep);
+      const CalibratedParameter& at = parameter(k);
+      const double here = ToFree(at, end_.parameters[k]);
+      const double down = (at.open_min ? kOfWayToOpenBound : 1) * (low_[k] - here);
+      const double up = (at.open_max ? kOfWayToOpenBound : 1) * (high_[k] - here);
+      low[k] = std::clamp(down / typical_[k], -kLongestStep, 0.0);
+      high[k] = std::clamp(up / typical_[k], 0.0, kLongestStep);
     }
     return typical_.cwiseProduct(StepWithin(scaled, low, high));
   }

@@ -17,6 +17,9 @@ struct CalibratedParameter {
   double start = 0;  // SI
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  // The model degenerates at the bound, as an elastic body does at a Poisson's ratio of 0.5. A step
+  // of the fit then leaves a part of the way to it.
+  bool open_min = false, open_max = false;
   bool log_scale = false;  // φ = ln θ; `min` must be ≥ 0
   // The prior is Gaussian in φ. A mean of NaN means `start`; an infinite deviation means no prior.
   double prior_mean = std::numeric_limits<double>::quiet_NaN();  // SI

@@ -43,6 +43,8 @@ std::vector<ModelParameter> ModelParameters(const EffectList& effects) {
       const double margin = 1e-6 * (entry.plausible_max - entry.plausible_min);
       prior.min = entry.bounds.min + (entry.bounds.open_min ? margin : 0);
       prior.max = entry.bounds.max - (entry.bounds.open_max ? margin : 0);
+      prior.open_min = entry.bounds.open_min;
+      prior.open_max = entry.bounds.open_max;
       prior.log_scale = entry.log_scale && value > 0;
       prior.typical = prior.log_scale ? 0.5 * std::log(entry.plausible_max / entry.plausible_min)
                                       : 0.5 * (entry.plausible_max - entry.plausible_min);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -203,6 +204,22 @@ TEST(Calibration, EndsAtTheBoundIfItsOnlyParameterWouldFitBeyondIt) {
     EXPECT_GE(found.iterations, 0);
     EXPECT_EQ(found.estimates[0].verdict, ParameterEstimate::Verdict::kAtBound);
   }
+}
+
+TEST(Calibration, ApproachesAnOpenBoundInParts) {
+  const CalibratedParameter parameter{
+      .name = "a", .start = 0.5, .min = 0, .max = 1, .open_max = true};
+  std::vector<double> tried;
+  const Calibration fitted = Calibrate({parameter}, [&](const Eigen::VectorXd& at, bool) {
+    tried.push_back(at[0]);
+    return Prediction{true, "", Eigen::VectorXd::Constant(100, 100 * (at[0] - 2)),
+                      Eigen::MatrixXd::Constant(100, 1, 100)};
+  });
+  ASSERT_GE(tried.size(), 3u);
+  EXPECT_NEAR(tried[1], 0.9, 1e-12);
+  EXPECT_NEAR(tried[2], 0.98, 1e-12);
+  EXPECT_GT(fitted.parameters[0], 0.98);
+  EXPECT_LT(*std::max_element(tried.begin(), tried.end()), 1);
 }
 
 TEST(Calibration, WidensItsIntervalsIfTheModelDoesNotFit) {
