@@ -154,7 +154,7 @@ class Newton {
     if (!problem_.equation.has_inertia() || !solver_.KeepsFactors()) return false;
     *at = Evaluate(WithFixedAt(target, start));
     if (!at->residual.allFinite()) return false;
-    rotations_ = NodeRotations(problem_.equation.body(), at->position);
+    if (solver_.HasFactor()) rotations_ = NodeRotations(problem_.equation.body(), at->position);
     ChordSteps steps;
     bool is_new = false;
     for (int iteration = 0; !IsConverged(*at); ++iteration) {

@@ -17,6 +17,7 @@
 #include "fem/simulate.h"
 #include "geometry/embedding.h"
 #include "support/box_mesh.h"
+#include "support/marker_recording.h"
 
 namespace lacuna {
 namespace {
@@ -64,16 +65,6 @@ Eigen::Matrix3Xd Places(std::mt19937* random) {
   return places;
 }
 
-void WriteBox(const std::filesystem::path& file) {
-  std::ofstream off(file);
-  off << "OFF\n8 12 0\n";
-  for (int corner = 0; corner < 8; ++corner)
-    off << fmt::format("{} {} {}\n", (corner & 1 ? kHigh : kLow).x(),
-                       (corner & 2 ? kHigh : kLow).y(), (corner & 4 ? kHigh : kLow).z());
-  off << "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n"
-         "3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5\n";
-}
-
 void WriteRecording(const std::filesystem::path& folder, const Eigen::Matrix3Xd& places) {
   std::ofstream yaml(folder / "recording.yaml");
   yaml << R"(schema_version: 1
@@ -85,15 +76,7 @@ reference: {from: mesh, file: box.off}
 forces:
   - {name: load, file: load.csv, time: t, x: x, y: y, z: z, unit: N,
      region: {half_space: {point: [0.078 m, 0 m, 0 m], normal: [1, 0, 0]}}}
-frames:
-  kind: markers
-  file: markers.csv
-  columns: {time: t}
-  marker_places:
-)";
-  for (int m = 0; m < kPoints; ++m)
-    yaml << fmt::format("    - {{name: m{}, position: [{} m, {} m, {} m]}}\n", m, places(0, m),
-                        places(1, m), places(2, m));
+)" << MarkerFrames(places);
 }
 
 void Run(const std::filesystem::path& folder) {
@@ -128,7 +111,7 @@ void Run(const std::filesystem::path& folder) {
   }
   markers << '\n';
   loads << '\n';
-  WriteBox(folder / "box.off");
+  WriteBoxSurface(folder / "box.off", kLow, kHigh);
   WriteRecording(folder, places);
   std::ofstream(folder / "experiment.yaml") << kExperiment;
 }

@@ -11,6 +11,7 @@
 #include "fem/prescribed_force.h"
 #include "geometry/embedding.h"
 #include "prediction/prediction_study_reader.h"
+#include "support/marker_recording.h"
 
 namespace lacuna {
 Eigen::Matrix3Xd BarMarkerPlaces() {
@@ -59,14 +60,7 @@ std::vector<Eigen::Matrix3Xd> FilmHeldBar(const HeldBarTruth& truth) {
 }
 
 void WriteBox(const std::filesystem::path& file) {
-  std::ofstream box(file);
-  box << "OFF\n8 12 0\n";
-  for (int corner = 0; corner < 8; ++corner)
-    box << (corner & 1 ? 0.08 : 0) << ' ' << (corner & 2 ? 0.01 : -0.01) << ' '
-        << (corner & 4 ? 0.01 : -0.01) << '\n';
-  for (const char* face : {"0 2 1", "1 2 3", "4 5 6", "5 7 6", "0 1 4", "1 5 4", "2 6 3", "3 6 7",
-                           "0 4 2", "2 4 6", "1 3 5", "3 7 5"})
-    box << "3 " << face << '\n';
+  WriteBoxSurface(file, {0, -0.01, -0.01}, {0.08, 0.01, 0.01});
 }
 
 void WriteBarRecording(const std::filesystem::path& folder,
@@ -89,17 +83,8 @@ void WriteBarRecording(const std::filesystem::path& folder,
 name: bar
 length_unit: m
 density: 1000 kg/m^3
-frames:
-  kind: markers
-  file: markers.csv
-  columns: {time: t}
-  marker_places:
-)";
-  const Eigen::Matrix3Xd places = BarMarkerPlaces();
-  for (int m = 0; m < kMarkers; ++m)
-    yaml << fmt::format("    - {{name: m{}, position: [{} m, {} m, {} m]}}\n", m, places(0, m),
-                        places(1, m), places(2, m));
-  yaml << R"(fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}]
+)" << MarkerFrames(BarMarkerPlaces())
+       << R"(fixed: [{name: clamp, half_space: {point: [0.002 m, 0 m, 0 m], normal: [-1, 0, 0]}}]
 reference: {from: mesh, file: box.off}
 )";
 }
