@@ -4,6 +4,7 @@
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -69,6 +70,26 @@ LowerTriangle Reordered(const LowerTriangle& lower, const std::vector<int>& pivo
   return reordered;
 }
 
+// What one solution with a factor needs, and the next one uses again.
+struct SolveWorkspace {
+  cholmod_common common;
+  Eigen::MatrixXd ordered_right;
+  cholmod_dense *solution = nullptr, *y = nullptr, *e = nullptr;
+
+  SolveWorkspace() {
+    cholmod_start(&common);
+    common.print = 0;
+  }
+  SolveWorkspace(const SolveWorkspace&) = delete;
+  SolveWorkspace& operator=(const SolveWorkspace&) = delete;
+  ~SolveWorkspace() {
+    cholmod_free_dense(&solution, &common);
+    cholmod_free_dense(&y, &common);
+    cholmod_free_dense(&e, &common);
+    cholmod_finish(&common);
+  }
+};
+
 }  // namespace
 
 struct CholmodFactor::Implementation {
@@ -76,11 +97,11 @@ struct CholmodFactor::Implementation {
   LowerTriangle lower;
   std::vector<int> pivots;  // the elimination order that CHOLMOD prefers, of scalar rows
   std::vector<double> values;
-  Eigen::MatrixXd ordered_right;
   cholmod_sparse matrix = {};
   cholmod_factor* factor = nullptr;
-  cholmod_dense *solution = nullptr, *workspace_y = nullptr, *workspace_e = nullptr;
   double flops = 0, entries = 0;
+  std::mutex mutex;  // protects `idle`
+  std::vector<std::unique_ptr<SolveWorkspace>> idle;
 
   Implementation() {
     cholmod_start(&common);
@@ -111,11 +132,21 @@ struct CholmodFactor::Implementation {
     CHECK(factor != nullptr) << "CHOLMOD's symbolic analysis failed with status " << common.status;
   }
 
+  std::unique_ptr<SolveWorkspace> TakeWorkspace() {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return std::make_unique<SolveWorkspace>();
+    std::unique_ptr<SolveWorkspace> workspace = std::move(idle.back());
+    idle.pop_back();
+    return workspace;
+  }
+
+  void ReturnWorkspace(std::unique_ptr<SolveWorkspace> workspace) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(std::move(workspace));
+  }
+
   ~Implementation() {
     cholmod_free_factor(&factor, &common);
-    cholmod_free_dense(&solution, &common);
-    cholmod_free_dense(&workspace_y, &common);
-    cholmod_free_dense(&workspace_e, &common);
     cholmod_finish(&common);
   }
 };
@@ -152,30 +183,33 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
          (self.matrix.nrow == 0 || cholmod_rcond(self.factor, &self.common) > 0);
 }
 
-void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X) {
+void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X) const {
   Implementation& self = *implementation_;
   CHECK_EQ(static_cast<size_t>(B.rows()), self.matrix.nrow);
   X->resize(B.rows(), B.cols());
   if (B.size() == 0) return;  // CHOLMOD rejects an empty matrix
-  self.ordered_right.resize(B.rows(), B.cols());
+  std::unique_ptr<SolveWorkspace> workspace = self.TakeWorkspace();
+  SolveWorkspace& work = *workspace;
+  work.ordered_right.resize(B.rows(), B.cols());
   for (Eigen::Index c = 0; c < B.cols(); ++c)
     for (Eigen::Index k = 0; k < B.rows(); ++k)
-      self.ordered_right(k, c) = B(self.pivots[static_cast<size_t>(k)], c);
+      work.ordered_right(k, c) = B(self.pivots[static_cast<size_t>(k)], c);
   cholmod_dense right = {};
   right.nrow = self.matrix.nrow;
   right.d = right.nrow;
   right.ncol = B.cols();
   right.nzmax = right.d * right.ncol;
-  right.x = self.ordered_right.data();
+  right.x = work.ordered_right.data();
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
-  const int solved = cholmod_solve2(CHOLMOD_A, self.factor, &right, nullptr, &self.solution,
-                                    nullptr, &self.workspace_y, &self.workspace_e, &self.common);
-  CHECK(solved) << "CHOLMOD's triangular solve failed with status " << self.common.status;
-  const double* solution = static_cast<const double*>(self.solution->x);
+  const int solved = cholmod_solve2(CHOLMOD_A, self.factor, &right, nullptr, &work.solution,
+                                    nullptr, &work.y, &work.e, &work.common);
+  CHECK(solved) << "CHOLMOD's triangular solve failed with status " << work.common.status;
+  const double* solution = static_cast<const double*>(work.solution->x);
   for (Eigen::Index c = 0; c < B.cols(); ++c)
     for (Eigen::Index k = 0; k < B.rows(); ++k)
       (*X)(self.pivots[static_cast<size_t>(k)], c) = solution[c * B.rows() + k];
+  self.ReturnWorkspace(std::move(workspace));
 }
 
 double CholmodFactor::flops() const { return implementation_->flops; }

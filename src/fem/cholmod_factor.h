@@ -2,8 +2,8 @@
 // CHOLMOD.
 //
 // A is the part of a block matrix that belongs to the free nodes, in a given elimination order.
-// Only one triangle of A is read, so A is taken to be symmetric. Not thread-safe: one object per
-// thread.
+// Only one triangle of A is read, so A is taken to be symmetric. Solve() may be called by several
+// threads at the same time, Factorise() not.
 #ifndef LACUNA_FEM_CHOLMOD_FACTOR_H_
 #define LACUNA_FEM_CHOLMOD_FACTOR_H_
 
@@ -29,7 +29,7 @@ class CholmodFactor {
 
   // Solves L Lᵀ X = B for any number of columns. B and X have 3·(free nodes) rows in elimination
   // order. Needs a usable factor.
-  void Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X);
+  void Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::MatrixXd* X) const;
 
   double flops() const;    // floating-point operations of a numeric factorisation
   double entries() const;  // entries stored in L

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.h"
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
 
@@ -27,12 +28,32 @@ Eigen::MatrixXd ScaledRows(const Eigen::VectorXd& node_weight, Eigen::MatrixXd c
   return columns;
 }
 
+// Perturbations are advanced in groups of so many: the columns of a group stay in a core's cache
+// from one operation to the next. Fixed, because the iterations of a group end together.
+constexpr Eigen::Index kGroup = 16;
+
 // An effect with memory, of the model or of a perturbation.
 struct Memory {
   std::shared_ptr<const Effect> effect;
   Eigen::VectorXd value;        // z of an effect outside the model
   Eigen::MatrixXd sensitivity;  // dz/dp of an effect of the model, state × perturbations
 };
+
+// The columns of one group.
+struct Group {
+  Eigen::Index first = 0, count = 0;
+
+  template <typename Matrix>
+  auto Of(Matrix& matrix) const {
+    return matrix.middleCols(first, count);
+  }
+};
+
+bool IsZero(const BlockMatrix& matrix) {
+  const double* values = matrix.values();
+  return std::all_of(values, values + 9 * matrix.pattern().BlockCount(),
+                     [](double value) { return value == 0; });
+}
 
 }  // namespace
 
@@ -42,14 +63,18 @@ struct TangentLinear::Implementation {
   std::vector<char> fixed;
   EliminationOrder order;
   CholmodFactor factor;
-  BlockMatrix tangent, skew, rate_tangent;
-  std::vector<Eigen::Index> of_grips;  // perturbations of the motion of grips
-  double element_size;                 // m
+  // The tangent of a step, its skew part, and the parts by velocity, times the rate, and by
+  // acceleration.
+  BlockMatrix tangent, skew, by_velocity, by_acceleration;
+  bool has_skew = false, has_velocity = false, has_acceleration = false;
+  double element_size;  // m
   TangentLinearOptions options;
   // Sensitivities at the current time and one step earlier.
   Eigen::MatrixXd position, velocity, acceleration;
   Eigen::MatrixXd previous_position, previous_velocity, previous_acceleration;
-  Eigen::MatrixXd reaction;     // at the current time
+  Eigen::MatrixXd reaction;  // at the current time
+  // Of the step being made: x̃ and ṽ, the right-hand side, the sensitivities at its end.
+  Eigen::MatrixXd position_history, velocity_history, right, moved;
   std::vector<Memory> inside;   // one per effect of the model
   std::vector<Memory> outside;  // one per perturbation; unused if its effect is in the model
 
@@ -62,11 +87,14 @@ struct TangentLinear::Implementation {
         factor(*model.body->pattern, order),
         tangent(model.body->pattern),
         skew(model.body->pattern),
-        rate_tangent(model.body->pattern),
+        by_velocity(model.body->pattern),
+        by_acceleration(model.body->pattern),
         element_size(std::cbrt(model.body->weight.sum() / model.body->ElementCount())),
         options(the_options) {
     const Eigen::Index size = 3 * model.body->NodeCount();
-    position = velocity = reaction = Eigen::MatrixXd::Zero(size, Count());
+    position = velocity = acceleration = Eigen::MatrixXd::Zero(size, Count());
+    previous_position = previous_velocity = previous_acceleration = position;
+    position_history = velocity_history = right = moved = reaction = position;
     for (const auto& effect : model.effects) {
       inside.push_back(
           {effect, {}, Eigen::MatrixXd::Zero(effect->StateSize(*model.body), Count())});
@@ -80,8 +108,6 @@ struct TangentLinear::Implementation {
       }
       outside.push_back(std::move(memory));
     }
-    for (Eigen::Index k = 0; k < Count(); ++k)
-      if (perturbations[k].grip) of_grips.push_back(k);
   }
 
   Eigen::Index Count() const { return static_cast<Eigen::Index>(perturbations.size()); }
@@ -90,6 +116,14 @@ struct TangentLinear::Implementation {
     for (size_t j = 0; j < model.effects.size(); ++j)
       if (model.effects[j].get() == &effect) return static_cast<int>(j);
     return -1;
+  }
+
+  // Calls visit(group), possibly at the same time for several groups.
+  template <typename Visit>
+  void ForEachGroup(const Visit& visit) const {
+    ParallelBlocks(Count(), kGroup, [&](int64_t begin, int64_t end) {
+      visit(Group{begin, static_cast<Eigen::Index>(end - begin)});
+    });
   }
 
   // ∂f/∂p at the end of the step.
@@ -117,25 +151,22 @@ struct TangentLinear::Implementation {
   }
 
   // Σ ∂f/∂z ζ over the effects with memory.
-  void AddMemoryForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
-                       Eigen::MatrixXd* right) const {
-    Eigen::VectorXd plus(end.position.size()), now(end.position.size());
+  void AddMemoryForces(const StepEquation& equation, const StepEquation::EndOfStep& end) {
     for (size_t j = 0; j < inside.size(); ++j) {
       const Eigen::MatrixXd& change = inside[j].sensitivity;
-      if (change.rows() == 0) continue;
-      if (change.isZero(0)) continue;
+      if (change.rows() == 0 || change.isZero(0)) continue;
       const Kinematics at = equation.At(end, j);
-      now.setZero();
+      Eigen::VectorXd now = Eigen::VectorXd::Zero(end.position.size());
       inside[j].effect->AddForce(at, &now);
-      for (Eigen::Index k = 0; k < Count(); ++k) {
+      ParallelFor(Count(), 1, [&](int64_t k) {
         const double largest = change.col(k).lpNorm<Eigen::Infinity>();
-        if (largest == 0) continue;
+        if (largest == 0) return;
         const double h = kDifference / largest;
         const Eigen::VectorXd more = at.state + h * change.col(k);
-        plus.setZero();
+        Eigen::VectorXd plus = Eigen::VectorXd::Zero(end.position.size());
         inside[j].effect->AddForce(WithState(at, more), &plus);
-        right->col(k) += (plus - now) / h;
-      }
+        right.col(k) += (plus - now) / h;
+      });
     }
   }
 
@@ -145,84 +176,113 @@ struct TangentLinear::Implementation {
   }
 
   // dz/dp at the end of the step, from the sensitivities there.
-  void AdvanceMemories(const StepEquation& equation, const StepEquation::EndOfStep& end,
-                       const Eigen::MatrixXd& s, const Eigen::MatrixXd& w) {
-    for (size_t j = 0; j < inside.size(); ++j) {
-      Memory& memory = inside[j];
+  void AdvanceMemories(const StepEquation& equation, const StepEquation::EndOfStep& end) {
+    for (Memory& memory : inside) {
       if (memory.sensitivity.rows() == 0) continue;
-      const Kinematics at = equation.At(end, j);
+      const Kinematics at = equation.At(end, static_cast<size_t>(&memory - inside.data()));
       Eigen::VectorXd now = at.state;
       const Eigen::VectorXd parameters = memory.effect->Parameters();
       memory.effect->AdvanceState(at, parameters, &now);
-      for (Eigen::Index k = 0; k < Count(); ++k) {
-        const bool own = perturbations[k].effect == memory.effect;
-        const double own_value = own ? parameters[perturbations[k].parameter] : 1;
-        const double largest = std::max({s.col(k).lpNorm<Eigen::Infinity>() / element_size,
-                                         memory.sensitivity.col(k).lpNorm<Eigen::Infinity>(),
-                                         own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
-        if (largest == 0) continue;
-        const double h = kDifference / largest;
-        const auto state_at = [&](double shift) {
-          const Eigen::VectorXd x = at.position + shift * s.col(k);
-          const Eigen::VectorXd v = at.velocity + shift * w.col(k);
-          const Eigen::VectorXd z = at.state + shift * memory.sensitivity.col(k);
-          Eigen::VectorXd result = z, shifted = parameters;
-          if (own) shifted[perturbations[k].parameter] += shift;
-          memory.effect->AdvanceState(
-              {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity}, shifted,
-              &result);
-          return result;
-        };
-        memory.sensitivity.col(k) = (state_at(h) - now) / h;
-      }
+      ParallelFor(Count(), 1, [&](int64_t k) { AdvanceMemory(at, parameters, now, k, &memory); });
     }
-    for (Eigen::Index k = 0; k < Count(); ++k) {
-      if (outside[k].value.size() == 0) continue;
+    ParallelFor(Count(), 1, [&](int64_t k) {
+      if (outside[k].value.size() == 0) return;
       const Eigen::VectorXd before = outside[k].value;
       const Kinematics at = AtOutside(equation, end, k);
       outside[k].effect->AdvanceState(WithState(at, before), outside[k].effect->Parameters(),
                                       &outside[k].value);
-    }
+    });
   }
 
-  // Subtracts the weighted tangents of the effects times `change`. Most effects depend on the
-  // position only and contribute nothing.
-  void AddTangentForces(const StepEquation& equation, const StepEquation::EndOfStep& end,
-                        const TangentWeights& weights, const Eigen::MatrixXd& change,
-                        Eigen::MatrixXd* right) {
-    rate_tangent.SetZero();
-    for (size_t j = 0; j < model.effects.size(); ++j) {
-      const Kinematics at = equation.At(end, j);
-      model.effects[j]->AddTangents(at, weights, false, &rate_tangent);
-      model.effects[j]->AddSkewTangents(at, weights, &rate_tangent);
+  // One column of `memory`. `now` is its state at the end of the step.
+  void AdvanceMemory(const Kinematics& at, const Eigen::VectorXd& parameters,
+                     const Eigen::VectorXd& now, Eigen::Index k, Memory* memory) const {
+    const bool own = perturbations[k].effect == memory->effect;
+    const double own_value = own ? parameters[perturbations[k].parameter] : 1;
+    const double largest = std::max({position.col(k).lpNorm<Eigen::Infinity>() / element_size,
+                                     memory->sensitivity.col(k).lpNorm<Eigen::Infinity>(),
+                                     own ? 1 / std::max(std::abs(own_value), 1e-300) : 0.0});
+    if (largest == 0) return;
+    const double h = kDifference / largest;
+    const Eigen::VectorXd x = at.position + h * position.col(k);
+    const Eigen::VectorXd v = at.velocity + h * velocity.col(k);
+    const Eigen::VectorXd z = at.state + h * memory->sensitivity.col(k);
+    Eigen::VectorXd after = z, shifted = parameters;
+    if (own) shifted[perturbations[k].parameter] += h;
+    memory->effect->AdvanceState(
+        {at.body, x, v, at.acceleration, at.time, at.time_step, z, at.elasticity}, shifted, &after);
+    memory->sensitivity.col(k) = (after - now) / h;
+  }
+
+  // The tangents at the end of the step.
+  void Assemble(const StepEquation& equation, const StepEquation::EndOfStep& end,
+                const Eigen::VectorXd& at) {
+    equation.Tangent(at, /*convexify=*/false, &tangent);
+    has_skew = equation.SkewTangent(at, &skew);
+    has_velocity = has_acceleration = false;
+    if (equation.rate() == 0) return;
+    // Most effects depend on the position only and contribute nothing.
+    const auto assemble = [&](const TangentWeights& weights, BlockMatrix* matrix) {
+      matrix->SetZero();
+      for (size_t j = 0; j < model.effects.size(); ++j) {
+        const Kinematics kinematics = equation.At(end, j);
+        model.effects[j]->AddTangents(kinematics, weights, false, matrix);
+        model.effects[j]->AddSkewTangents(kinematics, weights, matrix);
+      }
+      return !IsZero(*matrix);
+    };
+    has_velocity = assemble({.velocity = equation.rate()}, &by_velocity);
+    has_acceleration = assemble({.acceleration = 1}, &by_acceleration);
+  }
+
+  // The part of the right-hand side that earlier sensitivities make.
+  void AddHistory(const StepEquation& equation, const Group& group) {
+    const SchemeWeights& weights = equation.weights();
+    const double rate = equation.rate();
+    using Columns = decltype(group.Of(position));
+    auto at = group.Of(position_history), speed = group.Of(velocity_history);
+    at = weights.Combine<Columns, Eigen::MatrixXd>(group.Of(position), group.Of(previous_position),
+                                                   group.Of(velocity), group.Of(previous_velocity));
+    speed = weights.Combine<Columns, Eigen::MatrixXd>(
+        group.Of(velocity), group.Of(previous_velocity), group.Of(acceleration),
+        group.Of(previous_acceleration));
+    if (rate == 0) return;
+    auto sum = group.Of(right);
+    if (equation.has_inertia()) {
+      const Eigen::MatrixXd carried = rate * rate * at + rate * speed;
+      sum += ScaledRows(model.body->node_mass, carried);
+      if (has_acceleration) sum -= by_acceleration * carried;
     }
-    const double* values = rate_tangent.values();
-    if (std::all_of(values, values + 9 * model.body->pattern->BlockCount(),
-                    [](double value) { return value == 0; }))
-      return;
-    *right -= rate_tangent * change;
+    if (has_velocity) sum -= by_velocity * Eigen::MatrixXd(at);
   }
 
   // The sensitivities of the gripped nodes; 0 elsewhere.
-  Eigen::MatrixXd GripColumns(const StepEquation& equation, const Eigen::VectorXd& at) const {
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(position.rows(), Count());
-    Eigen::VectorXd reaction;
-    for (const Eigen::Index k : of_grips) {
-      if (reaction.size() == 0) equation.Residual(at, &reaction);
-      const Eigen::VectorXd moved = perturbations[k].grip(equation.end_time(), reaction);
+  void PlaceGrips(const StepEquation& equation, const Eigen::VectorXd& at) {
+    moved.setZero();
+    Eigen::VectorXd force;
+    for (Eigen::Index k = 0; k < Count(); ++k) {
+      if (!perturbations[k].grip) continue;
+      if (force.size() == 0) equation.Residual(at, &force);
+      const Eigen::VectorXd change = perturbations[k].grip(equation.end_time(), force);
       for (size_t i = 0; i < fixed.size(); ++i)
-        if (fixed[i]) columns.col(k).segment<3>(3 * i) = moved.segment<3>(3 * i);
+        if (fixed[i]) moved.col(k).segment<3>(3 * i) = change.segment<3>(3 * i);
     }
-    return columns;
+  }
+
+  void SubtractGrips(const Group& group) {
+    const Eigen::MatrixXd gripped = group.Of(moved);
+    if (gripped.isZero(0)) return;
+    group.Of(right) -= tangent * gripped;
+    if (has_skew) group.Of(right) -= skew * gripped;
   }
 
   // Solves tangent · s = right at the free nodes with the current factor; s is 0 at fixed nodes.
-  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& right) {
-    Eigen::MatrixXd reduced(3 * order.FreeNodes(), right.cols()), solution;
+  Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& of_all) {
+    Eigen::MatrixXd reduced(3 * order.FreeNodes(), of_all.cols()), solution;
     for (int i = 0; i < order.FreeNodes(); ++i)
-      reduced.middleRows<3>(3 * i) = right.middleRows<3>(3 * order.node[i]);
+      reduced.middleRows<3>(3 * i) = of_all.middleRows<3>(3 * order.node[i]);
     factor.Solve(reduced, &solution);
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(of_all.rows(), of_all.cols());
     for (int i = 0; i < order.FreeNodes(); ++i)
       all.middleRows<3>(3 * order.node[i]) = solution.middleRows<3>(3 * i);
     return all;
@@ -233,28 +293,25 @@ struct TangentLinear::Implementation {
       if (fixed[i]) columns->middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
   }
 
-  // Solves (tangent + skew) · s = right at the free nodes. Factorises the symmetric part or, if
-  // that is not definite or the iteration does not converge, its convexified approximation.
-  std::optional<Eigen::MatrixXd> Solve(const StepEquation& equation, const Eigen::VectorXd& at,
-                                       bool has_skew, Eigen::MatrixXd right) {
-    const bool is_definite = factor.Factorise(tangent);
-    if (is_definite && !has_skew) return SolveFree(right);
-    ClearFixed(&right);
-    if (is_definite) {
-      // The contribution of the skew part changes little from one step to the next.
-      Eigen::MatrixXd expected = position;
-      if (previous_position.size() > 0) expected += position - previous_position;
-      const auto solution = Iterate(right, right - skew * expected,
-                                    [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
-                                      *residual = skew * (expected - step);
-                                      expected.setZero();
-                                    });
-      if (solution) return solution;
-    }
-    BlockMatrix stand_in(model.body->pattern);
-    equation.Tangent(at, /*convexify=*/true, &stand_in);
-    if (!factor.Factorise(stand_in)) return std::nullopt;
-    return Iterate(right, right, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
+  // Solves (tangent + skew) · s = right at the free nodes with the factor of the tangent.
+  std::optional<Eigen::MatrixXd> SolveByTangent(const Group& group) {
+    Eigen::MatrixXd wanted = group.Of(right);
+    if (!has_skew) return SolveFree(wanted);
+    ClearFixed(&wanted);
+    // The contribution of the skew part changes little from one step to the next.
+    Eigen::MatrixXd expected = 2 * group.Of(position) - group.Of(previous_position);
+    return Iterate(wanted, wanted - skew * expected,
+                   [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
+                     *residual = skew * (expected - step);
+                     expected.setZero();
+                   });
+  }
+
+  // The same with the factor of the convexified approximation.
+  std::optional<Eigen::MatrixXd> SolveByStandIn(const Group& group) {
+    Eigen::MatrixXd wanted = group.Of(right);
+    ClearFixed(&wanted);
+    return Iterate(wanted, wanted, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
       *residual -= tangent * step;
       if (has_skew) *residual -= skew * step;
     });
@@ -263,11 +320,11 @@ struct TangentLinear::Implementation {
   // Iterative refinement: adds solutions for the residual until it is small relative to the
   // right-hand side. update(step, &residual) computes the residual after a step.
   template <typename Update>
-  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& right, Eigen::MatrixXd residual,
+  std::optional<Eigen::MatrixXd> Iterate(const Eigen::MatrixXd& wanted, Eigen::MatrixXd residual,
                                          const Update& update) {
     constexpr int kMaxIterations = 60;
-    const Eigen::RowVectorXd wanted = options.tolerance * right.colwise().norm();
-    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(right.rows(), right.cols());
+    const Eigen::RowVectorXd small = options.tolerance * wanted.colwise().norm();
+    Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(wanted.rows(), wanted.cols());
     ClearFixed(&residual);
     double last = residual.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -275,11 +332,53 @@ struct TangentLinear::Implementation {
       solution += step;
       update(step, &residual);
       ClearFixed(&residual);
-      if ((residual.colwise().norm().array() <= wanted.array()).all()) return solution;
+      if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
       if (!(residual.norm() < 2 * last)) break;
       last = residual.norm();
     }
     return std::nullopt;
+  }
+
+  // Adds the solution at the free nodes to `moved`. Uses the factor of the tangent's symmetric part
+  // or, if that is not definite or the iteration does not converge, that of its convexified
+  // approximation.
+  bool Solve(const StepEquation& equation, const Eigen::VectorXd& at) {
+    std::vector<char> solved(static_cast<size_t>((Count() + kGroup - 1) / kGroup), 0);
+    const auto add = [&](const Group& group, const std::optional<Eigen::MatrixXd>& solution) {
+      if (!solution) return;
+      group.Of(moved) += *solution;
+      solved[static_cast<size_t>(group.first / kGroup)] = 1;
+    };
+    if (factor.Factorise(tangent))
+      ForEachGroup([&](const Group& group) { add(group, SolveByTangent(group)); });
+    const auto is_solved = [&] { return std::count(solved.begin(), solved.end(), 0) == 0; };
+    if (is_solved()) return true;
+    BlockMatrix stand_in(model.body->pattern);
+    equation.Tangent(at, /*convexify=*/true, &stand_in);
+    if (!factor.Factorise(stand_in)) return false;
+    ForEachGroup([&](const Group& group) {
+      if (!solved[static_cast<size_t>(group.first / kGroup)]) add(group, SolveByStandIn(group));
+    });
+    return is_solved();
+  }
+
+  // Makes the end of the step the current time.
+  void Accept(const StepEquation& equation, const Group& group) {
+    const double rate = equation.rate();
+    const auto end = group.Of(moved);
+    if (options.with_reactions) {
+      group.Of(reaction) += tangent * Eigen::MatrixXd(end);
+      if (has_skew) group.Of(reaction) += skew * Eigen::MatrixXd(end);
+    }
+    group.Of(previous_position) = group.Of(position);
+    group.Of(previous_velocity) = group.Of(velocity);
+    group.Of(previous_acceleration) = group.Of(acceleration);
+    group.Of(position) = end;
+    if (equation.time_step() > 0)
+      group.Of(velocity) = rate * (end - group.Of(position_history));
+    else
+      group.Of(velocity).setZero();
+    group.Of(acceleration) = rate * (group.Of(velocity) - group.Of(velocity_history));
   }
 
   TangentLinearSummary Advance(const MotionHistory& before, TimeScheme scheme, double time_step,
@@ -287,38 +386,20 @@ struct TangentLinear::Implementation {
     if (Count() == 0) return {TangentLinearSummary::Status::kSolved, {}};
     const StepEquation equation(model, before, scheme, time_step);
     const StepEquation::EndOfStep end = equation.End(at);
-    const double rate = equation.rate();
-    const SchemeWeights& weights = equation.weights();
-    const Eigen::MatrixXd position_history =
-        weights.Combine(position, previous_position, velocity, previous_velocity);
-    const Eigen::MatrixXd velocity_history =
-        weights.Combine(velocity, previous_velocity, acceleration, previous_acceleration);
-
-    equation.Tangent(at, /*convexify=*/false, &tangent);
-    const bool has_skew = equation.SkewTangent(at, &skew);
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(position.rows(), Count());
-    for (Eigen::Index k = 0; k < Count(); ++k) right.col(k) = ParameterForce(equation, end, k);
-    AddMemoryForces(equation, end, &right);
-    if (rate != 0) {
-      const Eigen::MatrixXd carried =
-          equation.has_inertia()
-              ? Eigen::MatrixXd(rate * rate * position_history + rate * velocity_history)
-              : Eigen::MatrixXd::Zero(position.rows(), Count());
-      right += ScaledRows(model.body->node_mass, carried);
-      AddTangentForces(equation, end, {.velocity = rate}, position_history, &right);
-      AddTangentForces(equation, end, {.acceleration = 1}, carried, &right);
-    }
-    if (options.with_reactions) reaction = -right;
-    const Eigen::MatrixXd gripped = GripColumns(equation, at);
-    if (!of_grips.empty()) {
-      const Eigen::MatrixXd moved = gripped(Eigen::all, of_grips);
-      right(Eigen::all, of_grips) -= tangent * moved;
-      if (has_skew) right(Eigen::all, of_grips) -= skew * moved;
-    }
+    Assemble(equation, end, at);
+    ParallelFor(Count(), 1, [&](int64_t k) { right.col(k) = ParameterForce(equation, end, k); });
+    AddMemoryForces(equation, end);
+    PlaceGrips(equation, at);
+    Eigen::MatrixXd forces;
+    if (options.with_reactions) forces.resizeLike(right);
+    ForEachGroup([&](const Group& group) {
+      AddHistory(equation, group);
+      if (options.with_reactions) group.Of(forces) = group.Of(right);
+      SubtractGrips(group);
+    });
 
     TangentLinearSummary summary;
-    const std::optional<Eigen::MatrixXd> solution = Solve(equation, at, has_skew, std::move(right));
-    if (!solution) {
+    if (!Solve(equation, at)) {
       summary.status = TangentLinearSummary::Status::kNotPositiveDefinite;
       summary.message = fmt::format(
           "at {:.6g} s: the tangent is not positive definite, and the iteration with its "
@@ -326,18 +407,9 @@ struct TangentLinear::Implementation {
           equation.end_time());
       return summary;
     }
-    const Eigen::MatrixXd moved = *solution + gripped;
-    const Eigen::MatrixXd speed = time_step > 0 ? Eigen::MatrixXd(rate * (moved - position_history))
-                                                : Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
-    if (options.with_reactions) reaction += tangent * moved;
-    if (options.with_reactions && has_skew) reaction += skew * moved;
-    AdvanceMemories(equation, end, moved, speed);
-    previous_position = std::move(position);
-    previous_velocity = std::move(velocity);
-    previous_acceleration = std::move(acceleration);
-    position = moved;
-    velocity = speed;
-    acceleration = rate * (velocity - velocity_history);
+    if (options.with_reactions) reaction = -forces;
+    ForEachGroup([&](const Group& group) { Accept(equation, group); });
+    AdvanceMemories(equation, end);
     summary.status = TangentLinearSummary::Status::kSolved;
     return summary;
   }

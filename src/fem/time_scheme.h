@@ -39,10 +39,10 @@ struct SchemeWeights {
 
   // x̃ from positions and velocities, or ṽ from velocities and accelerations. Arguments with zero
   // weight are not read and may be empty.
-  template <typename Matrix>
-  Matrix Combine(const Matrix& value, const Matrix& previous_value, const Matrix& its_rate,
-                 const Matrix& previous_rate) const {
-    Matrix combined = now * value;
+  template <typename Matrix, typename Combined = Matrix>
+  Combined Combine(const Matrix& value, const Matrix& previous_value, const Matrix& its_rate,
+                   const Matrix& previous_rate) const {
+    Combined combined = now * value;
     if (before != 0) combined += before * previous_value;
     if (rate_now != 0) combined += rate_now * its_rate;
     if (rate_before != 0) combined += rate_before * previous_rate;

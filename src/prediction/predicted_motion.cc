@@ -249,8 +249,8 @@ PredictionOptions RecordingModel::Options(const Eigen::VectorXd& nuisance) const
   // Far below the error of the time steps. Smaller tolerances take a quarter more time.
   options.step.relative_tolerance = 1e-6;
   options.step.linear.relative_tolerance = 1e-4;
-  // Derivatives that are off by 1e-5 lead a fit the same way.
-  options.sensitivity_tolerance = 1e-5;
+  // Derivatives that are off by 1e-4 lead a fit the same way.
+  options.sensitivity_tolerance = 1e-4;
   options.held_force = Eigen::VectorXd::Zero(3 * model_.body->NodeCount());
   for (size_t k = 0; k < nuisances_.size(); ++k) {
     const Eigen::VectorXd& force = nuisances_[k].direction.perturbation.held_force;
