@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "fit/active_bounds.h"
@@ -17,7 +18,7 @@ namespace {
 // factor is that of the parabola through the two costs and the slope between them, within limits,
 // since a prediction is expensive and the right order of magnitude unknown.
 constexpr double kGoodGain = 0.75, kPoorGain = 0.25;
-constexpr double kLonger = 3, kShorter = 0.5, kMuchShorter = 0.1;
+constexpr double kLonger = 2, kShorter = 0.5, kMuchShorter = 0.1;
 // A step changes no parameter by more than this many typical changes: far outside of the region
 // that the data determine, a simulation takes long or fails.
 constexpr double kLongestStep = 100;
@@ -56,16 +57,26 @@ class BoundedDescent {
     }
     residuals_ = end_.prediction.residual.size();
     cost_ = CostOf(end_.prediction, end_.parameters);
+    TakeDerivatives();
   }
 
   DescentEnd Run() {
     // A search without a residual is at its minimum.
     const double least_gain =
         options_.cost_tolerance / static_cast<double>(std::max<Eigen::Index>(1, residuals_));
-    QuadraticCost model = Model();
     int rejected = 0;           // consecutive steps
     std::string failed_beside;  // why the last of them could not be predicted
-    for (double radius = kInfinity;;) {
+    double radius = kInfinity;
+    // Takes derivatives in place of secants. Where there are none, the search goes on from the
+    // latest point that has them, with shorter steps.
+    const auto differentiate = [&](double reach) {
+      failed_beside = Differentiate();
+      if (failed_beside.empty()) return;
+      radius = kMuchShorter * reach;
+      ++rejected;
+    };
+    for (;;) {
+      const QuadraticCost model = Model();
       const Eigen::VectorXd step = Step(model, radius);
       const double reach = LengthOf(step, model);
       const double promised = model.GainOf(step);  // fraction of the cost
@@ -74,6 +85,11 @@ class BoundedDescent {
           !(promised > kLeastOfCurved * least_gain) ||
           (!(promised > least_gain) && !(model.GainOf(Step(model, kInfinity)) > least_gain));
       if (gains_little || length < kShortestStep) {
+        // Secants may promise little where derivatives promise more.
+        if (!is_exact_) {
+          differentiate(reach);
+          continue;
+        }
         // If nothing near the best parameters can be predicted, they need not be a minimum.
         end_.usable = failed_beside.empty();
         if (!end_.usable)
@@ -84,30 +100,32 @@ class BoundedDescent {
 
       ++end_.iterations;
       const Eigen::VectorXd values = Moved(step);
-      Prediction there = Predict(values, /*with_jacobian=*/rejected == 0);
+      Prediction there = Predict(values, /*with_jacobian=*/false);
       const double cost = CostOf(there, values);
       const double gained = cost_ > 0 && std::isfinite(cost) ? 1 - cost / cost_ : -kInfinity;
-      // What was predicted without its Jacobian is predicted again if it becomes the next point.
-      if (gained > 0 && rejected > 0) there = Predict(values, /*with_jacobian=*/true);
-      if (gained > 0 && there.usable) {
-        end_.parameters = values;
-        end_.prediction = std::move(there);
-        cost_ = cost;
+      const bool is_poor = gained < kPoorGain * promised;
+      if (gained > 0) {
+        // A poor step along secants tells less of the trust region than of the secants.
         if (gained > kGoodGain * promised && rejected == 0)
           radius = std::max(radius, kLonger * reach);
-        else if (gained < kPoorGain * promised)
+        else if (is_poor && is_exact_)
           radius = kShorter * reach;
+        MoveBy(step, model, values, std::move(there), cost);
         rejected = 0;
         failed_beside.clear();
-        model = Model();
+        if (is_poor) differentiate(reach);
+      } else if (!is_exact_) {
+        ++rejected;
+        differentiate(reach);
       } else {
+        ++rejected;
         failed_beside = there.usable ? "" : there.message;
         // promised / (2 promised − gained), where the cost falls by 2 promised per step at first.
         const double turn = gained > -kInfinity ? promised / (2 * promised - gained) : 0;
         radius = std::clamp(turn, kMuchShorter, kShorter) * reach;
-        ++rejected;
       }
     }
+    if (!is_exact_) Differentiate();
     return std::move(end_);
   }
 
@@ -126,11 +144,11 @@ class BoundedDescent {
 
   // Whether no further step may be tried; says so in the result.
   bool IsUsedUp() {
-    // The first prediction was made before the search.
-    const int made = end_.predictions + 1;
-    if (made >= options_.max_predictions) {
+    // The first prediction was made before the search; secants need one more at its end.
+    const int needed = end_.predictions + 1 + (is_exact_ ? 0 : 1);
+    if (needed >= options_.max_predictions) {
       end_.is_out_of_budget = true;
-      end_.message = "the search was ended after " + std::to_string(made) +
+      end_.message = "the search was ended after " + std::to_string(needed) +
                      " predictions, before it had converged";
     } else if (end_.iterations >= options_.max_iterations) {
       end_.message =
@@ -156,12 +174,48 @@ class BoundedDescent {
     return (ToFree(at, values[k]) - ToFree(at, PriorMeanOf(at))) / at.prior_deviation;
   }
 
+  // Predicts the best parameters again, with derivatives in place of secants. If that fails,
+  // returns to the latest point that has derivatives, and gives the reason; empty: done.
+  std::string Differentiate() {
+    Prediction here = Predict(end_.parameters, /*with_jacobian=*/true);
+    const std::string failed = here.usable ? "" : here.message;
+    if (here.usable)
+      end_.prediction = std::move(here);
+    else
+      std::tie(end_.parameters, end_.prediction) = differentiated_;
+    cost_ = CostOf(end_.prediction, end_.parameters);
+    TakeDerivatives();
+    return failed;
+  }
+
+  void TakeDerivatives() {
+    columns_ = end_.prediction.jacobian;
+    for (Eigen::Index k = 0; k < count_; ++k)
+      if (parameter(k).log_scale) columns_.col(k) *= end_.parameters[k];
+    is_exact_ = true;
+    differentiated_ = {end_.parameters, end_.prediction};
+  }
+
+  // Makes `values`, after this step of φ, the best parameters. The derivatives are changed such
+  // that they predict the change of the residual along the step (Broyden, Math. Comput. 19, 1965),
+  // by the least change in units of the curvature of each parameter.
+  void MoveBy(const Eigen::VectorXd& step, const QuadraticCost& model,
+              const Eigen::VectorXd& values, Prediction there, double cost) {
+    const Eigen::VectorXd along = step.cwiseProduct(model.information.diagonal());
+    const double length = along.dot(step);
+    if (length > 0)
+      columns_ += (there.residual - end_.prediction.residual - columns_ * step) *
+                  (along / length).transpose();
+    end_.parameters = values;
+    end_.prediction = std::move(there);
+    cost_ = cost;
+    is_exact_ = false;
+  }
+
   // The cost about the best parameters as a quadratic function of a step of φ.
   QuadraticCost Model() const {
-    Eigen::MatrixXd J = end_.prediction.jacobian;
-    for (Eigen::Index k = 0; k < count_; ++k)
-      if (parameter(k).log_scale) J.col(k) *= end_.parameters[k];
-    QuadraticCost model{cost_, J.transpose() * end_.prediction.residual, J.transpose() * J};
+    QuadraticCost model{cost_, columns_.transpose() * end_.prediction.residual,
+                        columns_.transpose() * columns_};
     for (Eigen::Index k = 0; k < count_; ++k) {
       const double deviation = parameter(k).prior_deviation;
       if (!std::isfinite(deviation)) continue;
@@ -229,6 +283,10 @@ class BoundedDescent {
   Eigen::VectorXd typical_, low_, high_;  // of φ
   DescentEnd end_;
   double cost_ = 0;  // at the best parameters
+  // n × parameters, ∂r/∂φ there: derivatives, or secants since a step was made.
+  Eigen::MatrixXd columns_;
+  bool is_exact_ = false;
+  std::pair<Eigen::VectorXd, Prediction> differentiated_;  // the latest point with derivatives
 };
 
 }  // namespace

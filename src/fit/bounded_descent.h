@@ -7,9 +7,11 @@
 // least that keeps a step within a trust region, which is unlimited until the first step that does
 // not reduce the cost (Moré, Lect. Notes Math. 630, 1978).
 //
-// A prediction costs much more than a step, so that few are made: a trial point is evaluated with
-// its Jacobian, because it usually becomes the next point, except after a rejected step; and a step
-// that promises too little is not tried.
+// A prediction costs much more than a step, and its derivatives several times as much as the
+// prediction. Steps are therefore predicted without derivatives, and secants (Broyden, Math.
+// Comput. 19, 1965) take their place as long as the steps gain what they promise. Where one does
+// not, and where the search seems to be at its end, the derivatives are computed: the search never
+// ends on secants.
 #ifndef LACUNA_FIT_BOUNDED_DESCENT_H_
 #define LACUNA_FIT_BOUNDED_DESCENT_H_
 
