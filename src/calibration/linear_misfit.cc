@@ -34,6 +34,17 @@ Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
   return moved;
 }
 
+Eigen::VectorXd ChangeTo(const Eigen::VectorXd& moved,
+                         const std::vector<CalibratedParameter>& parameters,
+                         const Eigen::VectorXd& values) {
+  Eigen::VectorXd change = moved - values;
+  for (size_t k = 0; k < parameters.size(); ++k) {
+    const Eigen::Index at = static_cast<Eigen::Index>(k);
+    if (parameters[k].log_scale) change[at] = values[at] * std::log(moved[at] / values[at]);
+  }
+  return change;
+}
+
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
                              double correlation_time, bool fitted_only) {
   Eigen::MatrixXd white(rows.rows(), rows.cols());
@@ -82,18 +93,37 @@ Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
   return observed;
 }
 
-double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
-  double squares[2] = {0, 0}, rows[2] = {0, 0};
+namespace {
+
+// The whitened rows that were observed: of fitted frames, and of those that were held out.
+struct SquaresOfRows {
+  double fitted = 0, held_out = 0;  // sums
+  Eigen::Index fitted_rows = 0, held_out_rows = 0;
+};
+
+SquaresOfRows SquaresOf(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  SquaresOfRows squares;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     for (Eigen::Index row = 0; row < part.layout.Rows(); ++row) {
       if (part.layout.count[row] == 0) continue;
       const bool fitted = part.fitted[row / part.layout.series];
-      squares[fitted] += std::pow(whitened[part.first_row + row], 2);
-      ++rows[fitted];
+      (fitted ? squares.fitted : squares.held_out) += std::pow(whitened[part.first_row + row], 2);
+      ++(fitted ? squares.fitted_rows : squares.held_out_rows);
     }
   }
-  const bool which = rows[0] == 0;
-  return rows[which] > 0 ? std::sqrt(squares[which] / rows[which]) : 0;
+  return squares;
+}
+
+}  // namespace
+
+double HeldOutSquares(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  return SquaresOf(whitened, misfit).held_out;
+}
+
+double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  const SquaresOfRows of = SquaresOf(whitened, misfit);
+  if (of.held_out_rows > 0) return std::sqrt(of.held_out / static_cast<double>(of.held_out_rows));
+  return of.fitted_rows > 0 ? std::sqrt(of.fitted / static_cast<double>(of.fitted_rows)) : 0;
 }
 
 }  // namespace lacuna

@@ -23,6 +23,11 @@ std::vector<LinearPrior> PriorsAbout(const std::vector<CalibratedParameter>& par
 Eigen::VectorXd MovedBy(const std::vector<CalibratedParameter>& parameters,
                         const Eigen::VectorXd& values, const Eigen::VectorXd& change);
 
+// The change with which MovedBy() gives `moved`.
+Eigen::VectorXd ChangeTo(const Eigen::VectorXd& moved,
+                         const std::vector<CalibratedParameter>& parameters,
+                         const Eigen::VectorXd& values);
+
 // Rows of a linearised misfit, whitened with the measurement errors of their recording.
 // `fitted_only`: rows of frames that were not fitted become 0.
 Eigen::MatrixXd WhitenedRows(const Eigen::MatrixXd& rows, const LinearisedMisfit& misfit,
@@ -41,6 +46,9 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
 
 // The number of rows that were observed.
 Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
+
+// The sum of the squares of the whitened rows that were observed and held out.
+double HeldOutSquares(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);
 
 // The rms of the whitened rows that were observed and held out (of all rows where none were held
 // out).

@@ -204,7 +204,8 @@ class ChangeSearch {
 
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit& misfit, bool fitted_only) {
+                                       const LinearisedMisfit& misfit, bool fitted_only,
+                                       const Eigen::VectorXd& limit) {
   const PredictionStudy study = WithLongSteps(problem);
   const TetMesh& own = problem.body()->mesh;
   const double ratio = RatioFor(problem);
@@ -213,7 +214,9 @@ std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
   OtherMesh mesh{other->ratio, Eigen::VectorXd::Zero(values.size()), {}, {}};
   mesh.own = CalibrationProblem(study, own).Linearise(values, false, {}, nullptr, &misfit).residual;
   const ChangeSearch search(problem, values, misfit, mesh.own, fitted_only);
-  if (mesh.ratio > kScoutBelow * kScoutRatio) {
+  if (limit.size() > 0) {
+    mesh.change = ChangeTo(limit, problem.parameters(), values) / mesh.ToLimit();
+  } else if (mesh.ratio > kScoutBelow * kScoutRatio) {
     // Most of the way is found with elements that cost little.
     const auto scout = WithOtherElements(study, own, kScoutRatio);
     if (scout && mesh.ratio > kScoutBelow * scout->ratio) {

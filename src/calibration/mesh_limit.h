@@ -38,11 +38,13 @@ struct OtherMesh {
 };
 
 // `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. Returns nothing where another mesh cannot be made (calibration/other_elements.h) or
-// cannot be simulated. Throws Interrupted.
+// frames alone. `limit`: the result of an earlier AtMeshLimit(), near which the change is sought;
+// empty: there is none. Returns nothing where another mesh cannot be made
+// (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
-                                       const LinearisedMisfit& misfit, bool fitted_only);
+                                       const LinearisedMisfit& misfit, bool fitted_only,
+                                       const Eigen::VectorXd& limit = {});
 
 // The residual with elements whose volume is smaller by `ratio`, with the longer steps and the
 // change of the parameters that belongs to that ratio. Empty where the shape cannot be meshed so or

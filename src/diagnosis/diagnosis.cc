@@ -212,9 +212,12 @@ Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::V
 }  // namespace
 
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
-                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept) {
+                   const DiagnosisOptions& options, Progress* progress, RefitStore* kept,
+                   const Eigen::VectorXd& at_mesh_limit) {
+  SceneColumns known;
+  known.at_mesh_limit = at_mesh_limit;
   return DiagnoseWithHalvings(problem, fitted, kThresholds.refit.most_halvings,
-                              {options, progress, kept});
+                              {options, progress, kept}, known);
 }
 
 }  // namespace lacuna

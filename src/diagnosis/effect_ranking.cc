@@ -137,8 +137,8 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
   AddEffects(misfit_.jacobian.middleCols(known_, of_effects), *ranking_.scene.pilots);
   const Eigen::MatrixXd grip_columns =
       misfit_.jacobian.rightCols(misfit_.jacobian.cols() - known_ - of_effects);
-  for (NuisanceCandidate& nuisance :
-       ModelNuisances({problem, values, misfit_, grips, grip_columns}, known.nuisances)) {
+  for (NuisanceCandidate& nuisance : ModelNuisances(
+           {problem, values, misfit_, grips, grip_columns, known.at_mesh_limit}, known.nuisances)) {
     if (nuisance.card.is_shared_in_scene) ranking_.scene.nuisances.push_back(nuisance);
     AddNuisance(std::move(nuisance));
   }
@@ -297,7 +297,8 @@ ScoredVariant HypothesisRanking::Variant(size_t candidate) const {
   return {candidates_[candidate], scores_[candidate], values_ + fit.change.head(known_)};
 }
 
-// Other variants from which a refit may start. A support alone has several on each side of the body.
+// Other variants from which a refit may start. A support alone has several on each side of the
+// body.
 constexpr size_t kMostElsewhere = 4;
 
 std::vector<ScoredEffect> HypothesisRanking::ScoredEntries() const {

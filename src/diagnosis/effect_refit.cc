@@ -32,24 +32,19 @@ std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                      const LinearisedMisfit* known) {
   double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
-  double unfitted_noise = 0, fitted_squares = 0, held_out_squares = 0;
+  double unfitted_noise = 0, unfitted_squares = 0;
   int fitted_points = 0, held_out_points = 0, unfitted_points = 0;
   const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, values, known);
   for (size_t r = 0; r < misfits.size(); ++r) {
     const MisfitMeasure &in_fit = misfits[r].in_fit, &out = misfits[r].held_out;
     if (!problem.models()[r].item().fitted) {
-      unfitted_noise += out.rms_over_sigma * out.rms_over_sigma * out.points;
+      const double squares = out.rms_over_sigma * out.rms_over_sigma * out.points;
+      unfitted_noise += squares;
       unfitted_points += out.points;
-    }
-    const double components = static_cast<double>(problem.models()[r].observer().Components());
-    const auto squares = [&](const MisfitMeasure& measure) {
-      return components * measure.points * measure.rms_over_sigma * measure.rms_over_sigma;
-    };
-    fitted_squares += squares(in_fit);
-    held_out_squares += squares(out);
-    for (const FittedReaction& reaction : misfits[r].reactions) {
-      fitted_squares += reaction.in_fit.values * std::pow(reaction.in_fit.rms_over_sigma, 2);
-      held_out_squares += reaction.held_out.values * std::pow(reaction.held_out.rms_over_sigma, 2);
+      unfitted_squares += problem.models()[r].observer().Components() * squares;
+      for (const FittedReaction& reaction : misfits[r].reactions)
+        unfitted_squares +=
+            reaction.held_out.values * std::pow(reaction.held_out.rms_over_sigma, 2);
     }
     fitted += in_fit.rms * in_fit.rms * in_fit.points;
     fitted_noise += in_fit.rms_over_sigma * in_fit.rms_over_sigma * in_fit.points;
@@ -67,7 +62,7 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
     errors.rms_over_sigma = std::sqrt(fitted_noise / fitted_points);
   }
   errors.held_out_rms = errors.in_fit_rms;
-  errors.squares_over_sigma = errors.has_held_out ? held_out_squares : fitted_squares;
+  errors.unfitted_squares = unfitted_squares;
   if (errors.has_held_out) {
     errors.held_out_rms = std::sqrt(held_out / held_out_points);
     errors.rms_over_sigma = std::sqrt(held_out_noise / held_out_points);
@@ -262,26 +257,27 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
   return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
 }
 
-Calibration FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
-                        RefitFrom from) {
+ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
+                        RefitFrom from, const Eigen::VectorXd& refitted) {
   const Eigen::Index own = extended.OwnCount();
   Eigen::VectorXd start;
   if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
-  if (start.size() == 0) start = extended.Start();
-  Calibration calibration = extended.CalibrateFrom(start, stage);
+  if (start.size() == 0) start = extended.Start(refitted);
+  ExtendedFit fit = extended.CalibrateFrom(start, stage);
   const bool converged =
-      !calibration.estimates.empty() && calibration.rms <= kThresholds.refit.converged_rms;
+      !fit.calibration.estimates.empty() && fit.calibration.rms <= kThresholds.refit.converged_rms;
   // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
   // with the effect held at a size has given another one already.
-  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return calibration;
+  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return fit;
   const Calibration afresh = extended.CalibrateAfresh();
-  if (afresh.parameters.size() != own) return calibration;
+  if (afresh.parameters.size() != own) return fit;
   start.head(own) = afresh.parameters;
-  Calibration other = extended.CalibrateFrom(start, stage + " from there");
-  const int predictions = calibration.predictions + afresh.predictions + other.predictions;
-  Calibration& better = IsBetter(other, calibration) ? other : calibration;
-  better.predictions = predictions;
-  return better;
+  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there");
+  const int predictions =
+      fit.calibration.predictions + afresh.predictions + other.calibration.predictions;
+  ExtendedFit& better = IsBetter(other.calibration, fit.calibration) ? other : fit;
+  better.calibration.predictions = predictions;
+  return std::move(better);
 }
 
 }  // namespace
@@ -311,7 +307,7 @@ double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit) {
 }
 
 bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance) {
-  return !without.has_held_out || with.squares_over_sigma < without.squares_over_sigma + chance;
+  return !without.has_held_out || with.unfitted_squares < without.unfitted_squares + chance;
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
@@ -320,26 +316,31 @@ bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
 }
 
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
-                  const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from) {
+                  const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from,
+                  const EffectRefit* without) {
   const LinearisedMisfit& misfit = baseline.misfit;
   const ExtendedProblem extended(baseline, effect, adopted);
   const CalibrationProblem& with = extended.problem();
   const Eigen::Index own = extended.OwnCount();
-  EffectRefit refit;
-  refit.calibration =
+  Eigen::VectorXd refitted;
+  if (effect != nullptr && without != nullptr && without->message.empty()) {
+    refitted.resize(without->calibration.parameters.size() + without->amounts.size());
+    refitted << without->calibration.parameters, without->amounts;
+  }
+  ExtendedFit fit =
       FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
-                  effect != nullptr && is_far_off, from);
+                  effect != nullptr && is_far_off, from, refitted);
+  EffectRefit refit;
+  refit.calibration = std::move(fit.calibration);
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
-    const Eigen::VectorXd amounts =
-        refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
+    refit.amounts = refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
     refit.calibration.parameters.conservativeResize(own);
     refit.calibration.estimates.resize(static_cast<size_t>(own));
-    // With markers, one prediction serves both. It does not continue those of the fit, so that a
-    // fit that was kept leads to the same bits.
-    LinearisedMisfit own_misfit;
-    if (!with.HasScans())
+    // With markers, one prediction serves both.
+    LinearisedMisfit own_misfit = std::move(fit.misfit);
+    if (!own_misfit.usable && !with.HasScans())
       own_misfit = with.Linearise(refit.calibration.parameters, true, {}, nullptr, &misfit);
     const LinearisedMisfit* known = own_misfit.usable ? &own_misfit : nullptr;
     refit.hypothesis =
@@ -352,9 +353,11 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
     }
     refit.message = refit.hypothesis.misfit.message;
     if (refit.hypothesis.misfit.usable) {
-      const Eigen::VectorXd residual = refit.hypothesis.misfit.residual + adopted.columns * amounts;
-      refit.errors.without_nuisances =
-          HeldOutInNoise(WhitenedRows(residual, misfit, 0, false), misfit);
+      const Eigen::VectorXd residual =
+          refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
+      const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
+      refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
+      refit.errors.unfitted_squares += HeldOutSquares(white, misfit);
       refit.at_fit = refit.hypothesis;
       refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
                                            baseline.noise, std::move(refit.hypothesis));

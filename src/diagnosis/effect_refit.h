@@ -44,6 +44,7 @@ HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLev
 struct EffectRefit {
   std::string message;  // why the refit is not usable; empty: it is usable
   Calibration calibration;
+  Eigen::VectorXd amounts;               // of the adopted nuisances, at the end of the fit
   Eigen::VectorXd effect;                // all parameters of the effect, in the order of its card
   std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
   std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
@@ -87,27 +88,29 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
 // persistent errors.
 double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit);
 
-// Whether the error of the held-out frames with an effect, without the corrections of nuisances, is
-// compatible with the effect being missing: it does not grow by more than `chance`
-// (HeldOutChance). True where nothing is held out.
+// Whether the error of what was not fitted (ModelErrors::unfitted_squares) is compatible with the
+// effect being missing: it does not grow by more than `chance` (HeldOutChance). Both errors are
+// those after the adopted nuisances, because the effect changes the prediction by more than noise
+// where it meets an error of the mesh or of the shape. True where nothing is held out.
 bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance);
 
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
 // the effect follows the fitted frames with wrong parameters.
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without);
 
-// Where a refit starts: at the parameters that first order predicts, or with the effect held near
-// its predicted size and the others fitted to that.
+// Where a refit starts: where ExtendedProblem::Start() does, or with the effect held near its
+// predicted size and the others fitted to that.
 enum class RefitFrom { kFirstOrder, kFixedSize };
 
 // Fits the baseline with the effect and the adopted nuisances. Null `effect`: with the nuisances
 // alone, so that the baseline is compared at its best too. `is_far_off` says that the baseline is
 // far from the measurements: a refit that has not converged is then repeated from the result of an
-// independent fit of the model with the effect. A failed fit gives a message. Refits of one
-// baseline may run in several threads. Throws Interrupted.
+// independent fit of the model with the effect. `without`: the refit with the same nuisances and
+// without the effect, beside whose parameters the refit may start; null: unknown. A failed fit
+// gives a message. Refits of one baseline may run in several threads. Throws Interrupted.
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off,
-                  RefitFrom from = RefitFrom::kFirstOrder);
+                  RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr);
 
 }  // namespace lacuna
 

@@ -15,11 +15,13 @@ namespace lacuna {
 namespace {
 
 // A refit has to be good enough for a comparison, not converged to the last digit.
-constexpr int kIterations = 25;
+constexpr int kIterations = 15;
 constexpr double kTolerance = 1;  // of the cost, in units of one standard deviation
 // Start() tries these shares of the step that first order predicts, until one gives a smaller
 // residual than the model without the effect.
 constexpr double kStepShares[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
+// The shares of the effect's predicted size that it tries beside the refitted baseline.
+constexpr double kSharesBesideRefitted[] = {1, 0.1};
 // StartAtFixedSize() holds the effect at these shares of its predicted size, one after another, by
 // a prior with this share of the typical value.
 constexpr double kSizeShares[] = {0.1, 0.3, 1};
@@ -122,7 +124,7 @@ std::vector<NamedEstimate> ExtendedProblem::OthersIn(const Calibration& calibrat
   return others;
 }
 
-Eigen::VectorXd ExtendedProblem::Start() const {
+Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   const Eigen::VectorXd& values = baseline_.values;
   const Eigen::VectorXd unchanged = PartWay(1, values);
   if (effect_ == nullptr) return unchanged;
@@ -142,6 +144,16 @@ Eigen::VectorXd ExtendedProblem::Start() const {
     }
     if (least < without || effect_->candidate.IsPilot()) break;
   }
+  for (const double share : kSharesBesideRefitted) {
+    if (refitted.size() == 0) break;
+    Eigen::VectorXd at = WithEffectBy(share, refitted.head(values.size()));
+    at.tail(at.size() - own_) = refitted.tail(refitted.size() - values.size());
+    if (const double norm = ResidualNorm(at); norm < least) {
+      least = norm;
+      start = at;
+    }
+    if (effect_->candidate.IsPilot()) break;
+  }
   return start;
 }
 
@@ -152,7 +164,7 @@ Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) cons
     const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
     Eigen::VectorXd at = start.size() > 0 ? start : part_way;
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
-    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true);
+    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true).calibration;
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
     start = fitted.parameters;
@@ -200,7 +212,7 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
   return calibration;
 }
 
-Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                                            bool holds_effect) const {
   const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
   Memory memory;
@@ -212,14 +224,17 @@ Calibration ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
     return prediction;
   };
   baseline_.progress->Begin(stage, 0);
-  const Calibration calibration = Kept("fit", parameters, [&] {
+  ExtendedFit fit;
+  fit.calibration = Kept("fit", parameters, [&] {
     return Calibrate(parameters, predict,
                      {.max_iterations = holds_effect ? kHoldIterations : kIterations,
                       .cost_tolerance = kTolerance,
                       .max_predictions = kThresholds.refit.most_predictions});
   });
-  baseline_.progress->End(calibration.usable ? "" : calibration.message);
-  return calibration;
+  baseline_.progress->End(fit.calibration.usable ? "" : fit.calibration.message);
+  if (memory.latest.usable && memory.of_latest == fit.calibration.parameters.head(own_))
+    fit.misfit = std::move(memory.latest);
+  return fit;
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
@@ -231,9 +246,9 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
                                     Memory* memory) const {
   Prediction prediction;
   if (with_jacobian && !with_.HasScans()) {
-    // All frames, so that the next prediction can start from this one.
-    memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr,
-                                     memory->latest.usable ? &memory->latest : &baseline_.misfit);
+    // All frames, because the last such prediction becomes the fit's misfit.
+    memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr, &baseline_.misfit);
+    memory->of_latest = at.head(own_);
     prediction = FittedPart(memory->latest);
   } else {
     memory->of_problem.correspondences.clear();  // each prediction finds its own
@@ -255,11 +270,14 @@ double ExtendedProblem::ResidualNorm(const Eigen::VectorXd& at) const {
 }
 
 Eigen::VectorXd ExtendedProblem::PartWay(double share, const Eigen::VectorXd& target) const {
-  const Eigen::VectorXd moved = baseline_.values + share * (target - baseline_.values);
+  return WithEffectBy(share, baseline_.values + share * (target - baseline_.values));
+}
+
+Eigen::VectorXd ExtendedProblem::WithEffectBy(double share, const Eigen::VectorXd& own) const {
   Eigen::VectorXd at(static_cast<Eigen::Index>(parameters_.size()));
   for (Eigen::Index k = 0; k < at.size(); ++k) at[k] = parameters_[k].start;
-  at.head(shared_) = moved.head(shared_);
-  at.segment(shared_ + added_, own_ - shared_ - added_) = moved.tail(own_ - shared_ - added_);
+  at.head(shared_) = own.head(shared_);
+  at.segment(shared_ + added_, own_ - shared_ - added_) = own.tail(own_ - shared_ - added_);
   for (Eigen::Index k = shared_; k < shared_ + added_; ++k)
     if (const std::optional<double> null = NullOf(*effect_, study_.fitted[k]))
       at[k] = *null + share * (at[k] - *null);

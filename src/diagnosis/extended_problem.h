@@ -31,6 +31,14 @@ struct NamedEstimate {
   ParameterEstimate estimate;
 };
 
+// A fit of an extended problem.
+struct ExtendedFit {
+  Calibration calibration;
+  // At the end of the fit, with its Jacobian, as Linearise() gives it from the baseline's misfit.
+  // Not usable if the fit was kept or the recordings are scans.
+  LinearisedMisfit misfit;
+};
+
 // The baseline model with an effect and the adopted nuisances. The order of its parameters is:
 // those of the baseline study, those of the effect, the nuisance parameters of the recordings, and
 // the amounts of the adopted nuisances, which change the residual by the same columns as at the
@@ -54,8 +62,10 @@ class ExtendedProblem {
   std::vector<NamedEstimate> OthersIn(const Calibration& calibration) const;
 
   // The start of a fit: the values that first order predicts to be the best, or a part of the way
-  // to them, or the baseline's own values, whichever gives the smallest residual first.
-  Eigen::VectorXd Start() const;
+  // to them, or the baseline's own values, whichever gives the smallest residual first. `refitted`:
+  // the baseline's own parameters and the amounts of the adopted nuisances after a fit without the
+  // effect, or empty; the effect added to these is the start where it gives a smaller residual.
+  Eigen::VectorXd Start(const Eigen::VectorXd& refitted = {}) const;
   // The best start with the effect held near a given share of its predicted size and the other
   // parameters fitted: their dependence on the size is not linear. Empty: no fit succeeded. Throws
   // Interrupted.
@@ -63,7 +73,7 @@ class ExtendedProblem {
 
   // Fits all parameters. `holds_effect`: the effect stays near its start, by a narrow prior. Throws
   // Interrupted.
-  Calibration CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
+  ExtendedFit CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
                             bool holds_effect = false) const;
   // Fits the model with the effect, but without adopted nuisances, from the study's own start.
   Calibration CalibrateAfresh() const;
@@ -80,13 +90,18 @@ class ExtendedProblem {
   // What one prediction of a fit hands on to the next.
   struct Memory {
     CalibrationProblem::FitMemory of_problem;
-    LinearisedMisfit latest;  // the latest prediction with a Jacobian, of recordings with markers
+    // The latest prediction with a Jacobian, of recordings with markers, and its parameters.
+    LinearisedMisfit latest = {};
+    Eigen::VectorXd of_latest = {};
   };
   Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
   // The baseline's values moved by a share of the way to `target`, and the effect by the same share
   // of the way from its null value to its start.
   Eigen::VectorXd PartWay(double share, const Eigen::VectorXd& target) const;
+  // The values `own` of the baseline's parameters, and the effect moved by a share of the way from
+  // its null value to its start.
+  Eigen::VectorXd WithEffectBy(double share, const Eigen::VectorXd& own) const;
 
   const BaselineModel& baseline_;
   const ScoredVariant* effect_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "diagnosis/adequacy.h"
+#include "diagnosis/projected_hypotheses.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
@@ -22,6 +24,8 @@ bool IsBetter(const EffectRefit& a, const EffectRefit& b, const NoiseLevel& nois
 bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit,
                           const EffectRefit& without, const Score& score) {
   if (!refit.message.empty() || PredictsWorse(refit.errors, without.errors)) return true;
+  // Where nothing was to be gained, nothing is missed.
+  if (score.evidence < kThresholds.refit.least_evidence) return false;
   const double noise = ranking.noise.variance * static_cast<double>(ObservedRows(ranking.misfit));
   return FallsShort(EvidenceOf(without.hypothesis, ranking.noise),
                     EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
@@ -33,7 +37,7 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
                         const EffectRefit& without, RankedEffect* effect) {
   const bool is_far_off = RmsOverSigma(without.hypothesis) > kFarFromTruth;
   const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
-    return Refit(context.model, &variant, adopted, is_far_off, start);
+    return Refit(context.model, &variant, adopted, is_far_off, start, &without);
   };
   EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
   ScoredVariant best = effect->scored;
@@ -79,7 +83,7 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   ++ranked->count;
   EffectRefit& refit = ranked->refits[effect];
   refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
-  own.predicts = Predicts(refit.errors, ranked->errors, ChanceIn(context));
+  own.predicts = Predicts(refit.errors, ranked->baseline.errors, ChanceIn(context));
   if (!refit.message.empty() || !own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence > ranked->best_evidence) ranked->best_evidence = evidence;
@@ -128,12 +132,50 @@ const RankedEffect* BestRefitted(const std::vector<RankedEffect>& effects) {
   return best != effects.end() && best->evidence > 0 ? &*best : nullptr;
 }
 
+double RmsInNoise(const Eigen::VectorXd& residual, const LinearisedMisfit& misfit) {
+  const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
+  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(misfit));
+  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+}
+
+bool IsFarOff(const LinearisedMisfit& misfit) {
+  return RmsInNoise(misfit.residual, misfit) > kFarFromTruth;
+}
+
+// The effects with the evidence that first order gives them beside the refitted baseline, where
+// that is less, and in that order. The first scores count from the fit as it was, which the
+// nuisances of every model may improve by more than any effect does. A fit that is far from the
+// measurements is left as it is: there, the columns of these nuisances are differences of motions
+// out of phase, which explain much and mean little. `base_has_adopted`: the baseline contains the
+// nuisances that the ranking has adopted.
+std::vector<ScoredEffect> ScoredBeside(const RefitContext& context, const EffectRefit& baseline,
+                                       std::vector<ScoredEffect> effects, bool base_has_adopted) {
+  if (IsFarOff(context.ranking.misfit)) return effects;
+  const FittedHypothesis& at = baseline.hypothesis;
+  const HypothesisSpace space =
+      SpaceBeside(at.misfit, at.misfit.jacobian, at.priors, context.ranking, "",
+                  context.ranking.noise, base_has_adopted);
+  const ProjectedHypotheses beside(space);
+  const double penalty = SelectionPenalty(effects.size());
+  for (const NamedEvidence& named :
+       SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward()))))
+    for (ScoredEffect& effect : effects) {
+      if (named.kind != HypothesisKind::kEffect || named.name != effect.candidate.type) continue;
+      const double less = std::max(0.0, effect.score.evidence - (named.evidence - penalty));
+      effect.score.evidence -= less;
+      for (ScoredVariant& elsewhere : effect.elsewhere) elsewhere.score.evidence -= less;
+    }
+  std::stable_sort(effects.begin(), effects.end(),
+                   [](const ScoredEffect& a, const ScoredEffect& b) {
+                     return a.score.evidence > b.score.evidence;
+                   });
+  return effects;
+}
+
 }  // namespace
 
 double RmsOverSigma(const FittedHypothesis& hypothesis) {
-  const Eigen::VectorXd white = WhitenedRows(hypothesis.residual, hypothesis.misfit, 0, false);
-  const Eigen::Index observed = std::max<Eigen::Index>(1, ObservedRows(hypothesis.misfit));
-  return std::sqrt(white.squaredNorm() / static_cast<double>(observed));
+  return RmsInNoise(hypothesis.residual, hypothesis.misfit);
 }
 
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
@@ -143,8 +185,9 @@ RefittedRanking StartRefits(const RefitContext& context, const std::vector<Score
   ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
   ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;
-  ranked.effects.resize(effects.size());
-  for (size_t k = 0; k < effects.size(); ++k) ranked.effects[k].scored = effects[k];
+  for (ScoredEffect& effect :
+       ScoredBeside(context, ranked.baseline, effects, /*base_has_adopted=*/true))
+    ranked.effects.emplace_back().scored = std::move(effect);
   ranked.refits.resize(effects.size());
   ranked.limit = std::max(kThresholds.refit.most_effects, wanted);
   return ranked;
@@ -253,7 +296,8 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
       alternatives.nuisances_evidence -=
           nuisance.candidate.selection_penalty + SelectionPenalty(ranking.nuisances.size());
   const double least = kThresholds.refit.alternative_share * alternatives.nuisances_evidence;
-  for (const ScoredEffect& scored : ranking.without_adopted) {
+  for (const ScoredEffect& scored :
+       ScoredBeside(context, bare, ranking.without_adopted, /*base_has_adopted=*/false)) {
     if (static_cast<int>(alternatives.effects.size()) == wanted || scored.score.evidence < least)
       break;
     RankedEffect& effect = alternatives.effects.emplace_back();

@@ -19,6 +19,8 @@ namespace lacuna {
 struct SceneColumns {
   std::vector<NuisanceCandidate> nuisances;  // those with NuisanceCard::is_shared_in_scene
   std::optional<PilotHypotheses> pilots;     // empty: not simulated yet
+  // The fitted values with infinitely fine elements, where the fit has found them; empty: unknown.
+  Eigen::VectorXd at_mesh_limit = {};
 
   // For the same recordings, simulated with another time step: without the columns of the step, and
   // without the pilots.

@@ -118,8 +118,8 @@ TEST(Predicts, AllowsForChanceButNotForMore) {
       with.has_held_out = without.has_held_out = true;
       for (int row = 0; row < kRows; ++row) {
         const double noise = std::sqrt(1.5) * normal(random);
-        with.squares_over_sigma += noise * noise;
-        without.squares_over_sigma += std::pow(noise - size / std::sqrt(kRows), 2);
+        with.unfitted_squares += noise * noise;
+        without.unfitted_squares += std::pow(noise - size / std::sqrt(kRows), 2);
       }
       refuted += !Predicts(with, without, chance);
     }
@@ -127,8 +127,8 @@ TEST(Predicts, AllowsForChanceButNotForMore) {
   }
   ModelErrors with, without;
   with.has_held_out = without.has_held_out = true;
-  without.squares_over_sigma = 100;
-  with.squares_over_sigma = 110;
+  without.unfitted_squares = 100;
+  with.unfitted_squares = 110;
   EXPECT_FALSE(Predicts(with, without, chance));
   without.has_held_out = false;
   EXPECT_TRUE(Predicts(with, without, chance));
