@@ -67,12 +67,15 @@ class BoundedDescent {
     int rejected = 0;           // consecutive steps
     std::string failed_beside;  // why the last of them could not be predicted
     double radius = kInfinity;
+    double departure = 0;  // length of the first step from the latest point with derivatives
+    std::string undifferentiable;  // why derivatives could not be computed at some point
     // Takes derivatives in place of secants. Where there are none, the search goes on from the
-    // latest point that has them, with shorter steps.
-    const auto differentiate = [&](double reach) {
+    // latest point that has them, with shorter steps and without secants.
+    const auto differentiate = [&] {
       failed_beside = Differentiate();
       if (failed_beside.empty()) return;
-      radius = kMuchShorter * reach;
+      undifferentiable = failed_beside;
+      radius = kMuchShorter * departure;
       ++rejected;
     };
     for (;;) {
@@ -87,7 +90,7 @@ class BoundedDescent {
       if (gains_little || length < kShortestStep) {
         // Secants may promise little where derivatives promise more.
         if (!is_exact_) {
-          differentiate(reach);
+          differentiate();
           continue;
         }
         // If nothing near the best parameters can be predicted, they need not be a minimum.
@@ -110,13 +113,14 @@ class BoundedDescent {
           radius = std::max(radius, kLonger * reach);
         else if (is_poor && is_exact_)
           radius = kShorter * reach;
+        if (is_exact_) departure = reach;
         MoveBy(step, model, values, std::move(there), cost);
         rejected = 0;
         failed_beside.clear();
-        if (is_poor) differentiate(reach);
+        if (is_poor || !undifferentiable.empty()) differentiate();
       } else if (!is_exact_) {
         ++rejected;
-        differentiate(reach);
+        differentiate();
       } else {
         ++rejected;
         failed_beside = there.usable ? "" : there.message;
@@ -126,6 +130,8 @@ class BoundedDescent {
       }
     }
     if (!is_exact_) Differentiate();
+    if (!end_.usable && failed_beside.empty() && !undifferentiable.empty())
+      end_.message += "; it could not take derivatives everywhere: " + undifferentiable;
     return std::move(end_);
   }
 

@@ -276,6 +276,29 @@ TEST(Calibration, EndsIfTheStepThatTheJacobianPredictsGainsNothing) {
   EXPECT_LE(found.predictions, 15);
 }
 
+// Derivatives cost several times as much as a prediction.
+TEST(Calibration, ComputesDerivativesAtTheStartAndAtTheEndOnly) {
+  const Decay decay(2, 0.7, 1);
+  int plain = 0, differentiated = 0;
+  const Calibration found =
+      Calibrate(AmplitudeAndTime(), [&](const Eigen::VectorXd& at, bool with_jacobian) {
+        ++(with_jacobian ? differentiated : plain);
+        return decay(at, with_jacobian);
+      });
+  ASSERT_TRUE(found.usable) << found.message;
+  EXPECT_EQ(differentiated, 2);
+  EXPECT_GT(plain, 2);
+  EXPECT_EQ(found.predictions, plain + differentiated);
+  // The intervals are those of the derivatives at the end, not of secants.
+  std::vector<CalibratedParameter> there = AmplitudeAndTime();
+  for (size_t k = 0; k < there.size(); ++k)
+    there[k].start = found.parameters[static_cast<Eigen::Index>(k)];
+  const Calibration again = Calibrate(there, decay);
+  ASSERT_EQ(again.predictions, 1);
+  for (size_t k = 0; k < there.size(); ++k)
+    EXPECT_EQ(found.estimates[k].deviation, again.estimates[k].deviation);
+}
+
 // Rosenbrock's valley: full steps leave it, so that the search ends early if it takes the short
 // steps that are left for the smallness of what remains.
 TEST(Calibration, FollowsACurvedValleyToItsEnd) {
@@ -319,6 +342,23 @@ TEST(Calibration, ReportsASolutionThatCannotBeLinearised) {
   const Calibration found = Calibrate(AmplitudeAndTime(), only_at_start);
   EXPECT_FALSE(found.usable);
   EXPECT_THAT(found.message, testing::HasSubstr("not definite"));
+}
+
+// Where the derivatives fail on the way, the search takes shorter steps from where it had them.
+TEST(Calibration, GoesOnFromWhereItHadDerivatives) {
+  const Decay decay(2, 0.7, 1);
+  int differentiated = 0;
+  const Calibration found =
+      Calibrate(AmplitudeAndTime(), [&](const Eigen::VectorXd& at, bool with_jacobian) {
+        if (with_jacobian && ++differentiated == 2) return Prediction{false, "failed once", {}, {}};
+        return decay(at, with_jacobian);
+      });
+  EXPECT_TRUE(found.usable) << found.message;
+  EXPECT_GT(differentiated, 2);
+  const Calibration expected = Calibrate(AmplitudeAndTime(), decay);
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(found.parameters[k], expected.parameters[k],
+                0.3 * expected.estimates[static_cast<size_t>(k)].deviation);
 }
 
 TEST(Calibration, ReportsAFailedPrediction) {
