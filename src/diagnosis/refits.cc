@@ -86,12 +86,16 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   own.predicts = Predicts(refit.errors, ranked->baseline.errors, ChanceIn(context));
   if (!refit.message.empty() || !own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
-  if (evidence > ranked->best_evidence) ranked->best_evidence = evidence;
+  if (evidence <= ranked->best_evidence) return;
+  ranked->best_evidence = evidence;
+  ranked->underrated = std::max(0.0, evidence - own.scored.score.evidence);
 }
 
 bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
   const RefitThresholds& thresholds = kThresholds.refit;
-  const double lead = ranked.best_evidence - ranked.effects[effect].scored.score.evidence;
+  // First order may underrate a rival as much as it has underrated the best effect.
+  const double lead =
+      ranked.best_evidence - ranked.underrated - ranked.effects[effect].scored.score.evidence;
   return lead > std::max(thresholds.beaten_by, thresholds.beaten_share * ranked.best_evidence);
 }
 
@@ -140,6 +144,12 @@ double RmsInNoise(const Eigen::VectorXd& residual, const LinearisedMisfit& misfi
 
 bool IsFarOff(const LinearisedMisfit& misfit) {
   return RmsInNoise(misfit.residual, misfit) > kFarFromTruth;
+}
+
+bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
+  const auto &one = a.scored.candidate.effect, &other = b.scored.candidate.effect;
+  return one != nullptr && other != nullptr && one->Card().family == other->Card().family &&
+         one->Card().family != EffectFamily::kOther;
 }
 
 // The effects with the evidence that first order gives them beside the refitted baseline, where
@@ -211,9 +221,13 @@ std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects) {
   const RankedEffect* best = BestRefitted(effects);
   if (best == nullptr) return chosen;
   const std::vector<std::string>& look_alikes = best->scored.look_alikes;
-  for (size_t k = 0; k < effects.size(); ++k)
-    if (std::count(look_alikes.begin(), look_alikes.end(), effects[k].scored.candidate.type) > 0)
+  for (size_t k = 0; k < effects.size(); ++k) {
+    if (&effects[k] == best) continue;
+    const std::string& type = effects[k].scored.candidate.type;
+    if (std::count(look_alikes.begin(), look_alikes.end(), type) > 0 ||
+        AreOfOneFamily(effects[k], *best))
       chosen.push_back(k);
+  }
   return chosen;
 }
 

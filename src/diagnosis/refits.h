@@ -34,6 +34,7 @@ struct RefittedRanking {
   // Of the model without an effect, and the largest one of a refit that predicts beyond it; with
   // the noise of the ranking.
   double baseline_evidence = 0, best_evidence = 0;
+  double underrated = 0;  // by how much first order has underrated the evidence of that refit
 
   bool IsUsable(size_t effect) const {
     return effects[effect].refitted && effects[effect].refit_message.empty();
@@ -58,7 +59,8 @@ RefittedRanking StartRefits(const RefitContext& context, const std::vector<Score
 // The `wanted` best effects by first order, and those that are nearly as good.
 std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int wanted);
 
-// The effects that first order cannot distinguish from the best refitted one.
+// The effects that may be taken for the best refitted one: those that first order cannot
+// distinguish from it, and those of its family.
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
 // Refits the effects with these indices that have not been refitted, up to the limit. Effects that
