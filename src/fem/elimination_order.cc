@@ -6,6 +6,8 @@
 #include <mutex>
 #include <numeric>
 
+#include "core/process_random.h"
+
 namespace lacuna {
 
 EliminationOrder NestedDissection(const BlockPattern& pattern, const std::vector<char>& fixed) {
@@ -34,8 +36,7 @@ EliminationOrder NestedDissection(const BlockPattern& pattern, const std::vector
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
     // METIS installs signal handlers and uses the random numbers of the process.
-    static std::mutex one_at_a_time;
-    const std::scoped_lock lock(one_at_a_time);
+    const std::lock_guard lock(ProcessRandomMutex());
     const int status = METIS_NodeND(&count, begin.data(), neighbour.data(), nullptr, options,
                                     order.data(), place.data());
     CHECK_EQ(status, METIS_OK) << "METIS could not order the nodes";

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/process_random.h"
 #include "geometry/nearest.h"
 
 namespace lacuna {
@@ -225,9 +226,9 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
 
-  // TetGen's geometric predicates keep their constants in global variables.
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
+  // TetGen uses the random numbers of the process, and its geometric predicates keep their
+  // constants in global variables.
+  const std::lock_guard lock(ProcessRandomMutex());
   Facets facets(surface, frame);
   tetgenio output;
   try {
