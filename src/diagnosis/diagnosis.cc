@@ -151,7 +151,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   const BaselineModel model{problem,          fitted,       ranking.misfit,
                             setting.progress, setting.kept, ranking.noise};
   const RefitContext context{model, ranking};
-  RefittedRanking ranked = StartRefits(context, ranking.effects, diagnosis.errors, options.refits);
+  RefittedRanking ranked = StartRefits(context, ranking.effects, options.refits);
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
   diagnosis.baseline_rms_over_sigma = RmsOverSigma(ranked.baseline.hypothesis);
   RefitAll(context, MostPromising(ranked.effects, options.refits), &ranked);
@@ -178,7 +178,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                                int halvings, const DiagnosisSetting& setting,
-                               const SceneColumns& known = {});
+                               const SceneColumns& known);
 
 // Fits and diagnoses the study with half the time step; nothing if that cannot be fitted. `scene`:
 // of the study's ranking.

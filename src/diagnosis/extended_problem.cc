@@ -20,7 +20,8 @@ constexpr double kTolerance = 1;  // of the cost, in units of one standard devia
 // Start() tries these shares of the step that first order predicts, until one gives a smaller
 // residual than the model without the effect.
 constexpr double kStepShares[] = {1, 0.1, 1e-2, 1e-3, 1e-4};
-// The shares of the effect's predicted size that it tries beside the refitted baseline.
+// The shares of the effect's predicted size that it tries beside the refitted baseline. Each costs
+// a prediction, and a fit that starts too far away several.
 constexpr double kSharesBesideRefitted[] = {1, 0.1};
 // StartAtFixedSize() holds the effect at these shares of its predicted size, one after another, by
 // a prior with this share of the typical value.

@@ -189,9 +189,8 @@ double RmsOverSigma(const FittedHypothesis& hypothesis) {
 }
 
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
-                            const ModelErrors& errors, int wanted) {
+                            int wanted) {
   RefittedRanking ranked;
-  ranked.errors = errors;
   ranked.baseline = Refit(context.model, nullptr, context.ranking.adopted, false);
   CHECK(ranked.baseline.message.empty()) << ranked.baseline.message;
   ranked.baseline_evidence = EvidenceOf(ranked.baseline, context.ranking.noise).all;

@@ -26,11 +26,10 @@ struct RefitContext {
 // and has no message.
 struct RefittedRanking {
   EffectRefit baseline;               // the model with the adopted nuisances
-  std::vector<RankedEffect> effects;  // in the order of the ranking
+  std::vector<RankedEffect> effects;  // by their evidence beside the baseline, the best first
   std::vector<EffectRefit> refits;    // of the effects, in the same order; empty if not refitted
   int count = 0;                      // number of refits
   int limit = 0;                      // the largest number of refits
-  ModelErrors errors;                 // of the fitted model
   // Of the model without an effect, and the largest one of a refit that predicts beyond it; with
   // the noise of the ranking.
   double baseline_evidence = 0, best_evidence = 0;
@@ -51,10 +50,9 @@ struct RefitNoise {
 double RmsOverSigma(const FittedHypothesis& hypothesis);
 
 // Fits the model without an effect. No effect is refitted yet; `wanted` is the number of refits
-// that the user asks for, `errors` those of the fitted model. Throws Interrupted, as do the other
-// functions that fit.
+// that the user asks for. Throws Interrupted, as do the other functions that fit.
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
-                            const ModelErrors& errors, int wanted);
+                            int wanted);
 
 // The `wanted` best effects by first order, and those that are nearly as good.
 std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int wanted);

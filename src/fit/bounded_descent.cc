@@ -16,7 +16,8 @@ namespace {
 // The fractions of the promised gain above which a step may become longer and below which the next
 // one becomes shorter, and the factors by which its length changes. After a rejected step the
 // factor is that of the parabola through the two costs and the slope between them, within limits,
-// since a prediction is expensive and the right order of magnitude unknown.
+// since a prediction is expensive and the right order of magnitude unknown. In a curved valley,
+// steps that became three times as long were refused after most good ones.
 constexpr double kGoodGain = 0.75, kPoorGain = 0.25;
 constexpr double kLonger = 2, kShorter = 0.5, kMuchShorter = 0.1;
 // A step changes no parameter by more than this many typical changes: far outside of the region
