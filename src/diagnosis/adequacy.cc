@@ -90,6 +90,7 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
                           bool noise_is_known, uint64_t seed) {
   const ProjectedHypotheses projected(space, further);
   AdequacyTest test;
+  test.discretisation = space.discretisation;
   test.found = MeasureAdequacy(space, projected, {space.model.squares(), space.model.toward()});
   const NoiseDraws noise(space);
   std::vector<double> drawn[3];

@@ -11,6 +11,7 @@
 #ifndef LACUNA_DIAGNOSIS_ADEQUACY_H_
 #define LACUNA_DIAGNOSIS_ADEQUACY_H_
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -52,11 +53,15 @@ struct AdequacyTest {
   // Tail probabilities under noise alone: of each statistic, and of their smallest.
   double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
 
-  // Something that may be left is more probable than noise: an unknown force or a further effect
-  // has a positive log Bayes factor, or the residual itself is the rarest of the statistics.
-  // Otherwise a small p says only that the hypotheses do not describe the noise perfectly.
+  // HypothesisSpace::discretisation, which may imitate something that is left.
+  double discretisation = 0;
+
+  // Something that may be left is more probable than noise and discretisation: an unknown force or
+  // a further effect has a positive log Bayes factor, or the residual itself is the rarest of the
+  // statistics. Otherwise a small p says only that the hypotheses do not describe the noise
+  // perfectly.
   bool IsSupported() const {
-    return found.unknown_force > 0 || found.further > 0 ||
+    return std::max(found.unknown_force, found.further) > discretisation ||
            (p_variance < p_unknown_force && p_variance < p_further);
   }
 };

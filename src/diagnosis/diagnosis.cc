@@ -220,4 +220,16 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
                               {options, progress, kept}, known);
 }
 
+DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
+                              Progress* progress) {
+  const EffectRanking ranking = RankEffects(problem, fitted, progress);
+  const BaselineModel model{problem, fitted, ranking.misfit, progress, nullptr, ranking.noise};
+  const RefitContext context{model, ranking};
+  RefittedRanking ranked = StartRefits(context, ranking.effects, 0);
+  const RefitNoise noise = WeighRefits(context, &ranked);
+  Diagnosis diagnosis;
+  diagnosis.nuisances = ranking.nuisances;
+  return MakeDecisionInput(context, ranked, noise, diagnosis);
+}
+
 }  // namespace lacuna

@@ -19,6 +19,7 @@
 
 #include "calibration/calibration_problem.h"
 #include "core/progress.h"
+#include "diagnosis/decision_input.h"
 #include "diagnosis/diagnosis_result.h"
 #include "diagnosis/refit_store.h"
 
@@ -38,6 +39,11 @@ struct DiagnosisOptions {
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr,
                    const Eigen::VectorXd& at_mesh_limit = {});
+
+// What a decision without any refit of an effect would be made from, with all effects of the
+// catalogue. Throws Interrupted.
+DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
+                              Progress* progress);
 
 }  // namespace lacuna
 

@@ -59,20 +59,36 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
   for (const WeighedHypothesis& hypothesis : space.hypotheses) own_.push_back(Prepare(hypothesis));
   for (const WeighedHypothesis& hypothesis : space.hypotheses) {
     if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
-    const auto decomposed = Eigen::MatrixXd(products_(hypothesis.columns, hypothesis.columns))
-                                .completeOrthogonalDecomposition();
-    force_inverse_ = decomposed.pseudoInverse();
-    force_rank_ = decomposed.rank();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        Eigen::MatrixXd(products_(hypothesis.columns, hypothesis.columns)));
+    force_ = {eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(0)};
   }
 }
 
 double ProjectedHypotheses::ForceMisfit(const Eigen::VectorXd& projected) const {
   for (const WeighedHypothesis& hypothesis : space_.hypotheses) {
     if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
-    const Eigen::VectorXd own = projected(hypothesis.columns);
-    return own.dot(force_inverse_ * own) / space_.variance - static_cast<double>(force_rank_);
+    const Eigen::VectorXd along = force_.vectors.transpose() * projected(hypothesis.columns);
+    const double least = kRounding * force_.values.maxCoeff();
+    double misfit = 0;
+    for (Eigen::Index k = 0; k < along.size(); ++k)
+      if (force_.values[k] > least)
+        misfit += along[k] * along[k] / force_.values[k] / space_.variance - 1;
+    return misfit;
   }
   return 0;
+}
+
+double ProjectedHypotheses::LogBayesFactorOfForce(const Eigen::VectorXd& toward) const {
+  const Eigen::ArrayXd squares = (force_.vectors.transpose() * toward).array().square();
+  const Eigen::ArrayXd values = force_.values.array();
+  std::vector<double> factors;
+  for (const double scale : kForceScales) {
+    const double ratio = space_.variance / (scale * scale);
+    factors.push_back(0.5 * (squares / (values + ratio)).sum() / space_.variance -
+                      0.5 * (1 + values / ratio).log().sum());
+  }
+  return LogMeanExp(factors);
 }
 
 ProjectedHypotheses::Own ProjectedHypotheses::Prepare(const WeighedHypothesis& hypothesis) const {
@@ -81,26 +97,17 @@ ProjectedHypotheses::Own ProjectedHypotheses::Prepare(const WeighedHypothesis& h
   own.taken = std::any_of(columns.begin(), columns.end(), [&](int column) {
     return std::count(taken_.begin(), taken_.end(), column) > 0;
   });
-  if (own.taken || columns.empty()) return own;
+  if (own.taken || columns.empty() || hypothesis.kind == HypothesisKind::kUnknownForce) return own;
   const std::vector<LinearPrior>& priors = space_.model.priors();
   own.positive = columns.size() == 1 && priors[static_cast<size_t>(columns[0])].positive;
   const Eigen::MatrixXd visible = products_(columns, columns);
   const Eigen::Index size = visible.rows();
-  const auto add = [&](const Eigen::VectorXd& inverse_prior) {
-    Scale scale;
-    scale.gain = 0.5 / space_.variance * RegularInverse(visible, space_.variance * inverse_prior);
-    const Eigen::VectorXd unit = inverse_prior.cwiseSqrt().cwiseInverse();
-    Eigen::MatrixXd spread = unit.asDiagonal() * visible * unit.asDiagonal() / space_.variance;
-    spread += Eigen::MatrixXd::Identity(size, size);
-    scale.occam = 0.5 * spread.ldlt().vectorD().cwiseMax(1e-300).array().log().sum();
-    own.scales.push_back(std::move(scale));
-  };
-  if (hypothesis.kind == HypothesisKind::kUnknownForce) {
-    for (const double scale : kForceScales)
-      add(Eigen::VectorXd::Constant(size, 1 / (scale * scale)));
-  } else {
-    add(InverseSquares(priors, columns));
-  }
+  const Eigen::VectorXd inverse_prior = InverseSquares(priors, columns);
+  own.gain = 0.5 / space_.variance * RegularInverse(visible, space_.variance * inverse_prior);
+  const Eigen::VectorXd unit = inverse_prior.cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd spread = unit.asDiagonal() * visible * unit.asDiagonal() / space_.variance;
+  spread += Eigen::MatrixXd::Identity(size, size);
+  own.occam = 0.5 * spread.ldlt().vectorD().cwiseMax(1e-300).array().log().sum();
   return own;
 }
 
@@ -117,17 +124,16 @@ Eigen::VectorXd ProjectedHypotheses::LogBayesFactors(const Eigen::VectorXd& proj
   Eigen::VectorXd factors = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(own_.size()));
   for (size_t h = 0; h < own_.size(); ++h) {
     const Own& own = own_[h];
-    if (own.scales.empty()) continue;
+    const Eigen::Index at = static_cast<Eigen::Index>(h);
     const Eigen::VectorXd toward = projected(space_.hypotheses[h].columns);
-    std::vector<double> gains;
-    for (const Scale& scale : own.scales)
-      gains.push_back(toward.dot(scale.gain * toward) - scale.occam);
-    if (own.positive) {
-      const double covariance = 2 * space_.variance * space_.variance * own.scales[0].gain(0, 0);
-      const double value = -covariance * toward[0] / space_.variance;
-      gains[0] += LogTwiceNormal(value / std::sqrt(covariance));
-    }
-    factors[static_cast<Eigen::Index>(h)] = LogMeanExp(gains);
+    if (space_.hypotheses[h].kind == HypothesisKind::kUnknownForce && !own.taken)
+      factors[at] = LogBayesFactorOfForce(toward);
+    if (own.gain.size() == 0) continue;
+    factors[at] = toward.dot(own.gain * toward) - own.occam;
+    if (!own.positive) continue;
+    const double covariance = 2 * space_.variance * space_.variance * own.gain(0, 0);
+    const double value = -covariance * toward[0] / space_.variance;
+    factors[at] += LogTwiceNormal(value / std::sqrt(covariance));
   }
   return factors;
 }
@@ -140,8 +146,8 @@ ProjectedHypotheses::Amounts ProjectedHypotheses::AmountsOf(
   const Eigen::Index size = static_cast<Eigen::Index>(columns.size());
   amounts.value = Eigen::VectorXd::Zero(size);
   amounts.covariance = Eigen::MatrixXd::Zero(size, size);
-  if (own.scales.empty()) return amounts;
-  amounts.covariance = 2 * space_.variance * space_.variance * own.scales.front().gain;
+  if (own.gain.size() == 0) return amounts;
+  amounts.covariance = 2 * space_.variance * space_.variance * own.gain;
   amounts.value = -amounts.covariance * projected(columns) / space_.variance;
   if (own.positive) amounts.value = amounts.value.cwiseMax(0);
   return amounts;

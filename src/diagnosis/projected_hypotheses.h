@@ -9,7 +9,10 @@
 // the prior covariance Q is then
 //   ½ t'_hᵀ (S_hh + v Q⁻¹)⁻¹ t'_h / v − ½ ln det(I + Q S_hh / v).
 // A prior that requires a positive amount is truncated at 0. An unknown smooth force has the prior
-// covariance s² I with unknown s: its Bayes factor is the mean over kForceScales.
+// covariance s² I with unknown s: its Bayes factor is the mean over kForceScales. With the
+// eigenvalues λ of S_hh and c, the components of t'_h along its eigenvectors, the logarithm for one
+// s is
+//   ½ Σ c²/(λ + v/s²)/v − ½ Σ ln(1 + s² λ/v).
 //
 // The matrices depend on the columns alone, so that thousands of simulated residuals cost little.
 #ifndef LACUNA_DIAGNOSIS_PROJECTED_HYPOTHESES_H_
@@ -22,9 +25,11 @@
 
 namespace lacuna {
 
-// Standard deviations of an unknown smooth force, m/s², each as probable as the others: from a
-// hundredth of gravity to gravity.
-inline constexpr double kForceScales[] = {0.1, 0.3, 1, 3, 10};
+// Standard deviations of an unknown smooth force, m/s², each as probable as the others: from what
+// no recording shows to gravity. The smallest ones are needed: every visible history of the force
+// costs evidence, more so the larger the force that the prior expects, so that without them the
+// evidence for a small force would stay far below 0.
+inline constexpr double kForceScales[] = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10};
 
 // The products of one residual: rᵀr and t.
 struct ResidualProducts {
@@ -58,16 +63,19 @@ class ProjectedHypotheses {
   const Eigen::MatrixXd& products() const { return products_; }
 
  private:
-  struct Scale {
-    Eigen::MatrixXd gain;  // ½ (S_hh + v Q⁻¹)⁻¹ / v
-    double occam = 0;      // ½ ln det(I + Q S_hh / v)
-  };
   struct Own {
     bool taken = false;
     bool positive = false;
-    std::vector<Scale> scales;  // one, or one per entry of kForceScales
+    Eigen::MatrixXd gain;  // ½ (S_hh + v Q⁻¹)⁻¹ / v; empty where the hypothesis is not weighed
+    double occam = 0;      // ½ ln det(I + Q S_hh / v)
+  };
+  // S_hh of an unknown force; empty where there is none.
+  struct Force {
+    Eigen::MatrixXd vectors;
+    Eigen::VectorXd values;
   };
   Own Prepare(const WeighedHypothesis& hypothesis) const;
+  double LogBayesFactorOfForce(const Eigen::VectorXd& toward) const;
 
   const HypothesisSpace& space_;
   std::vector<int> taken_;
@@ -75,8 +83,7 @@ class ProjectedHypotheses {
   Eigen::MatrixXd inverse_;   // M⁻¹
   Eigen::MatrixXd products_;  // S
   std::vector<Own> own_;
-  Eigen::MatrixXd force_inverse_;  // S_hh⁺ of the unknown force
-  Eigen::Index force_rank_ = 0;
+  Force force_;
 };
 
 }  // namespace lacuna

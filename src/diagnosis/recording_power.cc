@@ -56,8 +56,8 @@ class SimulatedDecisions {
     const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, residual);
     Outcome outcome;
     outcome.is_unknown_left =
-        left.unknown_force > std::max(0.0, null.unknown_force) ||
-        left.further > std::max(0.0, null.further) ||
+        left.unknown_force > std::max(space_.discretisation, null.unknown_force) ||
+        left.further > std::max(space_.discretisation, null.further) ||
         (input_.noise_is_known && left.variance / space_.variance > null.variance);
     const Naming naming = NameFrom(posterior);
     outcome.names = naming.names;
@@ -110,6 +110,40 @@ ResidualProducts WithEffect(const HypothesisSpace& space, const FoundEffect& eff
   return noise;
 }
 
+// What the decisions say of residuals in which this effect is missing.
+RecordedPower PowerOf(const DecisionInput& input, const FoundEffect& effect,
+                      SimulatedDecisions* decisions) {
+  const std::string& truth = effect.name;
+  RecordedPower power;
+  if (!truth.empty()) power.truth = {truth};
+  std::map<std::string, int> wrong;
+  for (int k = 0; k < kDraws; ++k) {
+    const auto outcome = decisions->Decide(WithEffect(input.baseline, effect, decisions->draw(k)));
+    constexpr double kShare = 1.0 / kDraws;
+    if (outcome.is_unknown_left)
+      power.unknown += kShare;
+    else if (outcome.names.size() > 1 || (outcome.names.empty() && !truth.empty()))
+      power.open += kShare;
+    else if (outcome.names.empty() || outcome.names.front() == truth)
+      power.named += kShare;
+    else {
+      const std::string& name = outcome.names.front();
+      const bool is_member = !truth.empty() &&
+                             FamilyOf(input.families, name) != EffectFamily::kOther &&
+                             FamilyOf(input.families, name) == FamilyOf(input.families, truth);
+      (is_member ? power.wrong_member : power.wrong) += kShare;
+      ++wrong[name];
+    }
+  }
+  int most = 0;
+  for (const auto& [name, count] : wrong) {
+    if (count <= most) continue;
+    most = count;
+    power.most_wrong = name;
+  }
+  return power;
+}
+
 std::vector<FoundEffect> FindAll(const HypothesisSpace& space,
                                  const std::vector<std::string>& effects) {
   std::vector<FoundEffect> found;
@@ -137,38 +171,22 @@ std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
   std::vector<RecordedPower> power;
   std::vector<FoundEffect> truths = {FoundEffect{}};
   for (FoundEffect& effect : FindAll(input.baseline, effects)) truths.push_back(std::move(effect));
-  for (const FoundEffect& effect : truths) {
-    const std::string& truth = effect.name;
-    if (!truth.empty() && effect.IsNothing()) continue;
-    RecordedPower& own = power.emplace_back();
-    if (!truth.empty()) own.truth = {truth};
-    std::map<std::string, int> wrong;
-    for (int k = 0; k < kDraws; ++k) {
-      const auto outcome = decisions.Decide(WithEffect(input.baseline, effect, decisions.draw(k)));
-      constexpr double kShare = 1.0 / kDraws;
-      if (outcome.is_unknown_left)
-        own.unknown += kShare;
-      else if (outcome.names.size() > 1 || (outcome.names.empty() && !truth.empty()))
-        own.open += kShare;
-      else if (outcome.names.empty() || outcome.names.front() == truth)
-        own.named += kShare;
-      else {
-        const std::string& name = outcome.names.front();
-        const bool is_member = !truth.empty() &&
-                               FamilyOf(input.families, name) != EffectFamily::kOther &&
-                               FamilyOf(input.families, name) == FamilyOf(input.families, truth);
-        (is_member ? own.wrong_member : own.wrong) += kShare;
-        ++wrong[name];
-      }
-    }
-    int most = 0;
-    for (const auto& [name, count] : wrong) {
-      if (count <= most) continue;
-      most = count;
-      own.most_wrong = name;
-    }
-  }
+  for (const FoundEffect& effect : truths)
+    if (effect.name.empty() || !effect.IsNothing())
+      power.push_back(PowerOf(input, effect, &decisions));
   return power;
+}
+
+std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string& effect,
+                                         bool is_known) {
+  const FoundEffect truth = FindEffect(input.baseline, effect);
+  if (truth.IsNothing()) return std::nullopt;
+  if (!is_known)
+    std::erase_if(input.baseline.hypotheses, [&](const WeighedHypothesis& hypothesis) {
+      return hypothesis.kind == HypothesisKind::kEffect && hypothesis.name == effect;
+    });
+  SimulatedDecisions decisions(input);
+  return PowerOf(input, truth, &decisions);
 }
 
 std::vector<RecordedSeparation> Separations(const DecisionInput& input,

@@ -8,6 +8,7 @@
 #define LACUNA_DIAGNOSIS_RECORDING_POWER_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,11 @@ FoundEffect FindEffect(const HypothesisSpace& space, const std::string& effect);
 // result depends on the arguments and on DecisionInput::seed alone.
 std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
                                          const std::vector<std::string>& effects);
+
+// The same for one effect, which the decision may or may not know: without it, a right decision
+// says that something unknown is left. Nothing where the residual does not show the effect.
+std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string& effect,
+                                         bool is_known);
 
 // λ between each pair of these effects: how far the prediction of the first at the size that was
 // found is from the nearest prediction of any variant of the second, the smaller of the two

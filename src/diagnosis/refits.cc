@@ -87,11 +87,23 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   if (!refit.message.empty() || !own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence <= ranked->best_evidence) return;
+  ranked->best = effect;
   ranked->best_evidence = evidence;
   ranked->underrated = std::max(0.0, evidence - own.scored.score.evidence);
 }
 
+bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
+  const auto &one = a.scored.candidate.effect, &other = b.scored.candidate.effect;
+  return one != nullptr && other != nullptr && one->Card().family == other->Card().family &&
+         one->Card().family != EffectFamily::kOther;
+}
+
 bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
+  // A derivative may promise nothing of a member of the best effect's family; a pilot has been
+  // simulated at its size.
+  if (ranked.best && AreOfOneFamily(ranked.effects[effect], ranked.effects[*ranked.best]) &&
+      !ranked.effects[effect].scored.candidate.IsPilot())
+    return false;
   const RefitThresholds& thresholds = kThresholds.refit;
   // First order may underrate a rival as much as it has underrated the best effect.
   const double lead =
@@ -144,12 +156,6 @@ double RmsInNoise(const Eigen::VectorXd& residual, const LinearisedMisfit& misfi
 
 bool IsFarOff(const LinearisedMisfit& misfit) {
   return RmsInNoise(misfit.residual, misfit) > kFarFromTruth;
-}
-
-bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
-  const auto &one = a.scored.candidate.effect, &other = b.scored.candidate.effect;
-  return one != nullptr && other != nullptr && one->Card().family == other->Card().family &&
-         one->Card().family != EffectFamily::kOther;
 }
 
 // The effects with the evidence that first order gives them beside the refitted baseline, where

@@ -8,6 +8,7 @@
 #ifndef LACUNA_DIAGNOSIS_REFITS_H_
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct RefittedRanking {
   // the noise of the ranking.
   double baseline_evidence = 0, best_evidence = 0;
   double underrated = 0;  // by how much first order has underrated the evidence of that refit
+  std::optional<size_t> best;  // the effect of that refit
 
   bool IsUsable(size_t effect) const {
     return effects[effect].refitted && effects[effect].refit_message.empty();
@@ -62,7 +64,9 @@ std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int 
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
 // Refits the effects with these indices that have not been refitted, up to the limit. Effects that
-// another refit has clearly beaten (RefitThresholds::beaten_by) are left out.
+// another refit has clearly beaten (RefitThresholds::beaten_by) are left out, unless they are of
+// its family and were scored by a derivative, which may say nothing of the member that is missing
+// where another one takes its place.
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked);
 

@@ -52,16 +52,25 @@ json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities
   return all;
 }
 
+json PowerToJson(const RecordedPower& power) {
+  return {{"truth", power.truth},
+          {"named", power.named},
+          {"wrong_member", power.wrong_member},
+          {"wrong", power.wrong},
+          {"open", power.open},
+          {"unknown", power.unknown},
+          {"most_wrong", power.most_wrong}};
+}
+
+RecordedPower PowerFromJson(const json& value) {
+  return {value.at("truth"), value.at("named"),   value.at("wrong_member"), value.at("wrong"),
+          value.at("open"),  value.at("unknown"), value.at("most_wrong")};
+}
+
 json DecisionToJson(const DecisionRecord& decision) {
   json power = json::array(), separations = json::array();
   for (const RecordedPower& one : decision.power)
-    power.push_back({{"truth", one.truth},
-                     {"named", one.named},
-                     {"wrong_member", one.wrong_member},
-                     {"wrong", one.wrong},
-                     {"open", one.open},
-                     {"unknown", one.unknown},
-                     {"most_wrong", one.most_wrong}});
+    power.push_back(PowerToJson(one));
   for (const RecordedSeparation& one : decision.separations)
     separations.push_back(
         {{"first", one.first}, {"second", one.second}, {"lambda", NumberOrNull(one.lambda)}});
@@ -97,9 +106,7 @@ DecisionRecord DecisionFromJson(const json& value) {
   DecisionRecord decision;
   decision.probabilities = ProbabilitiesFromJson(value.at("probabilities"));
   for (const json& one : value.at("power"))
-    decision.power.push_back({one.at("truth"), one.at("named"), one.at("wrong_member"),
-                              one.at("wrong"), one.at("open"), one.at("unknown"),
-                              one.at("most_wrong")});
+    decision.power.push_back(PowerFromJson(one));
   for (const json& one : value.at("separations"))
     decision.separations.push_back({one.at("first"), one.at("second"), NumberOr(one.at("lambda"))});
   const json& adequacy = value.at("adequacy");

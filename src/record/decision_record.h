@@ -77,6 +77,8 @@ struct DecisionRecord {
   double FamilyProbability(EffectFamily family) const;
 };
 
+nlohmann::json PowerToJson(const RecordedPower& power);
+RecordedPower PowerFromJson(const nlohmann::json& value);
 nlohmann::json DecisionToJson(const DecisionRecord& decision);
 nlohmann::json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities);
 // Both throw nlohmann::json::exception and InputError. The first reads the list under the key

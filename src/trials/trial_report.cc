@@ -75,6 +75,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
   TrialReport report;
   std::map<std::string, TrialTally> tallies;
   std::map<std::string, std::vector<double>> before, after;
+  std::vector<FinishedTrial> finished;
   for (const std::filesystem::path& own : CasesIn(folder)) {
     const TrialCase trial = LoadCase(own / "truth.json");
     if (!std::filesystem::exists(own / "outcome.json")) {
@@ -82,6 +83,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
       continue;
     }
     const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+    finished.push_back({trial, outcome});
     const std::string group = GroupOf(trial);
     tallies[group].group = group;
     Count(trial, outcome, &tallies[group]);
@@ -94,6 +96,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
         outcome.verdict == Verdict::kMissing ? outcome.named[0] : VerdictName(outcome.verdict);
     ++report.confusion[truth][said];
   }
+  report.rates = RatesOf(finished);
   for (auto& [group, tally] : tallies) {
     tally.median_before = Median(before[group]);
     tally.median_after = Median(after[group]);
@@ -125,6 +128,7 @@ std::string ReportInWords(const TrialReport& report) {
     for (const auto& [name, count] : said) parts.push_back(fmt::format("{} {}", count, name));
     text += fmt::format("  {:32} {}\n", truth, fmt::join(parts, ", "));
   }
+  text += "\n" + RatesInWords(report.rates);
   if (!report.unfinished.empty())
     text += fmt::format("\n{} cases without an outcome\n", report.unfinished.size());
   return text;

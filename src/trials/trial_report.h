@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "trials/trial_rates.h"
+
 namespace lacuna {
 
 // The counts of one group of cases. Top 1: the verdict "missing" names the hidden effect. Top 2:
@@ -32,6 +34,7 @@ struct TrialReport {
   std::vector<TrialTally> tallies;
   // Hidden effect ("nothing" for a control) → the effect named, or the verdict → number of cases.
   std::map<std::string, std::map<std::string, int>> confusion;
+  TrialRates rates;
   std::vector<std::string> unfinished;  // cases without an outcome
 };
 

@@ -18,6 +18,7 @@
 #include "diagnosis/decision_store.h"
 #include "diagnosis/diagnosis.h"
 #include "diagnosis/recorded_diagnosis.h"
+#include "diagnosis/recording_power.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
@@ -76,6 +77,20 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   outcome->relative_error = size > 0 ? std::sqrt(difference / size) : 1;
 }
 
+// The input of the decision with the hidden effect among the hypotheses, of a case in which the
+// diagnosis does not know it.
+std::filesystem::path WithRemoved(const std::filesystem::path& folder) {
+  return folder / "decision_with_removed";
+}
+
+std::optional<RecordedPower> BoundOf(const TrialCase& trial, const std::filesystem::path& folder) {
+  if (trial.hidden.size() != 1) return std::nullopt;
+  const bool is_known = trial.group != "removed";
+  const std::filesystem::path input = is_known ? folder / "decision" : WithRemoved(folder);
+  if (!std::filesystem::exists(input / "decision.json")) return std::nullopt;
+  return PowerToFind(LoadDecisionInput(input), trial.hidden.front().type, is_known);
+}
+
 }  // namespace
 
 TrialOutcome RunCase(const std::filesystem::path& folder) {
@@ -127,27 +142,33 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
     if (const RankedEffect* best = Find(diagnosis, outcome.named[0]))
       outcome.error_best = best->errors.without_nuisances * unit;
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
+  if (trial.group == "removed")
+    SaveDecisionInput(FirstOrderInput(problem, calibration.parameters, &progress),
+                      WithRemoved(folder));
+  outcome.bound = BoundOf(trial, folder);
   return outcome;
 }
 
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
-  const nlohmann::json all = {{"schema_version", 2},
-                              {"verdict", VerdictName(outcome.verdict)},
-                              {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
-                              {"p_adequate", outcome.p_adequate},
-                              {"named", outcome.named},
-                              {"ranked", outcome.ranked},
-                              {"error_before", outcome.error_before},
-                              {"error_best", outcome.error_best},
-                              {"evidence", outcome.evidence},
-                              {"second_evidence", outcome.second_evidence},
-                              {"chance", outcome.chance},
-                              {"left", outcome.left},
-                              {"has_truth", outcome.has_truth},
-                              {"error_after", outcome.error_after},
-                              {"relative_error", outcome.relative_error},
-                              {"covered", outcome.covered},
-                              {"seconds", outcome.seconds}};
+  const nlohmann::json all = {
+      {"schema_version", 3},
+      {"verdict", VerdictName(outcome.verdict)},
+      {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
+      {"p_adequate", outcome.p_adequate},
+      {"bound", outcome.bound ? PowerToJson(*outcome.bound) : nlohmann::json()},
+      {"named", outcome.named},
+      {"ranked", outcome.ranked},
+      {"error_before", outcome.error_before},
+      {"error_best", outcome.error_best},
+      {"evidence", outcome.evidence},
+      {"second_evidence", outcome.second_evidence},
+      {"chance", outcome.chance},
+      {"left", outcome.left},
+      {"has_truth", outcome.has_truth},
+      {"error_after", outcome.error_after},
+      {"relative_error", outcome.relative_error},
+      {"covered", outcome.covered},
+      {"seconds", outcome.seconds}};
   WriteFileAtomically(file, all.dump(2) + "\n");
 }
 
@@ -159,10 +180,12 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
     TrialOutcome outcome;
     outcome.verdict = VerdictFromName(json.at("verdict"));
     outcome.named = json.at("named");
-    if (json.at("schema_version") == 2) {  // outcomes of before have no probabilities
+    if (json.at("schema_version") >= 2) {  // outcomes of before have no probabilities
       outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
       outcome.p_adequate = json.at("p_adequate");
     }
+    if (json.contains("bound") && !json.at("bound").is_null())
+      outcome.bound = PowerFromJson(json.at("bound"));
     outcome.ranked = json.at("ranked");
     outcome.error_before = json.at("error_before");
     outcome.error_best = json.at("error_best");
@@ -193,6 +216,7 @@ int RedecideTrials(const std::filesystem::path& folder) {
     outcome.named = decision.names;
     outcome.probabilities = decision.record.probabilities;
     outcome.p_adequate = decision.record.adequacy.p;
+    outcome.bound = BoundOf(LoadCase(own / "truth.json"), own);
     SaveOutcome(outcome, own / "outcome.json");
     ++decided;
   }

@@ -61,6 +61,23 @@ TEST(ProjectedHypotheses, AveragesOverTheWidthsOfAnUnknownForce) {
   EXPECT_GT(found, 20);
 }
 
+// A force may be small beside what a prior of the size of gravity expects: in a recording that
+// shows a hundred times less, it is found, and noise alone gives little evidence against one.
+TEST(ProjectedHypotheses, FindsAForceThatIsSmallBesideGravity) {
+  SyntheticSpace synthetic;
+  const HypothesisSpace plain = synthetic.With(SyntheticSpace::Noise(2));
+  for (const int column : plain.hypotheses.back().columns) synthetic.columns.col(column) *= 100;
+  const auto evidence = [&](const Eigen::VectorXd& residual) {
+    const HypothesisSpace space = synthetic.With(residual);
+    const ProjectedHypotheses projected(space);
+    return projected.LogBayesFactors(projected.Project(space.model.toward())).tail<1>()[0];
+  };
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(2);
+  EXPECT_GT(evidence(noise), -4);
+  EXPECT_LT(evidence(noise), 1);
+  EXPECT_GT(evidence(noise + 3 * synthetic.unknown.rowwise().sum()), 10);
+}
+
 // One frame that was selected from a hundred needs so much more evidence.
 TEST(SumVariants, ChargesForASelection) {
   const SyntheticSpace synthetic;
@@ -120,6 +137,10 @@ TEST(Adequacy, SeesAForceAnEffectAndTooMuchNoise) {
   EXPECT_LT(force.p_unknown_force, 0.01);
   EXPECT_LT(force.p, 0.01);
   EXPECT_TRUE(force.IsSupported());
+  // ... unless the discretisation may have left as much.
+  HypothesisSpace coarse = synthetic.With(noise + 4 * synthetic.unknown.rowwise().sum());
+  coarse.discretisation = 1000;
+  EXPECT_FALSE(TestAdequacy(coarse, {}, false, 1).IsSupported());
   const HypothesisSpace effect = synthetic.With(noise - 6 * synthetic.Of("fibres"));
   const AdequacyTest without = TestAdequacy(effect, {}, true, 1);
   EXPECT_LT(without.p_further, 0.01);

@@ -269,6 +269,23 @@ TEST(RecordingPower, SaysWhatTheRecordingsCouldTell) {
   EXPECT_GT(separations[1].lambda, 12);  // separable in four cases of five
 }
 
+// Of an effect that the catalogue lacks it is right to say that something unknown is left.
+TEST(RecordingPower, SaysWhetherAnEffectOutsideTheCatalogueWouldBeSeen) {
+  const SyntheticSpace synthetic;
+  const DecisionInput drag =
+      InputOf(synthetic, SyntheticSpace::Noise(17) - 12 * synthetic.Of("drag"));
+  const std::optional<RecordedPower> known = PowerToFind(drag, "drag", true);
+  ASSERT_TRUE(known);
+  EXPECT_GT(known->named, 0.7);
+  // Mass damping takes its place.
+  const std::optional<RecordedPower> unknown = PowerToFind(drag, "drag", false);
+  ASSERT_TRUE(unknown);
+  EXPECT_EQ(unknown->named, 0);
+  EXPECT_EQ(unknown->most_wrong, "mass_damping");
+  EXPECT_GT(unknown->wrong_member, 0.5);
+  EXPECT_FALSE(PowerToFind(drag, "pressure", true));  // has no columns
+}
+
 TEST(DecisionStore, DecidesAgainAsBefore) {
   const SyntheticSpace synthetic;
   DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(18) - 9 * synthetic.Of("drag"));

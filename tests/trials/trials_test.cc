@@ -121,6 +121,48 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
   EXPECT_TRUE(report.unfinished.empty());
 }
 
+TEST(TrialRates, CountsDecidableCasesAndReliability) {
+  FinishedTrial finished;
+  finished.trial.group = "one_effect";
+  finished.trial.hidden = {{"drag", {}, {}, 2}};
+  finished.outcome.verdict = Verdict::kMissing;
+  finished.outcome.named = {"drag"};
+  finished.outcome.bound = RecordedPower{.truth = {"drag"}, .named = 0.9, .most_wrong = ""};
+  using Kind = HypothesisProbability::Kind;
+  // The second hypothesis contains a nuisance that every model has here.
+  finished.outcome.probabilities = {
+      {.kind = Kind::kEffect, .names = {"drag", "clock"}, .probability = 0.9},
+      {.kind = Kind::kEffect, .names = {"mass_damping"}, .probability = 0.1}};
+  FinishedTrial open = finished;
+  open.outcome.verdict = Verdict::kAmbiguous;
+  open.outcome.named = {"mass_damping", "drag"};
+  open.outcome.bound->named = 0.3;
+  std::swap(open.outcome.probabilities[0].probability, open.outcome.probabilities[1].probability);
+  FinishedTrial removed = finished;
+  removed.trial.group = "removed";
+  removed.outcome.verdict = Verdict::kNotInLibrary;
+  removed.outcome.bound = RecordedPower{.truth = {"drag"}, .unknown = 0.95, .most_wrong = ""};
+  FinishedTrial faulty = finished;
+  faulty.trial = {};
+  faulty.trial.group = "hard_control";
+  faulty.trial.nuisance = "time_jitter";
+  faulty.outcome.verdict = Verdict::kNuisance;
+  faulty.outcome.probabilities = {
+      {.kind = Kind::kNuisance, .names = {"time_jitter"}, .probability = 0.99}};
+
+  const TrialRates rates = RatesOf({finished, open, removed, faulty});
+  EXPECT_EQ(rates.decidable_named.part, 1);
+  EXPECT_EQ(rates.decidable_named.whole, 1);
+  EXPECT_NEAR(rates.bound_named, 1.2, 1e-12);
+  EXPECT_EQ(rates.unknown.part, 1);
+  EXPECT_EQ(rates.named_in_hard_controls.part, 0);
+  EXPECT_EQ(rates.reliability[0].hypotheses, 2);  // 0.1 right, 0.1 wrong
+  EXPECT_EQ(rates.reliability[0].right, 1);
+  EXPECT_EQ(rates.reliability[4].hypotheses, 3);
+  EXPECT_EQ(rates.reliability[4].right, 2);
+  EXPECT_NEAR(rates.reliability[4].stated, 2.79, 1e-12);
+}
+
 // Writes a case with an invented outcome.
 void Write(const std::filesystem::path& folder, const TrialCase& trial,
            const TrialOutcome& outcome) {
@@ -173,6 +215,14 @@ TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
   EXPECT_EQ(effect.intervals, 3);
   EXPECT_EQ(report.tallies[2].wrong, 1);
   EXPECT_EQ(report.confusion.at("drag").at("mass_damping"), 1);
+  const TrialRates& rates = report.rates;
+  EXPECT_EQ(rates.named_in_controls.part, 1);
+  EXPECT_EQ(rates.named.part, 1);
+  EXPECT_EQ(rates.named.whole, 3);
+  EXPECT_EQ(rates.wrong_member.part, 1);
+  EXPECT_EQ(rates.outside_family.part, 0);
+  EXPECT_EQ(rates.family.part, 3);
+  EXPECT_EQ(rates.removed_member.part, 1);
   EXPECT_THAT(ReportInWords(report), HasSubstr("drag (removed)"));
 }
 
