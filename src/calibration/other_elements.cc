@@ -25,23 +25,15 @@ bool IsEnough(const OtherElements& other, double wanted) {
   return std::log(other.ratio) / std::log(wanted) >= kEnough;
 }
 
-bool ListsNodes(const Region& region) { return std::holds_alternative<NodeRegion>(region.shape); }
-
-bool ListsNodes(const PredictedRecording& item) {
-  const RecordedObject& object = item.recording.object;
-  return (item.hold && ListsNodes(item.hold->region)) ||
-         std::any_of(object.fixed.begin(), object.fixed.end(),
-                     [](const Region& region) { return ListsNodes(region); }) ||
-         std::any_of(object.grips.begin(), object.grips.end(),
-                     [](const RecordedGrip& grip) { return ListsNodes(grip.region); }) ||
-         std::any_of(object.forces.begin(), object.forces.end(), [](const MeasuredForce& force) {
-           return force.region && ListsNodes(*force.region);
-         });
-}
-
 bool ListsNodes(const PredictionStudy& study) {
-  return std::any_of(study.recordings.begin(), study.recordings.end(),
-                     [](const PredictedRecording& item) { return ListsNodes(item); });
+  return std::any_of(
+      study.recordings.begin(), study.recordings.end(), [](const PredictedRecording& item) {
+        std::vector<Region> regions = RegionsOf(item.recording.object);
+        if (item.hold) regions.push_back(item.hold->region);
+        return std::any_of(regions.begin(), regions.end(), [](const Region& region) {
+          return std::holds_alternative<NodeRegion>(region.shape);
+        });
+      });
 }
 
 std::optional<OtherElements> MeshedAnew(const PredictionStudy& study, const TetMesh& own,

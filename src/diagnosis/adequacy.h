@@ -2,7 +2,7 @@
 // with its distribution under noise alone.
 //
 // The statistics are the log Bayes factor of an unknown smooth force beside the hypothesis, the
-// largest posterior log odds of any further effect or nuisance beside it, and the variance of the
+// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and the variance of the
 // residual. Noise alone makes t = Aᵀr normal with the covariance v AᵀA, so that the distributions
 // are simulated from the products of the recording itself: they need no table of thresholds, and
 // hold whatever the columns are. The smallest of the three tail probabilities is compared with its
@@ -57,8 +57,8 @@ struct AdequacyTest {
   double discretisation = 0;
 
   // Something that may be left is more probable than noise and discretisation: an unknown force or
-  // a further effect has a positive log Bayes factor, or the residual itself is the rarest of the
-  // statistics. Otherwise a small p says only that the hypotheses do not describe the noise
+  // a further effect has more evidence than `discretisation`, or the residual itself is the rarest
+  // of the statistics. Otherwise a small p says only that the hypotheses do not describe the noise
   // perfectly.
   bool IsSupported() const {
     return std::max(found.unknown_force, found.further) > discretisation ||

@@ -225,8 +225,10 @@ DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::Ve
   const EffectRanking ranking = RankEffects(problem, fitted, progress);
   const BaselineModel model{problem, fitted, ranking.misfit, progress, nullptr, ranking.noise};
   const RefitContext context{model, ranking};
-  RefittedRanking ranked = StartRefits(context, ranking.effects, 0);
-  const RefitNoise noise = WeighRefits(context, &ranked);
+  const RefittedRanking ranked = StartRefits(context, ranking.effects, 0);
+  // Without a refit, the residual may contain the effect that is missing. The noise of the ranking
+  // is what remains when every hypothesis explains as much as it can.
+  const RefitNoise noise{ranking.noise, 0};
   Diagnosis diagnosis;
   diagnosis.nuisances = ranking.nuisances;
   return MakeDecisionInput(context, ranked, noise, diagnosis);

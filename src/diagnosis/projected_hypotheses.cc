@@ -1,5 +1,7 @@
 #include "diagnosis/projected_hypotheses.h"
 
+#include <glog/logging.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +12,10 @@ namespace {
 
 // What remains of a column after a projection is rounding below this share of its square.
 constexpr double kRounding = 1e-9;
+
+bool IsForce(const WeighedHypothesis& hypothesis) {
+  return hypothesis.kind == HypothesisKind::kUnknownForce && !hypothesis.columns.empty();
+}
 
 double LogMeanExp(const std::vector<double>& values) {
   const double largest = *std::max_element(values.begin(), values.end());
@@ -58,23 +64,23 @@ ProjectedHypotheses::ProjectedHypotheses(const HypothesisSpace& space,
     }
   for (const WeighedHypothesis& hypothesis : space.hypotheses) own_.push_back(Prepare(hypothesis));
   for (const WeighedHypothesis& hypothesis : space.hypotheses) {
-    if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
+    if (!IsForce(hypothesis)) continue;
+    CHECK(force_.values.size() == 0) << "a space has one unknown force";
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
         Eigen::MatrixXd(products_(hypothesis.columns, hypothesis.columns)));
-    force_ = {eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(0)};
+    // In ascending order.
+    const double least = kRounding * std::max(0.0, eigen.eigenvalues().tail<1>()[0]);
+    const Eigen::Index rank = (eigen.eigenvalues().array() > least).count();
+    force_ = {eigen.eigenvectors().rightCols(rank), eigen.eigenvalues().tail(rank)};
   }
 }
 
 double ProjectedHypotheses::ForceMisfit(const Eigen::VectorXd& projected) const {
   for (const WeighedHypothesis& hypothesis : space_.hypotheses) {
-    if (hypothesis.kind != HypothesisKind::kUnknownForce) continue;
+    if (!IsForce(hypothesis)) continue;
     const Eigen::VectorXd along = force_.vectors.transpose() * projected(hypothesis.columns);
-    const double least = kRounding * force_.values.maxCoeff();
-    double misfit = 0;
-    for (Eigen::Index k = 0; k < along.size(); ++k)
-      if (force_.values[k] > least)
-        misfit += along[k] * along[k] / force_.values[k] / space_.variance - 1;
-    return misfit;
+    return (along.array().square() / force_.values.array()).sum() / space_.variance -
+           static_cast<double>(force_.values.size());
   }
   return 0;
 }
@@ -126,8 +132,7 @@ Eigen::VectorXd ProjectedHypotheses::LogBayesFactors(const Eigen::VectorXd& proj
     const Own& own = own_[h];
     const Eigen::Index at = static_cast<Eigen::Index>(h);
     const Eigen::VectorXd toward = projected(space_.hypotheses[h].columns);
-    if (space_.hypotheses[h].kind == HypothesisKind::kUnknownForce && !own.taken)
-      factors[at] = LogBayesFactorOfForce(toward);
+    if (IsForce(space_.hypotheses[h]) && !own.taken) factors[at] = LogBayesFactorOfForce(toward);
     if (own.gain.size() == 0) continue;
     factors[at] = toward.dot(own.gain * toward) - own.occam;
     if (!own.positive) continue;

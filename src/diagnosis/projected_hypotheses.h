@@ -25,10 +25,10 @@
 
 namespace lacuna {
 
-// Standard deviations of an unknown smooth force, m/s², each as probable as the others: from what
-// no recording shows to gravity. The smallest ones are needed: every visible history of the force
-// costs evidence, more so the larger the force that the prior expects, so that without them the
-// evidence for a small force would stay far below 0.
+// Standard deviations of an unknown smooth force, m/s², each as probable as the others: from less
+// than any recording could show to about gravity. The smallest ones are needed: every visible
+// history of the force costs evidence, more so the larger the force that the prior expects, so that
+// without them the evidence for a small force would stay far below 0.
 inline constexpr double kForceScales[] = {0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10};
 
 // The products of one residual: rᵀr and t.
@@ -69,7 +69,8 @@ class ProjectedHypotheses {
     Eigen::MatrixXd gain;  // ½ (S_hh + v Q⁻¹)⁻¹ / v; empty where the hypothesis is not weighed
     double occam = 0;      // ½ ln det(I + Q S_hh / v)
   };
-  // S_hh of an unknown force; empty where there is none.
+  // The eigenvectors and eigenvalues of S_hh of an unknown force, without those that are rounding;
+  // empty where there is none.
   struct Force {
     Eigen::MatrixXd vectors;
     Eigen::VectorXd values;

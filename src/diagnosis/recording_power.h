@@ -34,8 +34,8 @@ FoundEffect FindEffect(const HypothesisSpace& space, const std::string& effect);
 std::vector<RecordedPower> SimulatePower(const DecisionInput& input,
                                          const std::vector<std::string>& effects);
 
-// The same for one effect, which the decision may or may not know: without it, a right decision
-// says that something unknown is left. Nothing where the residual does not show the effect.
+// The same for one effect. If `is_known` is false, it is taken out of the catalogue, and the right
+// answer is that something unknown is left. Nothing where the residual does not show the effect.
 std::optional<RecordedPower> PowerToFind(DecisionInput input, const std::string& effect,
                                          bool is_known);
 

@@ -99,8 +99,8 @@ bool AreOfOneFamily(const RankedEffect& a, const RankedEffect& b) {
 }
 
 bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
-  // A derivative may promise nothing of a member of the best effect's family; a pilot has been
-  // simulated at its size.
+  // A derivative may give no evidence for a member of the best effect's family that is missing; a
+  // pilot has been simulated at a finite size.
   if (ranked.best && AreOfOneFamily(ranked.effects[effect], ranked.effects[*ranked.best]) &&
       !ranked.effects[effect].scored.candidate.IsPilot())
     return false;

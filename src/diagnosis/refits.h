@@ -34,7 +34,7 @@ struct RefittedRanking {
   // Of the model without an effect, and the largest one of a refit that predicts beyond it; with
   // the noise of the ranking.
   double baseline_evidence = 0, best_evidence = 0;
-  double underrated = 0;  // by how much first order has underrated the evidence of that refit
+  double underrated = 0;       // by how much first order has underrated the evidence of that refit
   std::optional<size_t> best;  // the effect of that refit
 
   bool IsUsable(size_t effect) const {
@@ -64,9 +64,9 @@ std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int 
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
 // Refits the effects with these indices that have not been refitted, up to the limit. Effects that
-// another refit has clearly beaten (RefitThresholds::beaten_by) are left out, unless they are of
-// its family and were scored by a derivative, which may say nothing of the member that is missing
-// where another one takes its place.
+// another refit has clearly beaten (RefitThresholds::beaten_by) are left out, but not those of the
+// best effect's family, unless their score comes from a simulation at a finite size: a derivative
+// may give no evidence for the member that is really missing.
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked);
 

@@ -41,8 +41,9 @@ struct RefitThresholds {
   double close_behind = 5;
   double share_of_last = 0.8;
   // An effect is not refitted if its first-order evidence lies below that of the best refit by this
-  // much and by this share: its posterior probability would be negligible. Lower: faster, an effect
-  // that first order underrates is missed.
+  // much and by this share: its posterior probability would be negligible. Members of the best
+  // effect's family are refitted all the same (RefitAll). Lower: faster, an effect that first order
+  // underrates is missed.
   double beaten_by = 15, beaten_share = 0.3;
   // The largest number of refitted effects, unless the user asks for more.
   int most_effects = 6;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "geometry/mesh_io.h"
@@ -46,9 +47,7 @@ void RefuseRenumberedRegions(const ReferenceRequest& request, const TetMeshFile&
     renumbered = renumbered || given.node_in_file[i] != i;
   if (!renumbered) return;
   std::vector<Region> regions = request.regions;
-  regions.insert(regions.end(), request.recording.object.fixed.begin(),
-                 request.recording.object.fixed.end());
-  for (const RecordedGrip& grip : request.recording.object.grips) regions.push_back(grip.region);
+  for (Region& region : RegionsOf(request.recording.object)) regions.push_back(std::move(region));
   for (const Region& region : regions) {
     if (!std::holds_alternative<NodeRegion>(region.shape)) continue;
     throw InputError(fmt::format(

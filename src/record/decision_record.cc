@@ -53,13 +53,10 @@ json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities
 }
 
 json PowerToJson(const RecordedPower& power) {
-  return {{"truth", power.truth},
-          {"named", power.named},
-          {"wrong_member", power.wrong_member},
-          {"wrong", power.wrong},
-          {"open", power.open},
-          {"unknown", power.unknown},
-          {"most_wrong", power.most_wrong}};
+  return {
+      {"truth", power.truth},          {"named", power.named}, {"wrong_member", power.wrong_member},
+      {"wrong", power.wrong},          {"open", power.open},   {"unknown", power.unknown},
+      {"most_wrong", power.most_wrong}};
 }
 
 RecordedPower PowerFromJson(const json& value) {
@@ -69,8 +66,7 @@ RecordedPower PowerFromJson(const json& value) {
 
 json DecisionToJson(const DecisionRecord& decision) {
   json power = json::array(), separations = json::array();
-  for (const RecordedPower& one : decision.power)
-    power.push_back(PowerToJson(one));
+  for (const RecordedPower& one : decision.power) power.push_back(PowerToJson(one));
   for (const RecordedSeparation& one : decision.separations)
     separations.push_back(
         {{"first", one.first}, {"second", one.second}, {"lambda", NumberOrNull(one.lambda)}});
@@ -105,8 +101,7 @@ std::vector<HypothesisProbability> ProbabilitiesFromJson(const json& value) {
 DecisionRecord DecisionFromJson(const json& value) {
   DecisionRecord decision;
   decision.probabilities = ProbabilitiesFromJson(value.at("probabilities"));
-  for (const json& one : value.at("power"))
-    decision.power.push_back(PowerFromJson(one));
+  for (const json& one : value.at("power")) decision.power.push_back(PowerFromJson(one));
   for (const json& one : value.at("separations"))
     decision.separations.push_back({one.at("first"), one.at("second"), NumberOr(one.at("lambda"))});
   const json& adequacy = value.at("adequacy");

@@ -35,9 +35,9 @@ struct HypothesisProbability {
 struct RecordedAdequacy {
   std::vector<std::string> beside;  // the hypothesis that was tested; empty: nothing
   double p_unknown_force = 1, p_further = 1, p_variance = 1;
-  double p = 1;                 // of the smallest of the three
-  bool is_adequate = true;      // p is not below the level of the test
-  std::string further;          // the best further effect or nuisance beside it
+  double p = 1;             // of the smallest of the three
+  bool is_adequate = true;  // p is not below the level of the test, or what is left not probable
+  std::string further;      // the best further effect or nuisance beside it
   double further_evidence = 0;  // its log Bayes factor, with the prior among its rivals
   double rms_over_sigma = 0;    // of the whitened residual of all frames
   // What could still be removed from the misfit, as a share of what the hypothesis and the effects

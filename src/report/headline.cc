@@ -118,12 +118,15 @@ std::string NuisanceSentence(const DiagnosisRecord& diagnosis) {
 
 std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
   const double nothing = ProbabilityOf(diagnosis.decision, {});
+  const std::string corrected = CorrectedError(diagnosis);
   return fmt::format(
-      "No further effect is needed{}: the error that is left is that of the noise, or no larger "
-      "than the error of any model.",
+      "No further effect is needed{}: {}.",
       std::isnan(nothing)
           ? ""
-          : fmt::format(" (probability that nothing is missing: {})", PercentText(nothing)));
+          : fmt::format(" (probability that nothing is missing: {})", PercentText(nothing)),
+      corrected.empty() ? "the error that is left is that of the noise, or no larger than the "
+                          "error of any model"
+                        : corrected);
 }
 
 std::string VerdictSentence(const ReportedModel& model) {

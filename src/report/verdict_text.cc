@@ -44,6 +44,12 @@ struct ReasonSentence {
       return fmt::format(
           "The error is {:.3f} mm or {:.1f} σ, and no effect has sufficient evidence.",
           1e3 * reason.rms, reason.rms_over_sigma);
+    if (std::string corrected = CorrectedError(diagnosis); !corrected.empty()) {
+      corrected.front() = 'C';
+      return fmt::format(
+          "The error is {:.3f} mm or {:.1f} σ, and no effect has sufficient evidence. {}.",
+          1e3 * reason.rms, reason.rms_over_sigma, corrected);
+    }
     return fmt::format(
         "The error, {:.3f} mm or {:.1f} σ, is that of the noise, and no effect has sufficient "
         "evidence.",
@@ -120,8 +126,10 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
   const std::string beside =
       adequacy.beside.empty() ? "The model as it is" : "The model with " + NamesOf(adequacy.beside);
   if (adequacy.is_adequate)
-    return fmt::format("{} leaves nothing that is more probable than noise (p = {:.2g}).", beside,
-                       adequacy.p);
+    return fmt::format(
+        "{} leaves nothing that is more probable than noise and the error of the "
+        "discretisation (p = {:.2g}).",
+        beside, adequacy.p);
   if (adequacy.is_tolerated)
     return fmt::format(
         "{} leaves more than noise does (p = {:.3f}, {:.2f} σ over all frames), but only {:.1f} % "
@@ -203,6 +211,18 @@ std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name
   if (title.size() > 1 && !is_abbreviation && std::islower(static_cast<unsigned char>(title[1])))
     title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
   return title;
+}
+
+std::string CorrectedError(const DiagnosisRecord& diagnosis) {
+  const ModelErrors& errors = diagnosis.errors;
+  if (errors.rms_over_sigma < kBeyondNoise || errors.without_nuisances >= kBeyondNoise) return "";
+  const RecordedNuisance* most = nullptr;
+  for (const RecordedNuisance& nuisance : diagnosis.nuisances)
+    if (nuisance.adopted && (most == nullptr || nuisance.explained > most->explained))
+      most = &nuisance;
+  if (most == nullptr) return "";
+  return fmt::format("corrected for {}, the error is {:.1f} times the noise: {}", most->what,
+                     errors.without_nuisances, most->advice);
 }
 
 std::string ExplainVerdict(const DiagnosisRecord& diagnosis) {

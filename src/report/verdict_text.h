@@ -18,6 +18,11 @@ std::string TitleOf(const DiagnosisRecord& diagnosis, const std::string& name);
 // element of a Prony series)" as "viscoelastic branch".
 std::string ShortTitle(const DiagnosisRecord& diagnosis, const std::string& name);
 
+// An error beyond the noise that the adopted nuisances explain: "corrected for the size of the
+// elements, the error is 1.0 times the noise: choose a smaller mesh.max_volume". Names the nuisance
+// that explains most. Empty where the error is noise as it is, or beyond noise even then.
+std::string CorrectedError(const DiagnosisRecord& diagnosis);
+
 // Why the verdict was reached, in whole sentences on one line.
 std::string ExplainVerdict(const DiagnosisRecord& diagnosis);
 

@@ -6,23 +6,23 @@
 
 namespace lacuna {
 
+std::vector<Region> RegionsOf(const RecordedObject& object) {
+  std::vector<Region> regions = object.fixed;
+  for (const RecordedGrip& grip : object.grips) regions.push_back(grip.region);
+  for (const MeasuredForce& force : object.forces)
+    if (force.region) regions.push_back(*force.region);
+  return regions;
+}
+
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
   std::vector<std::filesystem::path> files;
   const auto add = [&](const std::filesystem::path& file) {
     if (!file.empty()) files.push_back(file);
   };
-  const auto add_region = [&](const Region& region) {
+  for (const Region& region : RegionsOf(object))
     if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) add(listed->file);
-  };
-  for (const Region& region : object.fixed) add_region(region);
-  for (const RecordedGrip& grip : object.grips) {
-    add_region(grip.region);
-    add(grip.file);
-  }
-  for (const MeasuredForce& force : object.forces) {
-    if (force.region) add_region(*force.region);
-    add(force.file);
-  }
+  for (const RecordedGrip& grip : object.grips) add(grip.file);
+  for (const MeasuredForce& force : object.forces) add(force.file);
   for (const MeasuredReaction& reaction : object.reactions) add(reaction.file);
   return files;
 }

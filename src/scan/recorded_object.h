@@ -24,6 +24,9 @@ struct RecordedObject {
   std::vector<MeasuredReaction> reactions;  // forces that the grips exert
 };
 
+// The regions that the object has: of the parts that are held, and where forces act.
+std::vector<Region> RegionsOf(const RecordedObject& object);
+
 // The names of the held parts: the fixed regions, then the gripped ones.
 std::vector<std::string> HeldParts(const RecordedObject& object);
 

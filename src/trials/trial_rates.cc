@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "diagnosis/nuisance_catalogue.h"
 #include "effects/catalogue.h"
@@ -42,7 +44,7 @@ void CountOneEffect(const FinishedTrial& finished, TrialRates* rates) {
   const bool is_outside =
       is_stated && any([&](const std::string& name) { return !IsMember(name, truth); });
   const bool is_other = is_stated && any([&](const std::string& name) { return name != truth; });
-  const bool is_decidable = outcome.bound && outcome.bound->named >= kDecidable;
+  const bool is_decidable = outcome.simulated && outcome.simulated->named >= kDecidable;
   ++rates->named.whole;
   rates->named.part += is_stated && !is_other;
   rates->decidable_named.whole += is_decidable;
@@ -55,9 +57,9 @@ void CountOneEffect(const FinishedTrial& finished, TrialRates* rates) {
     ++rates->family.whole;
     rates->family.part += any([&](const std::string& name) { return IsMember(name, truth); });
   }
-  if (!outcome.bound) return;
-  ++rates->bounded;
-  rates->bound_named += outcome.bound->named;
+  if (!outcome.simulated) return;
+  ++rates->simulated_cases;
+  rates->simulated_named += outcome.simulated->named;
 }
 
 void CountRemoved(const FinishedTrial& finished, TrialRates* rates) {
@@ -71,41 +73,65 @@ void CountRemoved(const FinishedTrial& finished, TrialRates* rates) {
   rates->removed_member.part += is_stated && !is_outside;
   ++rates->removed_outside.whole;
   rates->removed_outside.part += is_outside;
-  if (!outcome.bound) return;
-  ++rates->removed_bounded;
-  rates->bound_unknown += outcome.bound->unknown;
-  if (outcome.bound->unknown < kDecidable) return;
+  ++rates->not_in_library.whole;
+  rates->not_in_library.part += outcome.verdict == Verdict::kNotInLibrary;
+  if (!outcome.simulated) return;
+  ++rates->simulated_removed;
+  rates->simulated_unknown += outcome.simulated->unknown;
+  if (outcome.simulated->unknown < kDecidable) return;
   ++rates->unknown.whole;
   rates->unknown.part += outcome.verdict == Verdict::kNotInLibrary;
 }
 
-// A hypothesis about effects is right if they are, whatever nuisances it contains.
+// A statement about effects is right if they are, whatever nuisances stand beside them.
 void CountReliability(const FinishedTrial& finished, TrialRates* rates) {
   std::vector<std::string> truth = TruthOf(finished.trial);
   std::sort(truth.begin(), truth.end());
+  std::map<std::vector<std::string>, double> statements;
   for (const HypothesisProbability& one : finished.outcome.probabilities) {
     std::vector<std::string> names = one.names;
     if (one.kind == HypothesisProbability::Kind::kEffect ||
         one.kind == HypothesisProbability::Kind::kPair)
       std::erase_if(names, [](const std::string& name) { return FindEntry(name) == nullptr; });
     std::sort(names.begin(), names.end());
+    statements[names] += one.probability;
+  }
+  for (const auto& [names, probability] : statements)
     for (ReliabilityBin& bin : rates->reliability) {
-      if (one.probability < bin.low || (one.probability >= bin.high && bin.high < 1)) continue;
-      ++bin.hypotheses;
-      bin.stated += one.probability;
+      if (probability < bin.low || (probability >= bin.high && bin.high < 1)) continue;
+      ++bin.statements;
+      bin.stated += probability;
       bin.right += names == truth;
     }
-  }
 }
 
-std::string Described(const Rate& rate) {
-  if (rate.whole == 0) return "no such case";
-  return fmt::format("{} of {} ({:.0f} %)", rate.part, rate.whole, 100.0 * rate.part / rate.whole);
-}
+// One line of the report.
+struct RateLine {
+  const char* truth;
+  std::string what;
+  Rate rate;
+  // The sum of the simulated frequencies, over so many cases.
+  double simulated = 0;
+  int simulated_cases = 0;
+};
 
-std::string Bound(double sum, int cases) {
-  if (cases == 0) return "";
-  return fmt::format("; the simulated rules: {:.0f} % of {} cases", 100 * sum / cases, cases);
+std::vector<RateLine> LinesOf(const TrialRates& rates) {
+  const char *nothing = "nothing is missing", *one = "one effect is missing",
+             *removed = "one effect is missing and is not in the catalogue";
+  const std::string decidable = fmt::format("at least {:.0f} %", 100 * kDecidable);
+  return {
+      {nothing, "an effect is named", rates.named_in_controls},
+      {nothing, "an effect is named, the measurement has a fault", rates.named_in_hard_controls},
+      {one, "it is named, and no other", rates.named, rates.simulated_named, rates.simulated_cases},
+      {one, "... where the simulated rules name it in " + decidable, rates.decidable_named},
+      {one, "of verdicts with names: one is of its family", rates.family},
+      {one, "another one of its family is named", rates.wrong_member},
+      {one, "one of another family is named", rates.outside_family},
+      {removed, "one of its family is named", rates.removed_member},
+      {removed, "one of another family is named", rates.removed_outside},
+      {removed, "not in library", rates.not_in_library, rates.simulated_unknown,
+       rates.simulated_removed},
+      {removed, "... where the simulated rules say so in " + decidable, rates.unknown}};
 }
 
 }  // namespace
@@ -130,35 +156,49 @@ TrialRates RatesOf(const std::vector<FinishedTrial>& finished) {
 }
 
 std::string RatesInWords(const TrialRates& rates) {
-  std::string text;
-  const auto line = [&](const std::string& what, const std::string& value) {
-    text += fmt::format("  {:58} {}\n", what, value);
-  };
-  text += "nothing is missing\n";
-  line("an effect is named", Described(rates.named_in_controls));
-  line("an effect is named, the measurement has a fault", Described(rates.named_in_hard_controls));
-  text += "one effect is missing\n";
-  line("it is named, and no other",
-       Described(rates.named) + Bound(rates.bound_named, rates.bounded));
-  line(fmt::format("... where the simulated rules name it in {:.0f} %", 100 * kDecidable),
-       Described(rates.decidable_named));
-  line("of verdicts with names: one is of its family", Described(rates.family));
-  line("another one of its family is named", Described(rates.wrong_member));
-  line("one of another family is named", Described(rates.outside_family));
-  text += "one effect is missing and is not in the catalogue\n";
-  line("one of its family is named", Described(rates.removed_member));
-  line("one of another family is named", Described(rates.removed_outside));
-  line(
-      fmt::format("not in library, where the simulated rules say so in {:.0f} %", 100 * kDecidable),
-      Described(rates.unknown) + Bound(rates.bound_unknown, rates.removed_bounded));
-  text += "stated probabilities of hypotheses, and how many were true\n";
-  for (const ReliabilityBin& bin : rates.reliability) {
-    if (bin.hypotheses == 0) continue;
-    line(fmt::format("{:.2f} to {:.2f}: {} hypotheses", bin.low, bin.high, bin.hypotheses),
-         fmt::format("stated {:.0f} %, true {:.0f} %", 100 * bin.stated / bin.hypotheses,
-                     100.0 * bin.right / bin.hypotheses));
+  std::string text, truth;
+  for (const RateLine& line : LinesOf(rates)) {
+    if (line.truth != truth) text += fmt::format("{}\n", line.truth);
+    truth = line.truth;
+    text += fmt::format("  {:54}", line.what);
+    if (line.rate.whole == 0)
+      text += " no such case";
+    else
+      text += fmt::format(" {:3} of {:3} ({:.0f} %)", line.rate.part, line.rate.whole,
+                          100.0 * line.rate.part / line.rate.whole);
+    if (line.simulated_cases > 0)
+      text += fmt::format("; the simulated rules: {:.0f} % on average over {} cases",
+                          100 * line.simulated / line.simulated_cases, line.simulated_cases);
+    text += "\n";
   }
+  text += "probabilities of statements, and how many were true\n";
+  for (const ReliabilityBin& bin : rates.reliability)
+    if (bin.statements > 0)
+      text += fmt::format(
+          "  {:54} stated {:.0f} %, true {:.0f} %\n",
+          fmt::format("{:.2f} to {:.2f}: {} statements", bin.low, bin.high, bin.statements),
+          100 * bin.stated / bin.statements, 100.0 * bin.right / bin.statements);
   return text;
+}
+
+nlohmann::json RatesToJson(const TrialRates& rates) {
+  nlohmann::json lines = nlohmann::json::array(), calibration = nlohmann::json::array();
+  for (const RateLine& line : LinesOf(rates)) {
+    lines.push_back({{"truth", line.truth},
+                     {"what", line.what},
+                     {"cases", line.rate.part},
+                     {"of", line.rate.whole},
+                     {"predicted", nullptr}});
+    if (line.simulated_cases > 0) lines.back()["predicted"] = line.simulated / line.simulated_cases;
+  }
+  for (const ReliabilityBin& bin : rates.reliability)
+    if (bin.statements > 0)
+      calibration.push_back({{"low", bin.low},
+                             {"high", bin.high},
+                             {"statements", bin.statements},
+                             {"stated", bin.stated / bin.statements},
+                             {"frequency", 1.0 * bin.right / bin.statements}});
+  return {{"rates", lines}, {"calibration", calibration}};
 }
 
 }  // namespace lacuna

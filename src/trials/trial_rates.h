@@ -4,6 +4,7 @@
 #define LACUNA_TRIALS_TRIAL_RATES_H_
 
 #include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -13,17 +14,18 @@
 namespace lacuna {
 
 // A case is decidable if the rules give the right answer in so many of the recordings that were
-// simulated for it (TrialOutcome::bound).
+// simulated for it (TrialOutcome::simulated).
 inline constexpr double kDecidable = 0.8;
 
 struct Rate {
   int part = 0, whole = 0;
 };
 
-// Hypotheses whose stated probability lies in one interval, of all cases.
+// Statements (which effects are missing, or which nuisance) whose probability lies in one interval,
+// of all cases.
 struct ReliabilityBin {
   double low = 0, high = 0;
-  int hypotheses = 0;
+  int statements = 0;
   double stated = 0;  // sum of their probabilities
   int right = 0;      // how many of them were true
 };
@@ -31,20 +33,21 @@ struct ReliabilityBin {
 struct TrialRates {
   // Verdicts "missing" although nothing is.
   Rate named_in_controls, named_in_hard_controls;
-  // Cases with one hidden effect of the catalogue. The bounds are sums of what the simulation of
-  // the rules predicts for each of `bounded` cases.
+  // Cases with one hidden effect of the catalogue. simulated_named is the sum of what the
+  // simulation of the rules predicts for each of `simulated_cases`.
   Rate named;            // the verdict "missing" names the effect and no other
   Rate decidable_named;  // the same, of those that kDecidable calls decidable
   Rate family;           // of the verdicts that name effects, those that name one of its family
   Rate wrong_member;     // the verdict "missing" names another effect of its family
   Rate outside_family;   // ... of another family
-  int bounded = 0;
-  double bound_named = 0;
+  int simulated_cases = 0;
+  double simulated_named = 0;
   // Cases whose effect was removed from the catalogue.
   Rate removed_member, removed_outside;  // an effect of its family, of another family was named
-  Rate unknown;                          // "not in library", of the decidable cases
-  int removed_bounded = 0;
-  double bound_unknown = 0;
+  Rate not_in_library;                   // all such verdicts
+  Rate unknown;                          // those of the decidable cases
+  int simulated_removed = 0;
+  double simulated_unknown = 0;
   // All cases but those with a removed effect, and those with the verdict "not in library", which
   // says that the truth is not among the hypotheses.
   std::array<ReliabilityBin, 5> reliability = {
@@ -57,6 +60,8 @@ struct FinishedTrial {
 };
 TrialRates RatesOf(const std::vector<FinishedTrial>& finished);
 std::string RatesInWords(const TrialRates& rates);
+// {"rates": one entry for each line of the words, "calibration": one for each interval}
+nlohmann::json RatesToJson(const TrialRates& rates);
 
 }  // namespace lacuna
 

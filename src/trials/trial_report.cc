@@ -151,10 +151,11 @@ void SaveTrialReport(const TrialReport& report, const std::filesystem::path& fol
                        {"covered", tally.covered},
                        {"median_error_before", tally.median_before},
                        {"median_error_after", tally.median_after}});
-  const nlohmann::json all = {{"schema_version", 1},
-                              {"tallies", tallies},
-                              {"confusion", report.confusion},
-                              {"unfinished", report.unfinished}};
+  nlohmann::json all = {{"schema_version", 1},
+                        {"tallies", tallies},
+                        {"confusion", report.confusion},
+                        {"unfinished", report.unfinished}};
+  all.update(RatesToJson(report.rates));
   WriteFileAtomically(folder / "report.json", all.dump(2) + "\n");
   WriteFileAtomically(folder / "report.txt", ReportInWords(report));
 }

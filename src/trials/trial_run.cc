@@ -26,6 +26,8 @@
 namespace lacuna {
 namespace {
 
+constexpr int kSchemaVersion = 3;  // of outcome.json
+
 ProgressOptions Silent() {
   ProgressOptions silent;
   silent.style = ProgressStyle::kSilent;
@@ -83,12 +85,26 @@ std::filesystem::path WithRemoved(const std::filesystem::path& folder) {
   return folder / "decision_with_removed";
 }
 
-std::optional<RecordedPower> BoundOf(const TrialCase& trial, const std::filesystem::path& folder) {
+// `decided`: what the decision of the case was made from.
+std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInput& decided,
+                                       const std::filesystem::path& folder) {
   if (trial.hidden.size() != 1) return std::nullopt;
+  const std::string& truth = trial.hidden.front().type;
   const bool is_known = trial.group != "removed";
-  const std::filesystem::path input = is_known ? folder / "decision" : WithRemoved(folder);
-  if (!std::filesystem::exists(input / "decision.json")) return std::nullopt;
-  return PowerToFind(LoadDecisionInput(input), trial.hidden.front().type, is_known);
+  // A residual that does not show the effect leaves no name.
+  const RecordedPower invisible{.truth = {truth}, .open = 1, .most_wrong = ""};
+  if (is_known) return PowerToFind(decided, truth, true).value_or(invisible);
+  if (!std::filesystem::exists(WithRemoved(folder) / "decision.json")) return std::nullopt;
+  return PowerToFind(LoadDecisionInput(WithRemoved(folder)), truth, false).value_or(invisible);
+}
+
+// The same study with the time step that the diagnosis has chosen.
+DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                               double time_step) {
+  PredictionStudy study = problem.WithEstimatedNoise();
+  study.time_step = time_step;
+  Progress progress(Silent());
+  return FirstOrderInput(CalibrationProblem(study, problem.body()->mesh), values, &progress);
 }
 
 }  // namespace
@@ -143,19 +159,19 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
       outcome.error_best = best->errors.without_nuisances * unit;
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   if (trial.group == "removed")
-    SaveDecisionInput(FirstOrderInput(problem, calibration.parameters, &progress),
+    SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
                       WithRemoved(folder));
-  outcome.bound = BoundOf(trial, folder);
+  outcome.simulated = Simulated(trial, diagnosis.decision_input, folder);
   return outcome;
 }
 
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file) {
   const nlohmann::json all = {
-      {"schema_version", 3},
+      {"schema_version", kSchemaVersion},
       {"verdict", VerdictName(outcome.verdict)},
       {"probabilities", ProbabilitiesToJson(outcome.probabilities)},
       {"p_adequate", outcome.p_adequate},
-      {"bound", outcome.bound ? PowerToJson(*outcome.bound) : nlohmann::json()},
+      {"simulated", outcome.simulated ? PowerToJson(*outcome.simulated) : nlohmann::json()},
       {"named", outcome.named},
       {"ranked", outcome.ranked},
       {"error_before", outcome.error_before},
@@ -177,15 +193,19 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
   if (!stream) throw InputError(file.string() + ": cannot be opened");
   try {
     const auto json = nlohmann::json::parse(stream);
+    const int version = json.at("schema_version");
+    if (version > kSchemaVersion)
+      throw InputError(fmt::format("{}: schema_version {} is of a later version of the program",
+                                   file.string(), version));
     TrialOutcome outcome;
     outcome.verdict = VerdictFromName(json.at("verdict"));
     outcome.named = json.at("named");
-    if (json.at("schema_version") >= 2) {  // outcomes of before have no probabilities
+    if (version >= 2) {  // outcomes of before have no probabilities
       outcome.probabilities = ProbabilitiesFromJson(json.at("probabilities"));
       outcome.p_adequate = json.at("p_adequate");
     }
-    if (json.contains("bound") && !json.at("bound").is_null())
-      outcome.bound = PowerFromJson(json.at("bound"));
+    if (version >= 3 && !json.at("simulated").is_null())
+      outcome.simulated = PowerFromJson(json.at("simulated"));
     outcome.ranked = json.at("ranked");
     outcome.error_before = json.at("error_before");
     outcome.error_best = json.at("error_best");
@@ -210,13 +230,14 @@ int RedecideTrials(const std::filesystem::path& folder) {
     if (!std::filesystem::exists(own / "decision" / "decision.json") ||
         !std::filesystem::exists(own / "outcome.json"))
       continue;
-    const Decision decision = Decide(LoadDecisionInput(own / "decision"));
+    const DecisionInput input = LoadDecisionInput(own / "decision");
+    const Decision decision = Decide(input);
     TrialOutcome outcome = LoadOutcome(own / "outcome.json");
     outcome.verdict = decision.verdict;
     outcome.named = decision.names;
     outcome.probabilities = decision.record.probabilities;
     outcome.p_adequate = decision.record.adequacy.p;
-    outcome.bound = BoundOf(LoadCase(own / "truth.json"), own);
+    outcome.simulated = Simulated(LoadCase(own / "truth.json"), input, own);
     SaveOutcome(outcome, own / "outcome.json");
     ++decided;
   }

@@ -29,10 +29,9 @@ struct TrialOutcome {
   // the first one leaves; empty and 1 for outcomes of older versions.
   std::vector<HypothesisProbability> probabilities;
   double p_adequate = 1;
-  // What the best rules could say of recordings with the first hidden effect, to first order: the
-  // frequencies of the verdicts on simulated residuals. Only of cases with one hidden effect, and
-  // only where the residual shows it.
-  std::optional<RecordedPower> bound;
+  // How often the rules of the decision give each answer, to first order, in recordings that are
+  // simulated with the hidden effect. Only of cases with one hidden effect.
+  std::optional<RecordedPower> simulated;
   // Whether the first hidden effect was fitted, so that the following values hold. False if it is
   // not in the library, has no size, or could not be fitted.
   bool has_truth = false;
@@ -54,8 +53,8 @@ void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file)
 TrialOutcome LoadOutcome(const std::filesystem::path& file);
 
 // Decides again upon every case that keeps what its decision was made from, with the rules as they
-// are now, and replaces the verdict and the bound of its outcome. Returns the number of such cases. Throws
-// InputError if a file cannot be read.
+// are now, and replaces what the outcome has from the decision. Returns the number of such cases.
+// Throws InputError if a file cannot be read.
 int RedecideTrials(const std::filesystem::path& folder);
 
 // Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a

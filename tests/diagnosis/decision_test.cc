@@ -284,6 +284,12 @@ TEST(RecordingPower, SaysWhetherAnEffectOutsideTheCatalogueWouldBeSeen) {
   EXPECT_EQ(unknown->most_wrong, "mass_damping");
   EXPECT_GT(unknown->wrong_member, 0.5);
   EXPECT_FALSE(PowerToFind(drag, "pressure", true));  // has no columns
+  // Nothing can take the place of fibres.
+  const DecisionInput fibres =
+      InputOf(synthetic, SyntheticSpace::Noise(17) - 20 * synthetic.Of("fibres"));
+  const std::optional<RecordedPower> seen = PowerToFind(fibres, "fibres", false);
+  ASSERT_TRUE(seen);
+  EXPECT_GT(seen->unknown, 0.8);
 }
 
 TEST(DecisionStore, DecidesAgainAsBefore) {

@@ -82,6 +82,25 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
           "is left is that of the noise, or no larger than the error of any model."));
 }
 
+// An error of coarse elements is not called noise.
+TEST(Headline, SaysWhatTheErrorIsDueToWhereItIsNoNoise) {
+  ReportedModel model = Model(2e-4, 1.9);
+  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  model.diagnosis->errors = model.errors;
+  model.diagnosis->errors.without_nuisances = 1.02;
+  RecordedNuisance mesh;
+  mesh.what = "the size of the elements";
+  mesh.advice = "choose a smaller mesh.max_volume";
+  mesh.explained = 0.6;
+  mesh.adopted = true;
+  model.diagnosis->nuisances = {RecordedNuisance{.name = "shape", .adopted = true}, mesh};
+  EXPECT_EQ(Headline({model}).back(),
+            "No further effect is needed: corrected for the size of the elements, the error is 1.0 "
+            "times the noise: choose a smaller mesh.max_volume.");
+  model.diagnosis->errors.without_nuisances = 1.8;
+  EXPECT_THAT(Headline({model}).back(), HasSubstr("is that of the noise, or no larger"));
+}
+
 TEST(Headline, SaysThatItWasNotDiagnosedAndNotCompared) {
   EXPECT_THAT(
       Headline({Model(8.7e-4, 5.1)}),

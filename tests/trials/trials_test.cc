@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "calibration/calibration_problem.h"
 #include "core/atomic_file.h"
@@ -103,6 +104,8 @@ TEST(Trials, FindAStrongDragAndKeepTheOutcome) {
 
   EXPECT_EQ(RunTrials(folder.Path(), 1), 0);
   const TrialOutcome outcome = LoadOutcome(own / "outcome.json");
+  ASSERT_TRUE(outcome.simulated);
+  EXPECT_GT(outcome.simulated->named + outcome.simulated->open, 0.8);
   ASSERT_FALSE(outcome.ranked.empty());
   // Drag and mass damping are look-alikes: drag is first or second in the ranking.
   EXPECT_TRUE(outcome.ranked[0] == "drag" || outcome.ranked[1] == "drag");
@@ -127,7 +130,7 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   finished.trial.hidden = {{"drag", {}, {}, 2}};
   finished.outcome.verdict = Verdict::kMissing;
   finished.outcome.named = {"drag"};
-  finished.outcome.bound = RecordedPower{.truth = {"drag"}, .named = 0.9, .most_wrong = ""};
+  finished.outcome.simulated = RecordedPower{.truth = {"drag"}, .named = 0.9, .most_wrong = ""};
   using Kind = HypothesisProbability::Kind;
   // The second hypothesis contains a nuisance that every model has here.
   finished.outcome.probabilities = {
@@ -136,12 +139,12 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   FinishedTrial open = finished;
   open.outcome.verdict = Verdict::kAmbiguous;
   open.outcome.named = {"mass_damping", "drag"};
-  open.outcome.bound->named = 0.3;
+  open.outcome.simulated->named = 0.3;
   std::swap(open.outcome.probabilities[0].probability, open.outcome.probabilities[1].probability);
   FinishedTrial removed = finished;
   removed.trial.group = "removed";
   removed.outcome.verdict = Verdict::kNotInLibrary;
-  removed.outcome.bound = RecordedPower{.truth = {"drag"}, .unknown = 0.95, .most_wrong = ""};
+  removed.outcome.simulated = RecordedPower{.truth = {"drag"}, .unknown = 0.95, .most_wrong = ""};
   FinishedTrial faulty = finished;
   faulty.trial = {};
   faulty.trial.group = "hard_control";
@@ -150,17 +153,32 @@ TEST(TrialRates, CountsDecidableCasesAndReliability) {
   faulty.outcome.probabilities = {
       {.kind = Kind::kNuisance, .names = {"time_jitter"}, .probability = 0.99}};
 
-  const TrialRates rates = RatesOf({finished, open, removed, faulty});
-  EXPECT_EQ(rates.decidable_named.part, 1);
-  EXPECT_EQ(rates.decidable_named.whole, 1);
-  EXPECT_NEAR(rates.bound_named, 1.2, 1e-12);
+  // The effect alone and beside a nuisance are one statement.
+  FinishedTrial twice = finished;
+  twice.outcome.probabilities = {
+      {.kind = Kind::kEffect, .names = {"drag", "clock"}, .probability = 0.5},
+      {.kind = Kind::kEffect, .names = {"drag"}, .probability = 0.45}};
+  FinishedTrial outside = removed;
+  outside.outcome.verdict = Verdict::kMissing;
+  outside.outcome.named = {"gravity"};
+
+  const TrialRates rates = RatesOf({finished, open, removed, faulty, twice, outside});
+  EXPECT_EQ(rates.decidable_named.part, 2);
+  EXPECT_EQ(rates.decidable_named.whole, 2);
+  EXPECT_NEAR(rates.simulated_named, 2.1, 1e-12);
   EXPECT_EQ(rates.unknown.part, 1);
+  EXPECT_EQ(rates.unknown.whole, 2);
+  EXPECT_EQ(rates.not_in_library.part, 1);
+  EXPECT_EQ(rates.removed_outside.part, 1);
   EXPECT_EQ(rates.named_in_hard_controls.part, 0);
-  EXPECT_EQ(rates.reliability[0].hypotheses, 2);  // 0.1 right, 0.1 wrong
+  EXPECT_EQ(rates.reliability[0].statements, 2);  // 0.1 right, 0.1 wrong
   EXPECT_EQ(rates.reliability[0].right, 1);
-  EXPECT_EQ(rates.reliability[4].hypotheses, 3);
-  EXPECT_EQ(rates.reliability[4].right, 2);
-  EXPECT_NEAR(rates.reliability[4].stated, 2.79, 1e-12);
+  EXPECT_EQ(rates.reliability[4].statements, 4);
+  EXPECT_EQ(rates.reliability[4].right, 3);
+  EXPECT_NEAR(rates.reliability[4].stated, 3.74, 1e-12);
+  const nlohmann::json json = RatesToJson(rates);
+  EXPECT_EQ(json.at("calibration").size(), 2u);
+  EXPECT_NEAR(json.at("calibration").at(1).at("frequency").get<double>(), 0.75, 1e-12);
 }
 
 // Writes a case with an invented outcome.

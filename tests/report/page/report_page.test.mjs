@@ -285,7 +285,7 @@ test('every part is there when its data is', async () => {
   const study = await open(fixture('study'));
   for (const id of ['reconstruction', 'table1', 'ablation', 'trials']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);
   const words = await study.page.locator('main').textContent();
-  for (const part of ['Trace of the search', 'Confusion matrix', 'Calibration of the probabilities']) assert.ok(words.includes(part), part);
+  for (const part of ['Trace of the search', 'What is named', 'Confusion matrix', 'Calibration of the probabilities']) assert.ok(words.includes(part), part);
   await study.close();
 });
 

@@ -66,6 +66,13 @@ function calibrationCurve(bins) {
     series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: shown.map((bin) => 100 * bin.stated), y: shown.map((bin) => 100 * bin.frequency), colour: 'series-last', style: 'line-dots', size: 8 }] });
 }
 
+// How often verdicts name effects, over all groups, beside what the simulated rules could say.
+function rateTable(rates) {
+  const shown = (rates ?? []).filter((one) => one.of > 0);
+  return table('What is named', [['truth'], ['verdict'], ['cases', true], ['share', true], ['simulated rules', true]],
+    shown.map((one, k) => [k === 0 || shown[k - 1].truth !== one.truth ? name(one.truth) : '', name(one.what), `${one.cases} of ${one.of}`, share(one.cases / one.of), share(one.predicted)]));
+}
+
 export function trialsSection({ data }) {
   const of = (part, whole) => (whole > 0 ? `${part} of ${whole}` : NONE);
   return section('trials', 'Sealed cases', 'Sealed cases', 'Synthetic recordings whose hidden effect the diagnosis does not read. They measure how often a verdict is right.',
@@ -73,6 +80,6 @@ export function trialsSection({ data }) {
       table(null, [['group'], ['cases', true], ['correct', true], ['top two', true], ['wrong', true], ['ranked first', true], ['at noise', true], ['size ± 15 %', true], ['in interval', true], ['before', true], ['after', true], ['verdicts']],
         (trials.tallies ?? []).map((one) => [name(one.group), String(one.cases), String(one.top1), String(one.top2), String(one.wrong), String(one.ranked_first), of(one.at_noise, one.fitted), of(one.within_15_percent, one.fitted), of(one.covered, one.intervals), sigmas(one.median_error_before), one.fitted > 0 ? sigmas(one.median_error_after) : NONE,
           name(Object.entries(one.verdicts ?? {}).map(([verdict, count]) => `${count} ${verdict}`).join(', '))])),
-      confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
+      rateTable(trials.rates), confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
       trials.unfinished?.length ? h('p', { class: 'explain' }, `${trials.unfinished.length} cases have no outcome.`) : null]));
 }
