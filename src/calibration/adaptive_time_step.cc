@@ -82,7 +82,7 @@ AdaptedFit FitWithAdaptiveTimeStep(const TetMesh& mesh, PredictionStudy* study,
     {
       const CalibrationProblem problem(*study, mesh);
       const bool goes_on = !fit.calibration.estimates.empty();
-      const bool has_begun = tried == 1 && beginning.usable;
+      const bool has_begun = tried == 1 && beginning.parameters.size() > 0;
       fit.calibration =
           goes_on ? RefineFit(problem, fit.calibration.parameters, progress, &budget)
                   : FitFromStart(problem, progress, has_begun ? &beginning : nullptr, &budget);

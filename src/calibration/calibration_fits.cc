@@ -27,6 +27,10 @@ constexpr double kSettled = 0.1;
 // few iterations, and the reach is divided by `kReachStep`.
 constexpr int kIterationsWhileFar = 4;
 constexpr double kReachStep = 2;
+// While only the recordings' own parameters are fitted, the model's stay within this share of what
+// matters to the user. The forces of hands, nearly linear, take two or three iterations.
+constexpr double kHeldDeviation = 1e-3;
+constexpr int kIterationsOfHeld = 6;
 
 // The largest change of a parameter, in units of its posterior standard deviation.
 double LargestChange(const std::vector<CalibratedParameter>& parameters,
@@ -85,13 +89,35 @@ class Fitter {
   }
 
   Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
-    if (!problem_.HasScans()) return Stage(name, ShortHorizon(problem_), start);
+    if (!problem_.HasScans()) {
+      const Calibration known = FromJudgedValues(start);
+      return known.usable ? known : Stage(name, ShortHorizon(problem_), start);
+    }
     progress_.Begin(name, 0);
     const FarStart far = FindFarStart(problem_, start);
     budget_.Spend(far.predictions, TimeStep());
     evaluations_ += far.predictions;
     searched_ = far.summary;
     return Finished(FitScans(ShortHorizon(problem_), far));
+  }
+
+  // The start of an experiment that `lacuna add` has written is where a diagnosis has judged the
+  // model, except for what the recordings do not share, such as the force of a hand. With that
+  // fitted, the start usually comes close over all frames, and the short horizon would only lead it
+  // astray in what it does not determine. Not usable where it does not come close.
+  Calibration FromJudgedValues(const Eigen::VectorXd& start) {
+    Calibration judged;
+    if (problem_.study().explained_misfit == 0) return judged;
+    progress_.Begin("fit from the diagnosis", 0);
+    judged.parameters = start;
+    judged.rms = Left(problem_, start);
+    ++evaluations_;
+    budget_.Spend(1, TimeStep());
+    if (judged.rms > kLocalMinimumSuspected)
+      judged = FitOnce(kUnlimited, start, {.max_iterations = kIterationsOfHeld}, Fits::kRecordings);
+    judged.usable = judged.parameters.size() > 0 && judged.rms <= kLocalMinimumSuspected;
+    judged.message.clear();
+    return Finished(std::move(judged));
   }
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
@@ -114,12 +140,17 @@ class Fitter {
     return calibration;
   }
 
+  enum class Fits { kAll, kRecordings };  // kRecordings: the model's parameters stay near the start
   Calibration FitOnce(double horizon, const Eigen::VectorXd& start,
-                      const CalibrationOptions& options) {
+                      const CalibrationOptions& options, Fits fits = Fits::kAll) {
     std::vector<CalibratedParameter> parameters = problem_.parameters();
-    for (size_t k = 0; k < parameters.size(); ++k)
+    for (size_t k = 0; k < parameters.size(); ++k) {
       parameters[k].start =
           std::clamp(start[static_cast<Eigen::Index>(k)], parameters[k].min, parameters[k].max);
+      if (fits == Fits::kAll || k >= problem_.study().fitted.size()) continue;
+      parameters[k].prior_mean = parameters[k].start;
+      parameters[k].prior_deviation = kHeldDeviation * parameters[k].typical;
+    }
     memory_.correspondences.clear();
     CalibrationOptions within = options;
     within.max_predictions = budget_.PredictionsLeft(TimeStep());
@@ -241,7 +272,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
-    const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
+    const double left = first.parameters.size() == 0 ? kUnlimited : Left(problem, first.parameters);
     if (left >= least) continue;
     least = left;
     nearest = std::move(first);

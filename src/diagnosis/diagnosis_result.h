@@ -28,6 +28,7 @@ struct RankedEffect {
   double explained = 0;                  // share of the squared misfit
   double rms_over_sigma = 0;             // all frames, with the adopted nuisances at their best
   Eigen::VectorXd values;                // the effect's parameters; empty: there is no usable refit
+  Eigen::VectorXd model;                 // as in EffectRefit
   std::vector<ParameterEstimate> sizes;  // of the parameters that make its size
   std::vector<NamedEstimate> others;     // as in EffectRefit
 

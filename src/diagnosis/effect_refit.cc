@@ -348,6 +348,8 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
     refit.errors = ErrorsOf(with, refit.calibration.parameters, known);
     if (effect != nullptr) {
       refit.effect = extended.OwnParameters(refit.calibration.parameters);
+      refit.model = refit.calibration.parameters.head(
+          static_cast<Eigen::Index>(baseline.problem.study().fitted.size()));
       refit.sizes = extended.SizesIn(refit.calibration);
       refit.others = extended.OthersIn(refit.calibration);
     }

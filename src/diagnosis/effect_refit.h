@@ -46,6 +46,7 @@ struct EffectRefit {
   Calibration calibration;
   Eigen::VectorXd amounts;               // of the adopted nuisances, at the end of the fit
   Eigen::VectorXd effect;                // all parameters of the effect, in the order of its card
+  Eigen::VectorXd model;                 // the fitted parameters that the model had before
   std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
   std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
   ModelErrors errors;

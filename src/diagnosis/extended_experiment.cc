@@ -43,7 +43,10 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
       folder.filename().empty() ? folder.parent_path().parent_path() : folder.parent_path();
   const std::filesystem::path experiment =
       std::filesystem::absolute(fitted.study.file).lexically_normal();
-  const PredictionStudy study = WithEffect(fitted.study, effect);
+  PredictionStudy judged = fitted.study;
+  if (effect.model.size() > 0)
+    judged.effects = WithValues(judged.effects, judged.fitted, effect.model);
+  const PredictionStudy study = WithEffect(judged, effect);
   const std::string name = fitted.study.name + "+" + effect.candidate.type;
 
   std::string text = fmt::format(
@@ -66,8 +69,7 @@ std::filesystem::path WriteExtendedExperiment(const FittedRun& fitted,
     if (law.name != effect.candidate.type) candidates.push_back(Written(*law.effect, experiment));
   if (!study.candidates.empty())
     text += fmt::format("candidates: [{}]\n", fmt::join(candidates, ", "));
-  const double explained =
-      fitted.study.explained_misfit + 2 * std::max(0.0, effect.score.evidence);
+  const double explained = fitted.study.explained_misfit + 2 * std::max(0.0, effect.score.evidence);
   if (explained > 0) text += fmt::format("explained_misfit: {:.6g}\n", explained);
   text += "fit:\n  parameters:\n";
   for (const ModelParameter& parameter : study.fitted) text += FittedEntry(parameter);

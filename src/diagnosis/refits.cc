@@ -67,6 +67,7 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
   effect->errors = refit.errors;
   if (refit.message.empty()) {
     effect->values = refit.effect;
+    effect->model = refit.model;
     effect->sizes = refit.sizes;
     effect->others = refit.others;
   }

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "record/comparison_record.h"
 #include "report/quantity_text.h"
 
 namespace lacuna {

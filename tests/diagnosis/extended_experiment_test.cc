@@ -78,6 +78,12 @@ TEST(ExtendedExperiment, StartsFromTheFitWithOneMoreEffect) {
   EXPECT_EQ(alpha.max, expected.max);
   EXPECT_EQ(extended.recordings.size(), fitted.study.recordings.size());
   EXPECT_EQ(extended.explained_misfit, 100);
+  // Where the effect was refitted, the experiment starts from all values of the refit.
+  scored.model = Eigen::VectorXd::Constant(1, 1.1e5);
+  const PredictionStudy refitted =
+      ReadPredictionStudy(Config::Load(WriteExtendedExperiment(fitted, run, scored)));
+  EXPECT_EQ(refitted.effects.front()->Parameters()[0], 1.1e5);
+  EXPECT_EQ(refitted.effects.back()->Parameters()[0], 2.5);
 }
 
 // Mass damping as one of two laws of the user: it has the same score as that of the catalogue, and
