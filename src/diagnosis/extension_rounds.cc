@@ -52,17 +52,20 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
     keep();
     if (ledger.HasEnded()) break;
 
-    const std::string effect = diagnosis.effects.front();
+    const RecordedEffect& effect = Named(diagnosis, at);
     const std::filesystem::path file =
-        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, Named(diagnosis, at)));
+        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, effect));
     const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
     const CalibrationRecord record = RunCalibration(study, progress);
     at = study.output;
-    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect));
+    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect.type));
+    ledger.models.back().may_be_zero = record.usable && SizeMayBeZero(record, effect);
     if (!record.usable) {
       ledger.ending.reason = LedgerEnding::Reason::kNotFitted;
     } else if (ledger.models.back().gain <= options.least_gain) {
       ledger.ending = {LedgerEnding::Reason::kLittleGain, options.least_gain};
+    } else if (ledger.models.back().may_be_zero) {
+      ledger.ending.reason = LedgerEnding::Reason::kMayBeZero;
     }
     keep();
     if (!ledger.HasEnded()) fitted = OpenRun(at);

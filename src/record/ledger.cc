@@ -28,6 +28,8 @@ const char* ReasonName(LedgerEnding::Reason reason) {
       return "not_fitted";
     case LedgerEnding::Reason::kLittleGain:
       return "little_gain";
+    case LedgerEnding::Reason::kMayBeZero:
+      return "may_be_zero";
     case LedgerEnding::Reason::kNone:
       break;
   }
@@ -100,6 +102,7 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
     entry["parent"] = ledger.models[static_cast<size_t>(model.parent)].name;
     entry["added"] = model.added;
     entry["gain"] = model.gain;
+    entry["size_may_be_zero"] = model.may_be_zero;
   }
   if (model.diagnosis) {
     std::vector<std::string> added;
@@ -116,9 +119,21 @@ const LedgerModel& Ledger::Best() const {
   CHECK(!models.empty());
   const LedgerModel* best = &models.front();
   for (const LedgerModel& model : models)
-    if (model.record.usable && model.errors.rms_over_sigma < best->errors.rms_over_sigma)
+    if (model.record.usable && !model.may_be_zero &&
+        model.errors.rms_over_sigma < best->errors.rms_over_sigma)
       best = &model;
   return *best;
+}
+
+bool SizeMayBeZero(const CalibrationRecord& record, const RecordedEffect& effect) {
+  bool has_size = false;
+  for (const RecordedSize& size : effect.sizes)
+    for (const FittedParameter& parameter : record.parameters) {
+      if (parameter.name != effect.type + "." + size.parameter) continue;
+      has_size = true;
+      if (parameter.estimate.low > 0 || parameter.estimate.high < 0) return false;
+    }
+  return has_size;
 }
 
 ModelErrors ErrorsOf(const CalibrationRecord& record) {

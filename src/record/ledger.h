@@ -37,6 +37,7 @@ struct LedgerModel {
   ModelErrors errors;                // over all recordings; 0 if the fit is not usable
   double gain = 0;                   // relative reduction of the parent's held-out error (in σ)
   std::vector<ParameterMove> moves;  // changes from the parent
+  bool may_be_zero = false;          // as SizeMayBeZero says of the added effect
   std::optional<DiagnosisRecord> diagnosis;
 };
 
@@ -49,6 +50,7 @@ struct LedgerEnding {
     kMostEffects,  // as many effects were added as allowed
     kNotFitted,    // the last added effect could not be fitted
     kLittleGain,   // the last added effect did not reduce the error by more than `least_gain`
+    kMayBeZero,    // the size of the last added effect may be zero
   };
   Reason reason = Reason::kNone;
   double least_gain = 0;  // threshold of kLittleGain
@@ -61,9 +63,15 @@ struct Ledger {
   bool HasEnded() const { return ending.reason != LedgerEnding::Reason::kNone; }
   // False if an added effect could not be fitted.
   bool IsUsable() const { return ending.reason != LedgerEnding::Reason::kNotFitted; }
-  // The usable model with the smallest held-out error. At least one model is needed (CHECK).
+  // The usable model with the smallest held-out error, without effects whose size may be zero. At
+  // least one model is needed (CHECK).
   const LedgerModel& Best() const;
 };
+
+// Whether the 95 % intervals of all parameters that make the size of an effect, which include the
+// error of the elements, contain 0 in a fit with that effect. False where there is no such
+// parameter.
+bool SizeMayBeZero(const CalibrationRecord& record, const RecordedEffect& effect);
 
 // The errors over all recordings of a fit.
 ModelErrors ErrorsOf(const CalibrationRecord& record);

@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "record/ledger.h"
 #include "report/quantity_text.h"
 #include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
+
+// A statement that is at least this probable is more likely true than not.
+constexpr double kLikely = 0.5;
 
 std::string Lengths(const ModelErrors& errors) {
   return fmt::format("{}, {:.1f} times the noise", Millimetres(errors.held_out_rms),
@@ -120,7 +124,9 @@ std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
   const double nothing = ProbabilityOf(diagnosis.decision, {});
   const std::string corrected = CorrectedError(diagnosis);
   return fmt::format(
-      "No further effect is needed{}: {}.",
+      "{}{}: {}.",
+      nothing < kLikely ? "No further effect can be named with certainty"
+                        : "No further effect is needed",
       std::isnan(nothing)
           ? ""
           : fmt::format(" (probability that nothing is missing: {})", PercentText(nothing)),
@@ -162,6 +168,22 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
   return fmt::format("With {} the error is {}.", title, Lengths(model.errors));
 }
 
+// Whether the effect that `after` adds has no size that differs from 0.
+bool DoesNotCount(const ReportedModel& before, const ReportedModel& after) {
+  if (!before.diagnosis || !after.calibration.usable) return false;
+  const std::vector<RecordedEffect>& ranking = before.diagnosis->ranking;
+  return std::any_of(ranking.begin(), ranking.end(), [&](const RecordedEffect& effect) {
+    return effect.type == after.added && SizeMayBeZero(after.calibration, effect);
+  });
+}
+
+std::string NamedInVain(const ReportedModel& before, const ReportedModel& after) {
+  return fmt::format(
+      "A further diagnosis names {}, but in a model with it its size may be zero: it does not "
+      "count.",
+      WithProbability(*before.diagnosis, after.added));
+}
+
 }  // namespace
 
 std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
@@ -173,6 +195,10 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
   for (size_t k = 0; k < models.size(); ++k) {
     if (k > 0) sentences.push_back(AfterAdding(models[k], models[k - 1]));
     const std::string verdict = models[k].calibration.usable ? VerdictSentence(models[k]) : "";
+    if (k + 1 < models.size() && DoesNotCount(models[k], models[k + 1])) {
+      sentences.push_back(NamedInVain(models[k], models[k + 1]));
+      break;
+    }
     // What was added shows by itself that the model before lacked it.
     const bool is_last = k + 1 == models.size();
     if (!verdict.empty() && (is_last || models[k].diagnosis)) sentences.push_back(verdict);

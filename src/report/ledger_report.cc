@@ -158,6 +158,13 @@ std::string DescribeEnding(const Ledger& ledger) {
     case Reason::kNotFitted:
       return fmt::format("The search ended because {} cannot be fitted: {}.", last.added,
                          last.record.message);
+    case Reason::kMayBeZero:
+      return fmt::format(
+          "The search ended because the size of {} may be zero, as its 95 % interval contains 0: "
+          "{} "
+          "does not count. Smaller elements (mesh.max_volume) or further recordings would make the "
+          "interval narrower.",
+          last.added, last.added);
     case Reason::kLittleGain:
       if (ledger.ending.least_gain == 0)
         return fmt::format(

@@ -35,6 +35,31 @@ TEST(Ledger, AModelThatCouldNotBeFittedIsNeverTheBest) {
   EXPECT_EQ(ledger.Best().name, "bar+drag");
 }
 
+// All components of a size must leave 0 for the effect to count; a place says nothing of it.
+TEST(Ledger, AnEffectWhoseSizeMayBeZeroDoesNotCount) {
+  RecordedEffect gravity;
+  gravity.type = "gravity";
+  gravity.sizes = {{"x", "m/s^2"}, {"y", "m/s^2"}};
+  CalibrationRecord record;
+  EXPECT_FALSE(SizeMayBeZero(record, gravity));  // has no size here
+  const auto add = [&](const std::string& name, double low, double high) {
+    FittedParameter& parameter = record.parameters.emplace_back();
+    parameter.name = name;
+    parameter.estimate.low = low;
+    parameter.estimate.high = high;
+  };
+  add("young_modulus", 1, 2);
+  add("gravity.x", -1, 1);
+  add("gravity.y", 0, 3);
+  EXPECT_TRUE(SizeMayBeZero(record, gravity));
+  record.parameters.back().estimate.low = 0.1;
+  EXPECT_FALSE(SizeMayBeZero(record, gravity));
+
+  Ledger ledger = SmallLedger();
+  ledger.models.back().may_be_zero = true;
+  EXPECT_EQ(ledger.Best().name, "bar");
+}
+
 TEST(Ledger, IsWrittenAsATree) {
   const TemporaryFolder folder;
   WriteLedgerFile(SmallLedger(), folder.Path());

@@ -82,6 +82,28 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
           "is left is that of the noise, or no larger than the error of any model."));
 }
 
+TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
+  ReportedModel before = Model(2e-4, 1.2);
+  before.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  Believe(&*before.diagnosis, {"drag"}, 0.98);
+  RecordedEffect drag;
+  drag.type = "drag";
+  drag.title = "Drag";
+  drag.sizes = {{"coefficient", "kg/m^3"}};
+  before.diagnosis->ranking = {drag};
+  ReportedModel after = Model(1.9e-4, 1.15);
+  after.added = "drag";
+  after.calibration.parameters.resize(1);
+  after.calibration.parameters[0].name = "drag.coefficient";
+  after.calibration.parameters[0].estimate.low = 0;
+  after.calibration.parameters[0].estimate.high = 3;
+  EXPECT_EQ(Headline({before, after}).back(),
+            "A further diagnosis names drag (98 %), but in a model with it its size "
+            "may be zero: it does not count.");
+  after.calibration.parameters[0].estimate.low = 1;
+  EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag the error is"));
+}
+
 // An error of coarse elements is not called noise.
 TEST(Headline, SaysWhatTheErrorIsDueToWhereItIsNoNoise) {
   ReportedModel model = Model(2e-4, 1.9);

@@ -7,6 +7,7 @@ const ENDINGS = {
   undecided: 'The search ended: the last verdict is ambiguous, and no effect is added by guess.',
   most_effects: 'The search ended: as many effects were added as allowed.',
   not_fitted: 'The search ended: the model with the last effect could not be fitted.',
+  may_be_zero: 'The search ended: the size of the last effect may be zero, so that the effect does not count.',
   little_gain: 'The search ended: the last effect reduced the error too little.',
 };
 
