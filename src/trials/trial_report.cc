@@ -115,12 +115,13 @@ std::string ReportInWords(const TrialReport& report) {
     for (const auto& [name, count] : tally.verdicts)
       verdicts.push_back(fmt::format("{} {}", count, name));
     text += fmt::format(
-        "{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7.2f}  {}\n",
+        "{:28} {:>5} {:>7} {:>7} {:>6} {:>10} {:>8} {:>10} {:>11} {:>8.2f} {:>7}  {}\n",
         tally.group, tally.cases, Share(tally.top1, tally.nameable),
         Share(tally.top2, tally.nameable), Share(tally.wrong, tally.cases),
         Share(tally.ranked_first, tally.nameable), Share(tally.at_noise, tally.fitted),
         Share(tally.within_15, tally.fitted), Share(tally.covered, tally.intervals),
-        tally.median_before, tally.median_after, fmt::join(verdicts, ", "));
+        tally.median_before, tally.fitted > 0 ? fmt::format("{:.2f}", tally.median_after) : "-",
+        fmt::join(verdicts, ", "));
   }
   text += "\nhidden effect: verdicts, or the effects named as missing\n";
   for (const auto& [truth, said] : report.confusion) {

@@ -59,11 +59,16 @@ function confusion(counts) {
       })))));
 }
 
+// The share of a few statements says little, so that they are no point of the curve.
+const FEWEST_STATEMENTS = 5;
+
 function calibrationCurve(bins) {
-  const shown = (bins ?? []).filter((bin) => isNumber(bin.stated) && isNumber(bin.frequency));
+  const all = (bins ?? []).filter((bin) => isNumber(bin.stated) && isNumber(bin.frequency));
+  const shown = all.filter((bin) => bin.statements >= FEWEST_STATEMENTS);
   if (shown.length === 0) return null;
-  return chart({ title: 'Calibration of the probabilities', explain: 'How often a stated probability was right. On the dashed diagonal, probabilities mean what they say.', x: 'stated probability, %', y: 'frequency, %', xRange: [0, 100], yRange: [0, 100], height: 280,
-    series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: shown.map((bin) => 100 * bin.stated), y: shown.map((bin) => 100 * bin.frequency), colour: 'series-last', style: 'line-dots', size: 8 }] });
+  const left = all.length - shown.length;
+  return chart({ title: 'Calibration of the probabilities', explain: `How often a stated probability was right. On the dashed diagonal, probabilities mean what they say.${left > 0 ? ` Intervals with fewer than ${FEWEST_STATEMENTS} statements are left out: ${left}.` : ''}`, x: 'stated probability, %', y: 'frequency, %', xRange: [0, 100], yRange: [0, 100], height: 280,
+    series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: `found (${shown.map((bin) => bin.statements).join(', ')} statements)`, x: shown.map((bin) => 100 * bin.stated), y: shown.map((bin) => 100 * bin.frequency), colour: 'series-last', style: 'dots', size: 8 }] });
 }
 
 // How often verdicts name effects, over all groups, beside what the simulated rules could say.
