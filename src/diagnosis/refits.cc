@@ -32,10 +32,12 @@ bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit
 }
 
 // Refits one effect from its best variants, and from a fixed size where that seems to end in a
-// local minimum. Writes the result into the effect, but not its evidence.
+// local minimum. Writes the result into the effect, but not its evidence. `is_found`: another refit
+// has come down to the noise, which shows that first order leads to the right minimum; a model that
+// is far off is then not fitted afresh with this effect.
 EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
-                        const EffectRefit& without, RankedEffect* effect) {
-  const bool is_far_off = RmsOverSigma(without.hypothesis) > kFarFromTruth;
+                        const EffectRefit& without, bool is_found, RankedEffect* effect) {
+  const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
   const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
     return Refit(context.model, &variant, adopted, is_far_off, start, &without);
   };
@@ -83,7 +85,9 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   if (own.refitted || ranked->count == ranked->limit) return;
   ++ranked->count;
   EffectRefit& refit = ranked->refits[effect];
-  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, &own);
+  const bool is_found = ranked->best && RmsOverSigma(ranked->refits[*ranked->best].hypothesis) <=
+                                            kThresholds.refit.converged_rms;
+  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, is_found, &own);
   own.predicts = Predicts(refit.errors, ranked->baseline.errors, ChanceIn(context));
   if (!refit.message.empty() || !own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
@@ -322,7 +326,7 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
       break;
     RankedEffect& effect = alternatives.effects.emplace_back();
     effect.scored = scored;
-    const EffectRefit with = RefitEffect(context, always, bare, &effect);
+    const EffectRefit with = RefitEffect(context, always, bare, /*is_found=*/false, &effect);
     effect.predicts = Predicts(with.errors, bare.errors, ChanceIn(context));
     HypothesisSpace& space = alternatives.spaces.emplace_back();
     if (!with.message.empty()) continue;
