@@ -89,10 +89,7 @@ class Fitter {
   }
 
   Calibration Beginning(const std::string& name, const Eigen::VectorXd& start) {
-    if (!problem_.HasScans()) {
-      const Calibration known = FromJudgedValues(start);
-      return known.usable ? known : Stage(name, ShortHorizon(problem_), start);
-    }
+    if (!problem_.HasScans()) return Stage(name, ShortHorizon(problem_), start);
     progress_.Begin(name, 0);
     const FarStart far = FindFarStart(problem_, start);
     budget_.Spend(far.predictions, TimeStep());
@@ -107,7 +104,7 @@ class Fitter {
   // astray in what it does not determine. Not usable where it does not come close.
   Calibration FromJudgedValues(const Eigen::VectorXd& start) {
     Calibration judged;
-    if (problem_.study().explained_misfit == 0) return judged;
+    if (problem_.study().explained_misfit == 0 || problem_.HasScans()) return judged;
     progress_.Begin("fit from the diagnosis", 0);
     judged.parameters = start;
     judged.rms = Left(problem_, start);
@@ -118,6 +115,12 @@ class Fitter {
     judged.usable = judged.parameters.size() > 0 && judged.rms <= kLocalMinimumSuspected;
     judged.message.clear();
     return Finished(std::move(judged));
+  }
+
+  // The beginning of a fit from the study's own start.
+  Calibration FirstPart(const Eigen::VectorXd& start) {
+    const Calibration judged = FromJudgedValues(start);
+    return judged.usable ? judged : Beginning("fit, first part", start);
   }
 
   Calibration Whole(const Eigen::VectorXd& start, const Calibration& beginning) {
@@ -233,7 +236,7 @@ double ShortHorizon(const CalibrationProblem& problem) {
 
 Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,
                             Progress* progress, FitBudget* budget) {
-  return Fitter(problem, progress, budget).Beginning("fit, first part", start);
+  return Fitter(problem, progress, budget).FirstPart(start);
 }
 
 Calibration FitInStages(const CalibrationProblem& problem, const Eigen::VectorXd& start,
@@ -252,8 +255,8 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
   Fitter fitter(problem, progress, budget);
   if (beginning != nullptr) fitter.CountAlso(beginning->predictions);
   const Eigen::VectorXd start = problem.Start();
-  Calibration calibration = fitter.Whole(
-      start, beginning != nullptr ? *beginning : fitter.Beginning("fit, first part", start));
+  Calibration calibration =
+      fitter.Whole(start, beginning != nullptr ? *beginning : fitter.FirstPart(start));
   if (calibration.usable && calibration.rms <= kLocalMinimumSuspected) return calibration;
   // Equilibria have no period, so that other moduli lead to the same minimum. FindFarStart has
   // tried others for scans.
@@ -272,7 +275,7 @@ Calibration FitFromStart(const CalibrationProblem& problem, Progress* progress,
     if (other == start || fitter.IsOutOfBudget()) break;
     Calibration first = fitter.Beginning(
         fmt::format("fit, moduli from {:g} times their start values", factor), other);
-    const double left = first.parameters.size() == 0 ? kUnlimited : Left(problem, first.parameters);
+    const double left = first.estimates.empty() ? kUnlimited : Left(problem, first.parameters);
     if (left >= least) continue;
     least = left;
     nearest = std::move(first);

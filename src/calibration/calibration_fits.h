@@ -42,7 +42,7 @@ double ShortHorizon(const CalibrationProblem& problem);
 
 // `budget`, here and below: shared by several fits; null: each has one of its own.
 
-// Fits over the short horizon, where a wrong model has the least time to diverge. Where the start is
+// Fits over the short horizon, where a wrong model has the least time to diverge. Where `start` is
 // that of a diagnosis (PredictionStudy::explained_misfit) and comes within kLocalMinimumSuspected
 // over all fitted frames of markers, it is the result.
 Calibration FitShortHorizon(const CalibrationProblem& problem, const Eigen::VectorXd& start,

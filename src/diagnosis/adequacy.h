@@ -2,12 +2,12 @@
 // with its distribution under noise alone.
 //
 // The statistics are the log Bayes factor of an unknown smooth force beside the hypothesis, the
-// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and the variance of the
-// residual. Noise alone makes t = Aᵀr normal with the covariance v AᵀA, so that the distributions
-// are simulated from the products of the recording itself: they need no table of thresholds, and
-// hold whatever the columns are. The smallest of the three tail probabilities is compared with its
-// own distribution, which makes the combined test exact (Tippett's method with simulated
-// dependence; Westfall & Young, Resampling-Based Multiple Testing, 1993).
+// largest evidence (NamedEvidence) of any further effect or nuisance beside it, and the variance of
+// the residual. Noise alone makes t = Aᵀr normal with the covariance v AᵀA, so that the
+// distributions are simulated from the products of the recording itself: they need no table of
+// thresholds, and hold whatever the columns are. The smallest of the three tail probabilities is
+// compared with its own distribution, which makes the combined test exact (Tippett's method with
+// simulated dependence; Westfall & Young, Resampling-Based Multiple Testing, 1993).
 #ifndef LACUNA_DIAGNOSIS_ADEQUACY_H_
 #define LACUNA_DIAGNOSIS_ADEQUACY_H_
 

@@ -52,14 +52,13 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
     keep();
     if (ledger.HasEnded()) break;
 
-    const RecordedEffect& effect = Named(diagnosis, at);
+    const std::string effect = diagnosis.effects.front();
     const std::filesystem::path file =
-        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, effect));
+        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, Named(diagnosis, at)));
     const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
     const CalibrationRecord record = RunCalibration(study, progress);
     at = study.output;
-    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect.type));
-    ledger.models.back().may_be_zero = record.usable && SizeMayBeZero(record, effect);
+    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect));
     if (!record.usable) {
       ledger.ending.reason = LedgerEnding::Reason::kNotFitted;
     } else if (ledger.models.back().gain <= options.least_gain) {

@@ -125,14 +125,19 @@ const LedgerModel& Ledger::Best() const {
   return *best;
 }
 
-bool SizeMayBeZero(const CalibrationRecord& record, const RecordedEffect& effect) {
+bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& before,
+                   const std::string& added) {
+  if (!record.usable) return false;
+  std::vector<std::string> names;
+  for (const RecordedEffect& effect : before.ranking)
+    if (effect.type == added)
+      for (const RecordedSize& size : effect.sizes) names.push_back(added + "." + size.parameter);
   bool has_size = false;
-  for (const RecordedSize& size : effect.sizes)
-    for (const FittedParameter& parameter : record.parameters) {
-      if (parameter.name != effect.type + "." + size.parameter) continue;
-      has_size = true;
-      if (parameter.estimate.low > 0 || parameter.estimate.high < 0) return false;
-    }
+  for (const FittedParameter& parameter : record.parameters) {
+    if (std::count(names.begin(), names.end(), parameter.name) == 0) continue;
+    has_size = true;
+    if (parameter.estimate.low > 0 || parameter.estimate.high < 0) return false;
+  }
   return has_size;
 }
 
@@ -199,6 +204,8 @@ LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& r
   model.moves = MovesBetween(before != nullptr ? before->record : CalibrationRecord{}, record);
   if (before != nullptr && record.usable && before->errors.rms_over_sigma > 0)
     model.gain = 1 - model.errors.rms_over_sigma / before->errors.rms_over_sigma;
+  model.may_be_zero =
+      before != nullptr && before->diagnosis && SizeMayBeZero(record, *before->diagnosis, added);
   return model;
 }
 

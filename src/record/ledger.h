@@ -68,10 +68,11 @@ struct Ledger {
   const LedgerModel& Best() const;
 };
 
-// Whether the 95 % intervals of all parameters that make the size of an effect, which include the
-// error of the elements, contain 0 in a fit with that effect. False where there is no such
-// parameter.
-bool SizeMayBeZero(const CalibrationRecord& record, const RecordedEffect& effect);
+// Whether the 95 % intervals of all parameters that make the size of the effect `added`, which
+// include the error of the elements, contain 0 in a fit with it. `before`: the diagnosis that has
+// ranked it. False where the fit is not usable or there is no such parameter.
+bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& before,
+                   const std::string& added);
 
 // The errors over all recordings of a fit.
 ModelErrors ErrorsOf(const CalibrationRecord& record);

@@ -168,15 +168,6 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
   return fmt::format("With {} the error is {}.", title, Lengths(model.errors));
 }
 
-// Whether the effect that `after` adds has no size that differs from 0.
-bool DoesNotCount(const ReportedModel& before, const ReportedModel& after) {
-  if (!before.diagnosis || !after.calibration.usable) return false;
-  const std::vector<RecordedEffect>& ranking = before.diagnosis->ranking;
-  return std::any_of(ranking.begin(), ranking.end(), [&](const RecordedEffect& effect) {
-    return effect.type == after.added && SizeMayBeZero(after.calibration, effect);
-  });
-}
-
 std::string NamedInVain(const ReportedModel& before, const ReportedModel& after) {
   return fmt::format(
       "A further diagnosis names {}, but in a model with it its size may be zero: it does not "
@@ -195,7 +186,8 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
   for (size_t k = 0; k < models.size(); ++k) {
     if (k > 0) sentences.push_back(AfterAdding(models[k], models[k - 1]));
     const std::string verdict = models[k].calibration.usable ? VerdictSentence(models[k]) : "";
-    if (k + 1 < models.size() && DoesNotCount(models[k], models[k + 1])) {
+    if (k + 1 < models.size() && models[k].diagnosis &&
+        SizeMayBeZero(models[k + 1].calibration, *models[k].diagnosis, models[k + 1].added)) {
       sentences.push_back(NamedInVain(models[k], models[k + 1]));
       break;
     }

@@ -160,11 +160,10 @@ std::string DescribeEnding(const Ledger& ledger) {
                          last.record.message);
     case Reason::kMayBeZero:
       return fmt::format(
-          "The search ended because the size of {} may be zero, as its 95 % interval contains 0: "
-          "{} "
-          "does not count. Smaller elements (mesh.max_volume) or further recordings would make the "
-          "interval narrower.",
-          last.added, last.added);
+          "The search ended because the size of {0} may be zero, as its 95 % interval contains 0: "
+          "{0} does not count. Smaller elements (mesh.max_volume) or further recordings would make "
+          "the interval narrower.",
+          last.added);
     case Reason::kLittleGain:
       if (ledger.ending.least_gain == 0)
         return fmt::format(

@@ -34,53 +34,57 @@ std::vector<std::string> TruthOf(const TrialCase& trial) {
   return truth;
 }
 
+// How the names of a verdict "missing" compare with the effect that is hidden. All false for other
+// verdicts.
+struct ComparedNames {
+  bool is_stated = false;
+  bool is_other = false;    // another effect is among them ...
+  bool is_outside = false;  // ... of another family
+
+  ComparedNames(const TrialOutcome& outcome, const std::string& truth) {
+    is_stated = outcome.verdict == Verdict::kMissing;
+    if (!is_stated) return;
+    for (const std::string& name : outcome.named) {
+      is_other = is_other || name != truth;
+      is_outside = is_outside || !IsMember(name, truth);
+    }
+  }
+};
+
+void Add(bool counts, Rate* rate) {
+  ++rate->whole;
+  rate->part += counts;
+}
+
 void CountOneEffect(const FinishedTrial& finished, TrialRates* rates) {
   const std::string& truth = finished.trial.hidden.front().type;
   const TrialOutcome& outcome = finished.outcome;
-  const bool is_stated = outcome.verdict == Verdict::kMissing;
-  const auto any = [&](const auto& condition) {
-    return std::any_of(outcome.named.begin(), outcome.named.end(), condition);
-  };
-  const bool is_outside =
-      is_stated && any([&](const std::string& name) { return !IsMember(name, truth); });
-  const bool is_other = is_stated && any([&](const std::string& name) { return name != truth; });
-  const bool is_decidable = outcome.simulated && outcome.simulated->named >= kDecidable;
-  ++rates->named.whole;
-  rates->named.part += is_stated && !is_other;
-  rates->decidable_named.whole += is_decidable;
-  rates->decidable_named.part += is_decidable && is_stated && !is_other;
-  ++rates->wrong_member.whole;
-  rates->wrong_member.part += is_other && !is_outside;
-  ++rates->outside_family.whole;
-  rates->outside_family.part += is_outside;
-  if (is_stated || outcome.verdict == Verdict::kAmbiguous) {
-    ++rates->family.whole;
-    rates->family.part += any([&](const std::string& name) { return IsMember(name, truth); });
-  }
+  const ComparedNames naming(outcome, truth);
+  const bool is_right = naming.is_stated && !naming.is_other;
+  Add(is_right, &rates->named);
+  Add(naming.is_other && !naming.is_outside, &rates->wrong_member);
+  Add(naming.is_outside, &rates->outside_family);
+  if (naming.is_stated || outcome.verdict == Verdict::kAmbiguous)
+    Add(std::any_of(outcome.named.begin(), outcome.named.end(),
+                    [&](const std::string& name) { return IsMember(name, truth); }),
+        &rates->family);
   if (!outcome.simulated) return;
   ++rates->simulated_cases;
   rates->simulated_named += outcome.simulated->named;
+  if (outcome.simulated->named >= kDecidable) Add(is_right, &rates->decidable_named);
 }
 
 void CountRemoved(const FinishedTrial& finished, TrialRates* rates) {
-  const std::string& truth = finished.trial.hidden.front().type;
   const TrialOutcome& outcome = finished.outcome;
-  const bool is_stated = outcome.verdict == Verdict::kMissing;
-  const bool is_outside =
-      is_stated && std::any_of(outcome.named.begin(), outcome.named.end(),
-                               [&](const std::string& name) { return !IsMember(name, truth); });
-  ++rates->removed_member.whole;
-  rates->removed_member.part += is_stated && !is_outside;
-  ++rates->removed_outside.whole;
-  rates->removed_outside.part += is_outside;
-  ++rates->not_in_library.whole;
-  rates->not_in_library.part += outcome.verdict == Verdict::kNotInLibrary;
+  const ComparedNames naming(outcome, finished.trial.hidden.front().type);
+  const bool is_unknown = outcome.verdict == Verdict::kNotInLibrary;
+  Add(naming.is_stated && !naming.is_outside, &rates->removed_member);
+  Add(naming.is_outside, &rates->removed_outside);
+  Add(is_unknown, &rates->not_in_library);
   if (!outcome.simulated) return;
   ++rates->simulated_removed;
   rates->simulated_unknown += outcome.simulated->unknown;
-  if (outcome.simulated->unknown < kDecidable) return;
-  ++rates->unknown.whole;
-  rates->unknown.part += outcome.verdict == Verdict::kNotInLibrary;
+  if (outcome.simulated->unknown >= kDecidable) Add(is_unknown, &rates->unknown);
 }
 
 // A statement about effects is right if they are, whatever nuisances stand beside them.
@@ -141,11 +145,8 @@ TrialRates RatesOf(const std::vector<FinishedTrial>& finished) {
   for (const FinishedTrial& one : finished) {
     const std::string& group = one.trial.group;
     const bool is_stated = one.outcome.verdict == Verdict::kMissing;
-    if (group == "control" || group == "hard_control") {
-      Rate& rate = group == "control" ? rates.named_in_controls : rates.named_in_hard_controls;
-      ++rate.whole;
-      rate.part += is_stated;
-    }
+    if (group == "control") Add(is_stated, &rates.named_in_controls);
+    if (group == "hard_control") Add(is_stated, &rates.named_in_hard_controls);
     if (group == "one_effect") CountOneEffect(one, &rates);
     if (group == "removed")
       CountRemoved(one, &rates);

@@ -40,8 +40,11 @@ TEST(Ledger, AnEffectWhoseSizeMayBeZeroDoesNotCount) {
   RecordedEffect gravity;
   gravity.type = "gravity";
   gravity.sizes = {{"x", "m/s^2"}, {"y", "m/s^2"}};
+  DiagnosisRecord diagnosis;
+  diagnosis.ranking = {gravity};
   CalibrationRecord record;
-  EXPECT_FALSE(SizeMayBeZero(record, gravity));  // has no size here
+  record.usable = true;
+  EXPECT_FALSE(SizeMayBeZero(record, diagnosis, "gravity"));  // has no size here
   const auto add = [&](const std::string& name, double low, double high) {
     FittedParameter& parameter = record.parameters.emplace_back();
     parameter.name = name;
@@ -51,9 +54,9 @@ TEST(Ledger, AnEffectWhoseSizeMayBeZeroDoesNotCount) {
   add("young_modulus", 1, 2);
   add("gravity.x", -1, 1);
   add("gravity.y", 0, 3);
-  EXPECT_TRUE(SizeMayBeZero(record, gravity));
+  EXPECT_TRUE(SizeMayBeZero(record, diagnosis, "gravity"));
   record.parameters.back().estimate.low = 0.1;
-  EXPECT_FALSE(SizeMayBeZero(record, gravity));
+  EXPECT_FALSE(SizeMayBeZero(record, diagnosis, "gravity"));
 
   Ledger ledger = SmallLedger();
   ledger.models.back().may_be_zero = true;
