@@ -23,7 +23,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 22;
+constexpr int kCalibrationVersion = 23;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.

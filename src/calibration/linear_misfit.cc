@@ -116,10 +116,6 @@ SquaresOfRows SquaresOf(const Eigen::VectorXd& whitened, const LinearisedMisfit&
 
 }  // namespace
 
-double HeldOutSquares(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
-  return SquaresOf(whitened, misfit).held_out;
-}
-
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
   const SquaresOfRows of = SquaresOf(whitened, misfit);
   if (of.held_out_rows > 0) return std::sqrt(of.held_out / static_cast<double>(of.held_out_rows));

@@ -47,9 +47,6 @@ NoiseLevel LevelOf(const Eigen::VectorXd& left, const LinearisedMisfit& misfit,
 // The number of rows that were observed.
 Eigen::Index ObservedRows(const LinearisedMisfit& misfit);
 
-// The sum of the squares of the whitened rows that were observed and held out.
-double HeldOutSquares(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);
-
 // The rms of the whitened rows that were observed and held out (of all rows where none were held
 // out).
 double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit);

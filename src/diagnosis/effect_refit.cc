@@ -253,6 +253,19 @@ FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::Vec
   return hypothesis;
 }
 
+// By how much the variance of a mean over frames exceeds that of independent noise.
+double PersistenceOf(const NoiseLevel& noise, const LinearisedMisfit& misfit) {
+  double persistence = 1;
+  for (const LinearisedMisfit::Part& part : misfit.parts) {
+    const std::vector<double>& times = part.layout.times;
+    if (times.size() < 2 || !(noise.correlation_time > 0)) continue;
+    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+    const double next = std::exp(-spacing / noise.correlation_time);
+    persistence = std::max(persistence, (1 + next) / (1 - next));
+  }
+  return persistence;
+}
+
 bool IsBetter(const Calibration& a, const Calibration& b) {
   return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
 }
@@ -293,21 +306,16 @@ bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& ref
          !explains_excess;
 }
 
-double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit) {
-  constexpr double kQuantile = 2.33;  // of a normal distribution, one in 100
-  double persistence = 1;
-  for (const LinearisedMisfit::Part& part : misfit.parts) {
-    const std::vector<double>& times = part.layout.times;
-    if (times.size() < 2 || !(noise.correlation_time > 0)) continue;
-    const double spacing = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
-    const double next = std::exp(-spacing / noise.correlation_time);
-    persistence = std::max(persistence, (1 + next) / (1 - next));
-  }
-  return kQuantile * kQuantile * noise.variance * persistence;
+double PredictiveGain(const EffectRefit& with, const EffectRefit& without,
+                      const NoiseLevel& noise) {
+  const double squares = with.errors.unfitted_squares - without.errors.unfitted_squares;
+  return EvidenceOf(with, noise).held_out - EvidenceOf(without, noise).held_out -
+         0.5 * squares / (noise.variance * PersistenceOf(noise, with.hypothesis.misfit));
 }
 
-bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance) {
-  return !without.has_held_out || with.unfitted_squares < without.unfitted_squares + chance;
+bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise) {
+  constexpr double kOften = 100;
+  return !without.errors.has_held_out || PredictiveGain(with, without, noise) >= -std::log(kOften);
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
@@ -359,7 +367,6 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
           refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
       const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
       refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
-      refit.errors.unfitted_squares += HeldOutSquares(white, misfit);
       refit.at_fit = refit.hypothesis;
       refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
                                            baseline.noise, std::move(refit.hypothesis));

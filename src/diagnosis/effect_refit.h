@@ -82,18 +82,16 @@ HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& e
 bool FallsShort(const HypothesisEvidence& without, const HypothesisEvidence& refit, double noise,
                 double predicted);
 
-// The growth of the squared misfit of the held-out frames, σ², that an effect which is really
-// missing exceeds in fewer than one recording in 100, whatever its size. If the effect changes the
-// prediction by d, in units of the noise e, the misfit grows by 2 e·d − ‖d‖². It exceeds z² v only
-// if e·d/‖d‖ > (z² v + ‖d‖²)/(2 ‖d‖) ≥ z √v; v is the variance of e·d/‖d‖, that of noise with
-// persistent errors.
-double HeldOutChance(const NoiseLevel& noise, const LinearisedMisfit& misfit);
+// How much better the refitted model predicts what was not fitted than the one without the effect:
+// the difference of ln p(not fitted | fitted). Held-out frames count by the width that each model
+// claims for its prediction (RefitEvidence), recordings that were not fitted by their squared
+// residuals and the persistence of the noise.
+double PredictiveGain(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise);
 
-// Whether the error of what was not fitted (ModelErrors::unfitted_squares) is compatible with the
-// effect being missing: it does not grow by more than `chance` (HeldOutChance). Both errors are
-// those after the adopted nuisances, because the effect changes the prediction by more than noise
-// where it meets an error of the mesh or of the shape. True where nothing is held out.
-bool Predicts(const ModelErrors& with, const ModelErrors& without, double chance);
+// Whether that is compatible with the effect being missing. If it is, the gain is below −ln 100 in
+// fewer than one recording in 100, whatever the size of the effect: exp(−gain) then is a ratio of
+// densities with the mean 1 (Markov's inequality). True where nothing is held out.
+bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise);
 
 // Whether the held-out error with the effect is clearly larger than without it, which shows that
 // the effect follows the fitted frames with wrong parameters.

@@ -15,7 +15,7 @@ namespace lacuna {
 namespace {
 
 // A refit has to be good enough for a comparison, not converged to the last digit.
-constexpr int kIterations = 15;
+constexpr int kIterations = 30;
 constexpr double kTolerance = 1;  // of the cost, in units of one standard deviation
 // Start() tries these shares of the step that first order predicts, until one gives a smaller
 // residual than the model without the effect.

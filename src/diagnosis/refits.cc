@@ -76,10 +76,6 @@ EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& ado
   return refit;
 }
 
-double ChanceIn(const RefitContext& context) {
-  return HeldOutChance(context.ranking.noise, context.ranking.misfit);
-}
-
 void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
   RankedEffect& own = ranked->effects[effect];
   if (own.refitted || ranked->count == ranked->limit) return;
@@ -88,8 +84,9 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   const bool is_found = ranked->best && RmsOverSigma(ranked->refits[*ranked->best].hypothesis) <=
                                             kThresholds.refit.converged_rms;
   refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, is_found, &own);
-  own.predicts = Predicts(refit.errors, ranked->baseline.errors, ChanceIn(context));
-  if (!refit.message.empty() || !own.predicts) return;
+  if (!refit.message.empty()) return;
+  own.predicts = Predicts(refit, ranked->baseline, context.ranking.noise);
+  if (!own.predicts) return;
   const double evidence = EvidenceOf(refit, context.ranking.noise).all - ranked->baseline_evidence;
   if (evidence <= ranked->best_evidence) return;
   ranked->best = effect;
@@ -269,9 +266,11 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
                          RmsOverSigma(best)};
   const RefitEvidence before = EvidenceOf(ranked->baseline, noise.level);
   const size_t rivals = ranked->effects.size();
-  for (size_t k = 0; k < rivals; ++k)
-    if (ranked->IsUsable(k))
-      SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+  for (size_t k = 0; k < rivals; ++k) {
+    if (!ranked->IsUsable(k)) continue;
+    ranked->effects[k].predicts = Predicts(ranked->refits[k], ranked->baseline, noise.level);
+    SetEvidence(ranked->refits[k], before, noise.level, rivals, &ranked->effects[k]);
+  }
   return noise;
 }
 
@@ -327,9 +326,9 @@ NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,
     RankedEffect& effect = alternatives.effects.emplace_back();
     effect.scored = scored;
     const EffectRefit with = RefitEffect(context, always, bare, /*is_found=*/false, &effect);
-    effect.predicts = Predicts(with.errors, bare.errors, ChanceIn(context));
     HypothesisSpace& space = alternatives.spaces.emplace_back();
     if (!with.message.empty()) continue;
+    effect.predicts = Predicts(with, bare, noise.level);
     SetEvidence(with, before, noise.level, ranked.effects.size(), &effect);
     space = SpaceBeside(with.hypothesis.misfit, with.hypothesis.misfit.jacobian,
                         with.hypothesis.priors, ranking, effect.scored.candidate.type, noise.level,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -23,16 +24,35 @@ constexpr double kLonger = 2, kShorter = 0.5, kMuchShorter = 0.1;
 // A step changes no parameter by more than this many typical changes: far outside of the region
 // that the data determine, a simulation takes long or fails.
 constexpr double kLongestStep = 100;
+// Nor does it change a parameter on a logarithmic scale by more than a factor of e. Where a time or
+// a place has little influence yet, as that of an effect that is still small, the model would move
+// it to the other end of its range for a small gain.
+constexpr double kLongestLogStep = 1;
 // The largest part of the way to an open bound that a step takes. The linearised model knows
 // nothing of what happens at the bound, and predictions there may take tens of times longer.
 constexpr double kOfWayToOpenBound = 0.8;
 // Where a full step promises enough but the radius leaves only little of it, as in a curved valley,
 // the search goes on to this fraction of the promise at which it ends elsewhere.
 constexpr double kLeastOfCurved = 0.1;
+// A bent step keeps the bend shorter than this part of the straight way: beyond, its end would be
+// extrapolated from a single prediction. It is looked for at shares of the way that fall by this
+// factor, down to the least one.
+constexpr double kMostBent = 0.75;
+constexpr double kNextShare = 0.8, kLeastShare = 0.05;
 // A search whose steps become shorter than this, in typical changes, ends.
 constexpr double kShortestStep = 1e-6;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A step of φ that may be tried, and the gain that it promises, as a fraction of the cost.
+struct Trial {
+  Eigen::VectorXd step;
+  double promised = 0;
+  // A bent step lies beside this share of a straight one.
+  Eigen::VectorXd straight;
+  double share = 1;
+  bool is_bent = false;
+};
 
 class BoundedDescent {
  public:
@@ -70,6 +90,7 @@ class BoundedDescent {
     double radius = kInfinity;
     double departure = 0;  // length of the first step from the latest point with derivatives
     std::string undifferentiable;  // why derivatives could not be computed at some point
+    std::optional<Trial> bent;     // to be tried next
     // Takes derivatives in place of secants. Where there are none, the search goes on from the
     // latest point that has them, with shorter steps and without secants.
     const auto differentiate = [&] {
@@ -81,9 +102,10 @@ class BoundedDescent {
     };
     for (;;) {
       const QuadraticCost model = Model();
-      const Eigen::VectorXd step = Step(model, radius);
+      const Trial trial = bent ? *std::exchange(bent, {}) : Straight(model, radius);
+      const Eigen::VectorXd& step = trial.step;
       const double reach = LengthOf(step, model);
-      const double promised = model.GainOf(step);  // fraction of the cost
+      const double promised = trial.promised;
       const double length = step.cwiseQuotient(typical_).lpNorm<Eigen::Infinity>();
       const bool gains_little =
           !(promised > kLeastOfCurved * least_gain) ||
@@ -112,6 +134,8 @@ class BoundedDescent {
         // A poor step along secants tells less of the trust region than of the secants.
         if (gained > kGoodGain * promised && rejected == 0)
           radius = std::max(radius, kLonger * reach);
+        else if (trial.is_bent && !is_poor)
+          radius = std::max(radius, reach);
         else if (is_poor && is_exact_)
           radius = kShorter * reach;
         if (is_exact_) departure = reach;
@@ -127,7 +151,9 @@ class BoundedDescent {
         failed_beside = there.usable ? "" : there.message;
         // promised / (2 promised − gained), where the cost falls by 2 promised per step at first.
         const double turn = gained > -kInfinity ? promised / (2 * promised - gained) : 0;
-        radius = std::clamp(turn, kMuchShorter, kShorter) * reach;
+        radius = std::min(radius, std::clamp(turn, kMuchShorter, kShorter) * reach);
+        if (there.usable) bent = Bend(trial, there.residual, model);
+        if (bent && !(bent->promised > least_gain)) bent.reset();
       }
     }
     if (!is_exact_) Differentiate();
@@ -168,8 +194,10 @@ class BoundedDescent {
 
   // ½ ‖r‖² plus the priors; infinite if the prediction failed.
   double CostOf(const Prediction& prediction, const Eigen::VectorXd& values) const {
-    if (!prediction.usable) return kInfinity;
-    double cost = prediction.residual.squaredNorm();
+    return prediction.usable ? CostOf(prediction.residual, values) : kInfinity;
+  }
+  double CostOf(const Eigen::VectorXd& residual, const Eigen::VectorXd& values) const {
+    double cost = residual.squaredNorm();
     for (Eigen::Index k = 0; k < count_; ++k) cost += std::pow(FromPrior(values, k), 2);
     return 0.5 * cost;
   }
@@ -237,6 +265,44 @@ class BoundedDescent {
     return step.cwiseProduct(model.information.diagonal().cwiseSqrt()).norm();
   }
 
+  Trial Straight(const QuadraticCost& model, double radius) const {
+    Trial trial;
+    trial.step = trial.straight = Step(model, radius);
+    trial.promised = model.GainOf(trial.step);
+    return trial;
+  }
+
+  // A refused step δ shows how the residual bends along it: r(φ + tδ) ≈ r + t Jδ + t² c. The path
+  // φ + tδ + t²a, with the a that compensates best for c, follows a curved valley (geodesic
+  // acceleration: Transtrum & Sethna, arXiv:1201.5885, 2012, who spend one more prediction on c).
+  // The trial is its best point; after a refused bent step, the best one of its first half, with
+  // the c that this step shows. `there`: the residual after the refused step.
+  std::optional<Trial> Bend(const Trial& refused, const Eigen::VectorXd& there,
+                            const QuadraticCost& model) const {
+    const Eigen::VectorXd& residual = end_.prediction.residual;
+    const Eigen::VectorXd along = columns_ * refused.straight;
+    const Eigen::VectorXd curvature =
+        (there - residual - columns_ * refused.step) / (refused.share * refused.share);
+    QuadraticCost compensation = model;
+    compensation.gradient = columns_.transpose() * curvature;
+    const Eigen::VectorXd bend = DampedStep(compensation, 0);
+    const Eigen::VectorXd left = curvature + columns_ * bend;
+    const double longest = std::min(
+        refused.is_bent ? 0.5 * refused.share : 1.0,
+        kMostBent * LengthOf(refused.straight, model) / std::max(LengthOf(bend, model), 1e-300));
+    const auto [low, high] = Room();
+    std::optional<Trial> best;
+    for (double share = longest; share > kLeastShare; share *= kNextShare) {
+      const Eigen::VectorXd step = share * refused.straight + share * share * bend;
+      Trial trial{step.cwiseMax(typical_.cwiseProduct(low)).cwiseMin(typical_.cwiseProduct(high)),
+                  0, refused.straight, share, true};
+      const Eigen::VectorXd expected = residual + share * along + share * share * left;
+      trial.promised = 1 - CostOf(expected, Moved(trial.step)) / cost_;
+      if (!best || trial.promised > best->promised) best = std::move(trial);
+    }
+    return best;
+  }
+
   // The step of φ within the bounds that minimises the model and is not longer than `radius`: that
   // of the model with λ diag H added to H, for the least λ ≥ 0 that makes it short enough.
   Eigen::VectorXd Step(const QuadraticCost& model, double radius) const {
@@ -251,20 +317,27 @@ class BoundedDescent {
     return DampedStep(model, std::pow(10, high));
   }
 
-  Eigen::VectorXd DampedStep(const QuadraticCost& model, double damping) const {
-    // In units of the typical changes, in which directions without influence are told from others.
-    QuadraticCost scaled{model.cost, typical_.cwiseProduct(model.gradient),
-                         typical_.asDiagonal() * model.information * typical_.asDiagonal()};
-    scaled.information.diagonal() *= 1 + damping;
+  // The least and the largest step of each φ, in typical changes.
+  std::pair<Eigen::VectorXd, Eigen::VectorXd> Room() const {
     Eigen::VectorXd low(count_), high(count_);
     for (Eigen::Index k = 0; k < count_; ++k) {
       const CalibratedParameter& at = parameter(k);
       const double here = ToFree(at, end_.parameters[k]);
       const double down = (at.open_min ? kOfWayToOpenBound : 1) * (low_[k] - here);
       const double up = (at.open_max ? kOfWayToOpenBound : 1) * (high_[k] - here);
-      low[k] = std::clamp(down / typical_[k], -kLongestStep, 0.0);
-      high[k] = std::clamp(up / typical_[k], 0.0, kLongestStep);
+      const double longest = at.log_scale ? kLongestLogStep / typical_[k] : kLongestStep;
+      low[k] = std::clamp(down / typical_[k], -longest, 0.0);
+      high[k] = std::clamp(up / typical_[k], 0.0, longest);
     }
+    return {low, high};
+  }
+
+  Eigen::VectorXd DampedStep(const QuadraticCost& model, double damping) const {
+    // In units of the typical changes, in which directions without influence are told from others.
+    QuadraticCost scaled{model.cost, typical_.cwiseProduct(model.gradient),
+                         typical_.asDiagonal() * model.information * typical_.asDiagonal()};
+    scaled.information.diagonal() *= 1 + damping;
+    const auto [low, high] = Room();
     return typical_.cwiseProduct(StepWithin(scaled, low, high));
   }
 

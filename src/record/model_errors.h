@@ -28,9 +28,8 @@ struct ModelErrors {
   double without_nuisances = 0;
   double unfitted_rms_over_sigma = 0;  // recordings that were not fitted; 0 if there are none
   bool has_held_out = false;           // if nothing was held out, the fitted frames are used
-  // The sum of the squares of the residuals that were not fitted, each divided by its σ: those of
-  // the held-out frames as in without_nuisances, and those of the recordings that were not fitted.
-  // Not in files.
+  // The sum of the squares of the residuals of the recordings that were not fitted, each divided by
+  // its σ. Not in files.
   double unfitted_squares = 0;
 };
 

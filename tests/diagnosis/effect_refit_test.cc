@@ -97,41 +97,67 @@ TEST(PredictsWorse, WhereTheHeldOutErrorGrowsByMoreThanNoiseExplains) {
   EXPECT_FALSE(predicts_worse(2.4, false));
 }
 
-// The prediction of an effect that is really missing is refuted by noise in fewer than one
-// recording in 100, whatever its size; and an effect that the held-out frames contradict is
-// refuted.
-TEST(Predicts, AllowsForChanceButNotForMore) {
-  LinearisedMisfit misfit;
-  misfit.parts.emplace_back();
-  misfit.parts.back().layout.times = {0, 0.1, 0.2, 0.3};
-  const double chance = HeldOutChance({.correlation_time = 0, .variance = 1.5}, misfit);
-  EXPECT_NEAR(chance, 1.5 * 2.33 * 2.33, 1e-9);
-  // Errors that persist from frame to frame make larger changes probable.
-  EXPECT_GT(HeldOutChance({.correlation_time = 0.1, .variance = 1.5}, misfit), 2 * chance);
-  std::mt19937 random(7);
+// A model that is linear in one amount, which its prior leaves free, or that lacks it (`with`
+// false), after a fit to the first half of the frames. The residual is noise and `amount` of the
+// column.
+EffectRefit MakeRefit(bool with, double amount, bool held_out_agrees, std::mt19937* random) {
   std::normal_distribution<double> normal;
-  constexpr int kRows = 50, kTimes = 4000;
-  for (const double size : {0.5, 2.33, 6.0}) {
+  FittedHypothesis hypothesis = MakeHypothesis(0);
+  hypothesis.parameters = 0;
+  hypothesis.priors = {{0, with ? 1.0 : 1e-9, false}};
+  LinearisedMisfit& misfit = hypothesis.misfit;
+  const Eigen::VectorXd column = misfit.jacobian.col(1);
+  misfit.jacobian = column;
+  misfit.parts[0].fitted.assign(kFrames, 0);
+  std::fill_n(misfit.parts[0].fitted.begin(), kFrames / 2, 1);
+  const Eigen::Index half = column.size() / 2;
+  misfit.residual = -amount * column;
+  if (!held_out_agrees) misfit.residual.tail(half) *= -1;
+  for (double& value : misfit.residual) value += kSigma * normal(*random);
+  EffectRefit refit;
+  refit.errors.has_held_out = true;
+  refit.at_fit = refit.hypothesis = hypothesis;
+  return refit;
+}
+
+// An effect that is really missing is refuted by noise in fewer than one recording in 100, whatever
+// its size; and an effect that the held-out frames contradict is refuted.
+TEST(Predicts, AllowsForChanceButNotForMore) {
+  constexpr NoiseLevel kWhite{0, 1};
+  constexpr int kTimes = 1000;
+  for (const double size : {0.0, 0.1, 0.3, 1.0}) {
     int refuted = 0;
-    for (int k = 0; k < kTimes; ++k) {
-      ModelErrors with, without;
-      with.has_held_out = without.has_held_out = true;
-      for (int row = 0; row < kRows; ++row) {
-        const double noise = std::sqrt(1.5) * normal(random);
-        with.unfitted_squares += noise * noise;
-        without.unfitted_squares += std::pow(noise - size / std::sqrt(kRows), 2);
-      }
-      refuted += !Predicts(with, without, chance);
+    for (unsigned k = 0; k < kTimes; ++k) {
+      std::mt19937 random(k), same(k);
+      refuted += !Predicts(MakeRefit(true, size, true, &random),
+                           MakeRefit(false, size, true, &same), kWhite);
     }
-    EXPECT_LE(refuted, kTimes / 80) << size;  // one in 100, with three standard errors
+    EXPECT_LE(refuted, kTimes / 100) << size;
   }
-  ModelErrors with, without;
-  with.has_held_out = without.has_held_out = true;
-  without.unfitted_squares = 100;
-  with.unfitted_squares = 110;
-  EXPECT_FALSE(Predicts(with, without, chance));
-  without.has_held_out = false;
-  EXPECT_TRUE(Predicts(with, without, chance));
+  std::mt19937 random(1), same(1);
+  EffectRefit with = MakeRefit(true, 2, false, &random);
+  EffectRefit without = MakeRefit(false, 2, false, &same);
+  EXPECT_FALSE(Predicts(with, without, kWhite));
+  without.errors.has_held_out = false;
+  EXPECT_TRUE(Predicts(with, without, kWhite));
+}
+
+// Recordings that were not fitted have no Jacobian; they count by their residuals, and less where
+// errors persist from frame to frame.
+TEST(Predicts, CountsRecordingsThatWereNotFitted) {
+  std::mt19937 random(1), same(1);
+  EffectRefit with = MakeRefit(true, 1, true, &random);
+  const EffectRefit without = MakeRefit(false, 1, true, &same);
+  const double gain = PredictiveGain(with, without, {0, 2});
+  with.errors.unfitted_squares = 100;
+  EXPECT_NEAR(PredictiveGain(with, without, {0, 2}), gain - 25, 1e-9);
+  const NoiseLevel persistent{0.02, 2};
+  EffectRefit alone = with;
+  alone.errors.unfitted_squares = 0;
+  const double lost =
+      PredictiveGain(alone, without, persistent) - PredictiveGain(with, without, persistent);
+  EXPECT_GT(lost, 0);
+  EXPECT_LT(lost, 12);
 }
 
 // A nuisance explains its part of the residual, at the cost that its prior puts on the amount.

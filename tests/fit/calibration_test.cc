@@ -279,9 +279,11 @@ TEST(Calibration, EndsIfTheStepThatTheJacobianPredictsGainsNothing) {
 // Derivatives cost several times as much as a prediction.
 TEST(Calibration, ComputesDerivativesAtTheStartAndAtTheEndOnly) {
   const Decay decay(2, 0.7, 1);
+  std::vector<CalibratedParameter> parameters = AmplitudeAndTime();
+  parameters[1].start = 0.3;  // less than a factor of e away, which one step may change
   int plain = 0, differentiated = 0;
   const Calibration found =
-      Calibrate(AmplitudeAndTime(), [&](const Eigen::VectorXd& at, bool with_jacobian) {
+      Calibrate(parameters, [&](const Eigen::VectorXd& at, bool with_jacobian) {
         ++(with_jacobian ? differentiated : plain);
         return decay(at, with_jacobian);
       });
@@ -314,6 +316,27 @@ TEST(Calibration, FollowsACurvedValleyToItsEnd) {
   EXPECT_TRUE(found.usable) << found.message;
   EXPECT_NEAR(found.parameters[0], 1, 0.05);
   EXPECT_NEAR(found.parameters[1], 1, 0.1);
+  EXPECT_LE(found.predictions, 10) << "straight steps alone take 37";
+}
+
+// A small amplitude gives the time hardly any influence, so that a step that is limited by the
+// influence alone moves it to the end of its range.
+TEST(Calibration, KeepsATimeThatHasLittleInfluenceYet) {
+  const Decay decay(2, 0.7, 1);
+  double shortest = 1, longest = 0;
+  std::vector<CalibratedParameter> parameters = AmplitudeAndTime();
+  parameters[0].start = 1e-3;
+  parameters[1].start = 0.2;
+  const Calibration found =
+      Calibrate(parameters, [&](const Eigen::VectorXd& at, bool with_jacobian) {
+        shortest = std::min(shortest, at[1]);
+        longest = std::max(longest, at[1]);
+        return decay(at, with_jacobian);
+      });
+  ASSERT_TRUE(found.usable) << found.message;
+  EXPECT_NEAR(found.parameters[1], 0.7, 0.05);
+  EXPECT_GT(shortest, 0.2 / 3);
+  EXPECT_LT(longest, 0.7 * 3);
 }
 
 TEST(Calibration, EndsWithTheBestParametersOfItsBudget) {
