@@ -17,6 +17,14 @@ size_t CountOf(const std::vector<HypothesisProbability>& hypotheses, Kind kind) 
                                            [&](const auto& one) { return one.kind == kind; }));
 }
 
+const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
+                            const std::string& b) {
+  for (const WeighedPair& pair : input.pairs)
+    if ((pair.first == a && pair.second == b) || (pair.first == b && pair.second == a))
+      return &pair;
+  return nullptr;
+}
+
 const WeighedRefit* FindRefit(const DecisionInput& input, const std::string& effect) {
   for (const WeighedRefit& refit : input.refits)
     if (refit.effect == effect) return &refit;
@@ -159,9 +167,10 @@ struct EffectWithFurther {
   TestedSpace tested;
   std::vector<NamedEvidence> further;
 
-  // The evidence of this effect together with a further one. Either of the two may be found first.
-  double With(const NamedEvidence& second) const {
-    return evidence + second.evidence - tested.space->discretisation + std::log(2.0);
+  // The evidence of this effect together with a further one that has this evidence beside it.
+  // Either of the two may be found first.
+  double With(double second) const {
+    return evidence + second - tested.space->discretisation + std::log(2.0);
   }
 };
 
@@ -174,7 +183,7 @@ struct Pair {
 // Each effect that was refitted, and the most probable one, together with the best further effect
 // beside it. The second effect is weighed to first order, which lets it replace the first one in
 // part, even where the two are one too many: where both were refitted, the smaller of the two
-// estimates counts.
+// estimates counts, and the refit of both where there is one.
 std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvidence>& first_order,
                           const std::vector<HypothesisProbability>& posterior) {
   std::vector<EffectWithFurther> effects;
@@ -208,7 +217,7 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
     pair.hypothesis.names = {name, second->name};
     pair.hypothesis.names.insert(pair.hypothesis.names.end(), input.adopted.begin(),
                                  input.adopted.end());
-    pair.hypothesis.evidence = first.With(*second);
+    pair.hypothesis.evidence = first.With(second->evidence);
     pair.tested = first.tested;
     const std::vector<int>& columns = first.tested.space->hypotheses[second->best].columns;
     pair.tested.columns.insert(pair.tested.columns.end(), columns.begin(), columns.end());
@@ -216,7 +225,15 @@ std::vector<Pair> PairsOf(const DecisionInput& input, const std::vector<NamedEvi
       if (other.effect != second->name) continue;
       for (const NamedEvidence& named : other.further)
         if (named.name == name)
-          pair.hypothesis.evidence = std::min(pair.hypothesis.evidence, other.With(named));
+          pair.hypothesis.evidence = std::min(pair.hypothesis.evidence, other.With(named.evidence));
+    }
+    if (const WeighedPair* refit = FindPair(input, name, second->name)) {
+      for (const EffectWithFurther& other : effects)
+        if (other.effect == refit->first)
+          pair.hypothesis.evidence =
+              other.With(refit->gain - std::log(static_cast<double>(input.families.size())));
+      pair.hypothesis.is_refuted = !refit->predicts;
+      pair.tested = {&refit->space, {}};
     }
     const bool is_known = std::any_of(pairs.begin(), pairs.end(), [&](const Pair& other) {
       return other.hypothesis.names[0] == second->name && other.hypothesis.names[1] == name;

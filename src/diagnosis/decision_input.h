@@ -18,10 +18,15 @@ struct WeighedRefit {
   std::string effect;
   double evidence = 0;    // log Bayes factor against the baseline at its best, at the refit
   HypothesisSpace space;  // along the refit; the effect's parameters are in its base
-  // Without the corrections of nuisances, the error of the held-out frames is not larger than that
-  // of the model without the effect by more than chance. An effect that is missing lowers it; a
-  // stand-in follows the fitted frames with the help of the corrections, and fails later.
-  bool predicts = true;
+  bool predicts = true;   // as Predicts (effect_refit.h) says
+};
+
+// The model fitted again with two effects at once.
+struct WeighedPair {
+  std::string first, second;
+  double gain = 0;        // log Bayes factor against the refit with the first alone
+  HypothesisSpace space;  // along the refit; the parameters of both are in its base
+  bool predicts = true;   // beyond the first alone
 };
 
 // The model fitted again with one nuisance beside those of the baseline.
@@ -33,6 +38,7 @@ struct WeighedNuisance {
 struct DecisionInput {
   HypothesisSpace baseline;  // along the motion of the fitted model
   std::vector<WeighedRefit> refits;
+  std::vector<WeighedPair> pairs;
   std::vector<WeighedNuisance> nuisances;
   // Nuisances that the ranking has taken into the base because they are so certain, with their log
   // Bayes factor against the model without them, and effects refitted in their place, with theirs.

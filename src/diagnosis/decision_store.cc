@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 3;
+constexpr int kSchemaVersion = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
@@ -101,13 +101,20 @@ json RefitsToJson(const std::vector<WeighedRefit>& refits) {
 
 void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& folder) {
   MakeFolder(folder);
-  json nuisances = json::array(), families = json::object();
+  json pairs = json::array(), nuisances = json::array(), families = json::object();
+  for (const WeighedPair& pair : input.pairs)
+    pairs.push_back({{"first", pair.first},
+                     {"second", pair.second},
+                     {"gain", pair.gain},
+                     {"predicts", pair.predicts},
+                     {"space", SpaceToJson(pair.space)}});
   for (const WeighedNuisance& nuisance : input.nuisances)
     nuisances.push_back({{"name", nuisance.name}, {"evidence", nuisance.evidence}});
   for (const auto& [effect, family] : input.families) families[effect] = FamilyName(family);
   const json all = {{"schema_version", kSchemaVersion},
                     {"baseline", SpaceToJson(input.baseline)},
                     {"refits", RefitsToJson(input.refits)},
+                    {"pairs", pairs},
                     {"nuisances", nuisances},
                     {"adopted", input.adopted},
                     {"adopted_evidence", input.adopted_evidence},
@@ -123,6 +130,8 @@ void SaveDecisionInput(const DecisionInput& input, const std::filesystem::path& 
   for (const auto* refits : {&input.refits, &input.in_place_of_adopted})
     for (const WeighedRefit& refit : *refits)
       WriteNpy(ProductsFile(folder, ++space), ProductsOf(refit.space.model));
+  for (const WeighedPair& pair : input.pairs)
+    WriteNpy(ProductsFile(folder, ++space), ProductsOf(pair.space.model));
   WriteFileAtomically(folder / "decision.json", all.dump(1) + "\n");
 }
 
@@ -146,6 +155,10 @@ DecisionInput LoadDecisionInput(const std::filesystem::path& folder) {
     };
     input.refits = read_refits("refits");
     input.in_place_of_adopted = read_refits("in_place_of_adopted");
+    for (const json& one : value.at("pairs"))
+      input.pairs.push_back({one.at("first"), one.at("second"), one.at("gain"),
+                             SpaceFromJson(one.at("space"), ProductsFile(folder, ++space)),
+                             one.at("predicts")});
     for (const json& one : value.at("nuisances"))
       input.nuisances.push_back({one.at("name"), one.at("evidence")});
     input.adopted = value.at("adopted").get<std::vector<std::string>>();

@@ -10,6 +10,7 @@
 #include "diagnosis/decision_maker.h"
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/effect_refit.h"
+#include "diagnosis/pair_refit.h"
 #include "diagnosis/recording_power.h"
 #include "diagnosis/refits.h"
 #include "diagnosis/thresholds.h"
@@ -106,26 +107,43 @@ Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked,
   }
 }
 
-// Looks closer where that may change the decision: where the best effect leaves more
-// than noise, or room for a second one, at what it leaves along its own motion; where nuisances
-// explain the residual, at effects in their place.
+// Where the best effect leaves more than noise, or room for a second one, decides anew with what it
+// leaves along its own motion, and with the fit of both.
+Decision DecideAlongBest(const RefitContext& context, const RefittedRanking& ranked,
+                         const RefitNoise& noise, const DiagnosisOptions& options,
+                         Decision decision, DecisionInput* input) {
+  const auto best = [&]() -> const HypothesisProbability& {
+    return decision.record.probabilities.front();
+  };
+  const auto is_pair = [&] { return best().kind == HypothesisProbability::Kind::kPair; };
+  if ((decision.verdict != Verdict::kNotInLibrary && !is_pair()) || best().names.empty())
+    return decision;
+  const std::string name = best().names.front();
+  for (size_t k = 0; k < ranked.effects.size(); ++k) {
+    const RankedEffect& effect = ranked.effects[k];
+    if (effect.scored.candidate.type != name || !ranked.IsUsable(k)) continue;
+    const RefittedModel model(context.model, effect.scored, ranked.refits[k], options.without,
+                              {context.ranking, noise.level});
+    for (WeighedRefit& refit : input->refits)
+      if (refit.effect == name) refit.space = model.space();
+    decision = Decide(*input);
+    if (!is_pair() || std::count(best().names.begin(), best().names.end(), name) == 0) break;
+    const std::string& further = best().names[0] == name ? best().names[1] : best().names[0];
+    if (std::optional<WeighedPair> pair = model.RefitWith(further)) {
+      input->pairs.push_back(*std::move(pair));
+      decision = Decide(*input);
+    }
+    break;
+  }
+  return decision;
+}
+
+// Looks closer where that may change the decision: along the motion of the best effect and, where
+// nuisances explain the residual, at effects in their place.
 void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, const RefitNoise& noise,
                 const DiagnosisOptions& options, Decision decision, Diagnosis* diagnosis) {
   DecisionInput& input = diagnosis->decision_input;
-  const HypothesisProbability first = decision.record.probabilities.front();
-  if (decision.verdict == Verdict::kNotInLibrary ||
-      first.kind == HypothesisProbability::Kind::kPair) {
-    const std::string best = first.names.empty() ? "" : first.names.front();
-    for (size_t k = 0; k < ranked.effects.size(); ++k) {
-      const RankedEffect& effect = ranked.effects[k];
-      if (effect.scored.candidate.type != best || !ranked.IsUsable(k)) continue;
-      for (WeighedRefit& refit : input.refits)
-        if (refit.effect == best)
-          refit.space = SpaceAlong(context.model, effect.scored, ranked.refits[k], options.without,
-                                   {context.ranking, noise.level});
-      decision = Decide(input);
-    }
-  }
+  decision = DecideAlongBest(context, ranked, noise, options, std::move(decision), &input);
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
     diagnosis->alternatives = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
     AddAlternatives(diagnosis->alternatives, &input);

@@ -164,21 +164,6 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
                      type, noise);
 }
 
-HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                           const EffectRefit& refit, const std::vector<std::string>& without,
-                           const DecidedBase& decided) {
-  SceneColumns scene = decided.ranking.scene;
-  // What an effect leaves may be a hundredth of what it explains, so that the columns of the mesh
-  // and the time step must be those of its own motion.
-  scene.nuisances.clear();
-  if (effect.candidate.IsPilot()) scene.pilots.reset();
-  const PredictionStudy study = WithEffect(baseline.problem.StudyAt(baseline.values), effect);
-  const CalibrationProblem with(study, baseline.problem.body()->mesh);
-  return RankEffects(with, refit.calibration.parameters, baseline.progress, without, scene,
-                     &decided)
-      .space;
-}
-
 namespace {
 
 // A change of the parameters in the units of MovedBy, and the log evidence that it would gain.
@@ -271,12 +256,12 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
 }
 
 ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
-                        RefitFrom from, const Eigen::VectorXd& refitted) {
+                        RefitFrom from, const Eigen::VectorXd& refitted, double hopeless_cost) {
   const Eigen::Index own = extended.OwnCount();
   Eigen::VectorXd start;
   if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
   if (start.size() == 0) start = extended.Start(refitted);
-  ExtendedFit fit = extended.CalibrateFrom(start, stage);
+  ExtendedFit fit = extended.CalibrateFrom(start, stage, hopeless_cost);
   const bool converged =
       !fit.calibration.estimates.empty() && fit.calibration.rms <= kThresholds.refit.converged_rms;
   // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
@@ -285,7 +270,7 @@ ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stag
   const Calibration afresh = extended.CalibrateAfresh();
   if (afresh.parameters.size() != own) return fit;
   start.head(own) = afresh.parameters;
-  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there");
+  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there", hopeless_cost);
   const int predictions =
       fit.calibration.predictions + afresh.predictions + other.calibration.predictions;
   ExtendedFit& better = IsBetter(other.calibration, fit.calibration) ? other : fit;
@@ -325,7 +310,7 @@ bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {
 
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off, RefitFrom from,
-                  const EffectRefit* without) {
+                  const EffectRefit* without, double hopeless_cost) {
   const LinearisedMisfit& misfit = baseline.misfit;
   const ExtendedProblem extended(baseline, effect, adopted);
   const CalibrationProblem& with = extended.problem();
@@ -337,7 +322,7 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   }
   ExtendedFit fit =
       FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
-                  effect != nullptr && is_far_off, from, refitted);
+                  effect != nullptr && is_far_off, from, refitted, hopeless_cost);
   EffectRefit refit;
   refit.calibration = std::move(fit.calibration);
   if (refit.calibration.estimates.empty()) {

@@ -7,6 +7,7 @@
 #define LACUNA_DIAGNOSIS_EFFECT_REFIT_H_
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -68,13 +69,6 @@ RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
                         const std::string& type, const NoiseLevel& noise);
 
-// The same with columns along the motion of the refitted model, from a new ranking with the
-// nuisances that `decided`, the baseline's ranking, has adopted. Its pilots are simulated again
-// only if the effect is one of them, so that it does not stand beside itself. Throws Interrupted.
-HypothesisSpace SpaceAlong(const BaselineModel& baseline, const ScoredVariant& effect,
-                           const EffectRefit& refit, const std::vector<std::string>& without,
-                           const DecidedBase& decided);
-
 // Whether a refit gained less than RefitThresholds::kept_share of the `predicted` first-order
 // evidence although more could be explained. `noise` is the squared residual expected of noise; a
 // refit that explains most of what exceeds it has found its minimum, and first order predicted too
@@ -105,11 +99,13 @@ enum class RefitFrom { kFirstOrder, kFixedSize };
 // alone, so that the baseline is compared at its best too. `is_far_off` says that the baseline is
 // far from the measurements: a refit that has not converged is then repeated from the result of an
 // independent fit of the model with the effect. `without`: the refit with the same nuisances and
-// without the effect, beside whose parameters the refit may start; null: unknown. A failed fit
-// gives a message. Refits of one baseline may run in several threads. Throws Interrupted.
+// without the effect, beside whose parameters the refit may start; null: unknown. `hopeless_cost`:
+// as in CalibrationOptions. A failed fit gives a message. Refits of one baseline may run in several
+// threads. Throws Interrupted.
 EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off,
-                  RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr);
+                  RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr,
+                  double hopeless_cost = std::numeric_limits<double>::infinity());
 
 }  // namespace lacuna
 

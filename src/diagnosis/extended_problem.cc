@@ -165,7 +165,10 @@ Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) cons
     const Eigen::VectorXd part_way = PartWay(share, baseline_.values);
     Eigen::VectorXd at = start.size() > 0 ? start : part_way;
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
-    const Calibration fitted = CalibrateFrom(at, stage, /*holds_effect=*/true).calibration;
+    const Calibration fitted =
+        Fit(ParametersFrom(at, /*holds_effect=*/true), stage,
+            {.max_iterations = kHoldIterations, .cost_tolerance = kTolerance})
+            .calibration;
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
     start = fitted.parameters;
@@ -188,7 +191,7 @@ std::vector<CalibratedParameter> ExtendedProblem::ParametersFrom(const Eigen::Ve
 }
 
 std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& parameters,
-                                   const std::string& purpose) const {
+                                   const std::string& purpose, double hopeless_cost) const {
   std::string all = purpose;
   if (effect_ != nullptr) {
     all += effect_->candidate.type + effect_->candidate.variant;
@@ -196,7 +199,7 @@ std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& param
   }
   for (const CalibratedParameter& parameter : parameters)
     Append(Eigen::Vector3d(parameter.start, parameter.prior_mean, parameter.prior_deviation), &all);
-  Append(Eigen::VectorXd::Constant(1, study_.time_step), &all);
+  Append(Eigen::Vector2d(study_.time_step, hopeless_cost), &all);
   Append(residual_, &all);
   Append(nuisance_columns_, &all);
   return HashBytes(all);
@@ -204,9 +207,10 @@ std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& param
 
 Calibration ExtendedProblem::Kept(const std::string& purpose,
                                   const std::vector<CalibratedParameter>& parameters,
+                                  double hopeless_cost,
                                   const std::function<Calibration()>& fit) const {
   if (baseline_.kept == nullptr) return fit();
-  const std::string key = KeyOf(parameters, purpose);
+  const std::string key = KeyOf(parameters, purpose, hopeless_cost);
   if (const Calibration* kept = baseline_.kept->Find(key)) return *kept;
   const Calibration calibration = fit();
   baseline_.kept->Keep(key, calibration);
@@ -214,8 +218,17 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
 }
 
 ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
-                                           bool holds_effect) const {
-  const std::vector<CalibratedParameter> parameters = ParametersFrom(start, holds_effect);
+                                           double hopeless_cost) const {
+  return Fit(ParametersFrom(start, /*holds_effect=*/false), stage,
+             {.max_iterations = kIterations,
+              .cost_tolerance = kTolerance,
+              .max_predictions = kThresholds.refit.most_predictions,
+              .hopeless_cost = hopeless_cost});
+}
+
+ExtendedFit ExtendedProblem::Fit(const std::vector<CalibratedParameter>& parameters,
+                                 const std::string& stage,
+                                 const CalibrationOptions& options) const {
   Memory memory;
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
@@ -226,12 +239,8 @@ ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
   };
   baseline_.progress->Begin(stage, 0);
   ExtendedFit fit;
-  fit.calibration = Kept("fit", parameters, [&] {
-    return Calibrate(parameters, predict,
-                     {.max_iterations = holds_effect ? kHoldIterations : kIterations,
-                      .cost_tolerance = kTolerance,
-                      .max_predictions = kThresholds.refit.most_predictions});
-  });
+  fit.calibration = Kept("fit", parameters, options.hopeless_cost,
+                         [&] { return Calibrate(parameters, predict, options); });
   baseline_.progress->End(fit.calibration.usable ? "" : fit.calibration.message);
   if (memory.latest.usable && memory.of_latest == fit.calibration.parameters.head(own_))
     fit.misfit = std::move(memory.latest);
@@ -239,7 +248,7 @@ ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const s
 }
 
 Calibration ExtendedProblem::CalibrateAfresh() const {
-  return Kept("afresh", with_.parameters(),
+  return Kept("afresh", with_.parameters(), kInfinity,
               [&] { return FitInStages(with_, with_.Start(), baseline_.progress); });
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -71,22 +72,24 @@ class ExtendedProblem {
   // Interrupted.
   Eigen::VectorXd StartAtFixedSize(const std::string& stage) const;
 
-  // Fits all parameters. `holds_effect`: the effect stays near its start, by a narrow prior. Throws
-  // Interrupted.
+  // Fits all parameters. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted.
   ExtendedFit CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
-                            bool holds_effect = false) const;
+                            double hopeless_cost = std::numeric_limits<double>::infinity()) const;
   // Fits the model with the effect, but without adopted nuisances, from the study's own start.
   Calibration CalibrateAfresh() const;
 
  private:
+  // `holds_effect`: the effect stays near its start, by a narrow prior.
   std::vector<CalibratedParameter> ParametersFrom(const Eigen::VectorXd& start,
                                                   bool holds_effect) const;
+  ExtendedFit Fit(const std::vector<CalibratedParameter>& parameters, const std::string& stage,
+                  const CalibrationOptions& options) const;
   // The kept result of this fit, or else that of `fit`, which is then kept. `purpose` distinguishes
   // fits with the same start.
   Calibration Kept(const std::string& purpose, const std::vector<CalibratedParameter>& parameters,
-                   const std::function<Calibration()>& fit) const;
-  std::string KeyOf(const std::vector<CalibratedParameter>& parameters,
-                    const std::string& purpose) const;
+                   double hopeless_cost, const std::function<Calibration()>& fit) const;
+  std::string KeyOf(const std::vector<CalibratedParameter>& parameters, const std::string& purpose,
+                    double hopeless_cost) const;
   // What one prediction of a fit hands on to the next.
   struct Memory {
     CalibrationProblem::FitMemory of_problem;

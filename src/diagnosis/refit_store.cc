@@ -23,7 +23,8 @@ json ToJson(const Calibration& calibration) {
           {"parameters", std::vector<double>(parameters.begin(), parameters.end())},
           {"estimates", estimates},
           {"predictions", calibration.predictions},
-          {"rms", calibration.rms}};
+          {"rms", calibration.rms},
+          {"cost", calibration.cost}};
 }
 
 Calibration FromJson(const json& value) {
@@ -37,6 +38,7 @@ Calibration FromJson(const json& value) {
     calibration.estimates.push_back(EstimateFromJson(estimate));
   calibration.predictions = value.at("predictions");
   calibration.rms = value.at("rms");
+  calibration.cost = value.at("cost");
   return calibration;
 }
 

@@ -31,49 +31,13 @@ bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit
                     EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
 }
 
-// Refits one effect from its best variants, and from a fixed size where that seems to end in a
-// local minimum. Writes the result into the effect, but not its evidence. `is_found`: another refit
-// has come down to the noise, which shows that first order leads to the right minimum; a model that
-// is far off is then not fitted afresh with this effect.
-EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
-                        const EffectRefit& without, bool is_found, RankedEffect* effect) {
-  const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
-  const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
-    return Refit(context.model, &variant, adopted, is_far_off, start, &without);
-  };
-  EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
-  ScoredVariant best = effect->scored;
-  int predictions = refit.calibration.predictions;
-  const auto has_budget = [&] { return predictions < kThresholds.refit.most_of_effect; };
-  for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
-    if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
-      break;
-    if (!has_budget()) break;
-    EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
-    predictions += other.calibration.predictions;
-    if (!IsBetter(other, refit, context.ranking.noise)) continue;
-    refit = std::move(other);
-    best = elsewhere;
-  }
-  if (!effect->scored.candidate.IsPilot() && has_budget() &&
-      IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
-    EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
-    if (IsBetter(other, refit, context.ranking.noise)) {
-      refit = std::move(other);
-      best = effect->scored;
-    }
-  }
-  static_cast<ScoredVariant&>(effect->scored) = std::move(best);
-  effect->refitted = true;
-  effect->refit_message = refit.message;
-  effect->errors = refit.errors;
-  if (refit.message.empty()) {
-    effect->values = refit.effect;
-    effect->model = refit.model;
-    effect->sizes = refit.sizes;
-    effect->others = refit.others;
-  }
-  return refit;
+// The cost at which a refit would be beaten by the best one so far as clearly as IsBeaten() asks.
+double HopelessCost(const RefittedRanking& ranked) {
+  if (!ranked.best) return std::numeric_limits<double>::infinity();
+  const double best = ranked.refits[*ranked.best].calibration.cost;
+  const RefitThresholds& thresholds = kThresholds.refit;
+  return best + std::max(thresholds.beaten_by,
+                         thresholds.beaten_share * (ranked.baseline.calibration.cost - best));
 }
 
 void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
@@ -83,7 +47,8 @@ void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranke
   EffectRefit& refit = ranked->refits[effect];
   const bool is_found = ranked->best && RmsOverSigma(ranked->refits[*ranked->best].hypothesis) <=
                                             kThresholds.refit.converged_rms;
-  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, is_found, &own);
+  refit = RefitEffect(context, context.ranking.adopted, ranked->baseline, is_found, &own,
+                      HopelessCost(*ranked));
   if (!refit.message.empty()) return;
   own.predicts = Predicts(refit, ranked->baseline, context.ranking.noise);
   if (!own.predicts) return;
@@ -194,6 +159,48 @@ std::vector<ScoredEffect> ScoredBeside(const RefitContext& context, const Effect
 
 double RmsOverSigma(const FittedHypothesis& hypothesis) {
   return RmsInNoise(hypothesis.residual, hypothesis.misfit);
+}
+
+EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
+                        const EffectRefit& without, bool is_found, RankedEffect* effect,
+                        double hopeless_cost) {
+  const bool is_far_off = !is_found && RmsOverSigma(without.hypothesis) > kFarFromTruth;
+  const auto from = [&](const ScoredVariant& variant, RefitFrom start) {
+    return Refit(context.model, &variant, adopted, is_far_off, start, &without, hopeless_cost);
+  };
+  EffectRefit refit = from(effect->scored, RefitFrom::kFirstOrder);
+  ScoredVariant best = effect->scored;
+  int predictions = refit.calibration.predictions;
+  const auto has_budget = [&] { return predictions < kThresholds.refit.most_of_effect; };
+  for (const ScoredVariant& elsewhere : effect->scored.elsewhere) {
+    if (elsewhere.score.evidence < kThresholds.refit.variant_share * effect->scored.score.evidence)
+      break;
+    if (!has_budget()) break;
+    EffectRefit other = from(elsewhere, RefitFrom::kFirstOrder);
+    predictions += other.calibration.predictions;
+    if (!IsBetter(other, refit, context.ranking.noise)) continue;
+    refit = std::move(other);
+    best = elsewhere;
+  }
+  if (!effect->scored.candidate.IsPilot() && has_budget() &&
+      IsLikelyLocalMinimum(context.ranking, refit, without, effect->scored.score)) {
+    EffectRefit other = from(effect->scored, RefitFrom::kFixedSize);
+    if (IsBetter(other, refit, context.ranking.noise)) {
+      refit = std::move(other);
+      best = effect->scored;
+    }
+  }
+  static_cast<ScoredVariant&>(effect->scored) = std::move(best);
+  effect->refitted = true;
+  effect->refit_message = refit.message;
+  effect->errors = refit.errors;
+  if (refit.message.empty()) {
+    effect->values = refit.effect;
+    effect->model = refit.model;
+    effect->sizes = refit.sizes;
+    effect->others = refit.others;
+  }
+  return refit;
 }
 
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,

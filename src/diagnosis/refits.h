@@ -8,6 +8,7 @@
 #ifndef LACUNA_DIAGNOSIS_REFITS_H_
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,8 +52,18 @@ struct RefitNoise {
 // The rms residual over all frames, adopted nuisances at their best, over σ.
 double RmsOverSigma(const FittedHypothesis& hypothesis);
 
+// Refits one effect from its best variants, and from a fixed size where that seems to end in a
+// local minimum. Writes the result into the effect, but not its evidence. `without`: the refit with
+// the same nuisances alone. `is_found`: another refit has come down to the noise, which shows that
+// first order leads to the right minimum; a model that is far off is then not fitted afresh with
+// this effect. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted, as do the other
+// functions that fit.
+EffectRefit RefitEffect(const RefitContext& context, const AdoptedNuisances& adopted,
+                        const EffectRefit& without, bool is_found, RankedEffect* effect,
+                        double hopeless_cost = std::numeric_limits<double>::infinity());
+
 // Fits the model without an effect. No effect is refitted yet; `wanted` is the number of refits
-// that the user asks for. Throws Interrupted, as do the other functions that fit.
+// that the user asks for.
 RefittedRanking StartRefits(const RefitContext& context, const std::vector<ScoredEffect>& effects,
                             int wanted);
 

@@ -39,6 +39,8 @@ constexpr double kLeastOfCurved = 0.1;
 // factor, down to the least one.
 constexpr double kMostBent = 0.75;
 constexpr double kNextShare = 0.8, kLeastShare = 0.05;
+// A search is not called hopeless before it has made so many steps.
+constexpr int kStepsBeforeHopeless = 3;
 // A search whose steps become shorter than this, in typical changes, ends.
 constexpr double kShortestStep = 1e-6;
 
@@ -123,6 +125,15 @@ class BoundedDescent {
         break;
       }
       if (IsUsedUp()) break;
+      if (IsHopeless(model)) {
+        if (!is_exact_) {
+          differentiate();
+          continue;
+        }
+        end_.message =
+            "the search was ended because it would not come close enough to the measurements";
+        break;
+      }
 
       ++end_.iterations;
       const Eigen::VectorXd values = Moved(step);
@@ -157,6 +168,7 @@ class BoundedDescent {
       }
     }
     if (!is_exact_) Differentiate();
+    end_.cost = cost_;
     if (!end_.usable && failed_beside.empty() && !undifferentiable.empty())
       end_.message += "; it could not take derivatives everywhere: " + undifferentiable;
     return std::move(end_);
@@ -190,6 +202,13 @@ class BoundedDescent {
       return false;
     }
     return true;
+  }
+
+  // Whether the search will not come down to CalibrationOptions::hopeless_cost. In a curved valley
+  // a full step gains less than there is to gain.
+  bool IsHopeless(const QuadraticCost& model) const {
+    return end_.iterations >= kStepsBeforeHopeless &&
+           cost_ * (1 - 2 * model.GainOf(Step(model, kInfinity))) > options_.hopeless_cost;
   }
 
   // ½ ‖r‖² plus the priors; infinite if the prediction failed.

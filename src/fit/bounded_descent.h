@@ -5,8 +5,8 @@
 // information matrix, over the box that the bounds leave (active_bounds.h). Parameters therefore
 // reach their bounds, stay on them and leave them without a change of variables. The damping is the
 // least that keeps a step within a trust region, which is unlimited until the first step that does
-// not reduce the cost (Moré, Lect. Notes Math. 630, 1978). What a refused step shows of the curvature
-// of the valley bends the next one.
+// not reduce the cost (Moré, Lect. Notes Math. 630, 1978). What a refused step shows of the
+// curvature of the valley bends the next one.
 //
 // A prediction costs much more than a step, and its derivatives several times as much as the
 // prediction. Steps are therefore predicted without derivatives, and secants (Broyden, Math.
@@ -31,6 +31,7 @@ struct DescentEnd {
   Prediction prediction;          // at these parameters, with its Jacobian
   bool usable = false;            // whether the search has converged
   std::string message;            // why it has not
+  double cost = 0;                // ½ ‖r‖² and the priors there
   int iterations = 0;             // steps that were tried
   int predictions = 0;            // evaluations of the prediction function
   bool is_out_of_budget = false;  // CalibrationOptions::max_predictions has ended it

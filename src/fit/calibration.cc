@@ -168,12 +168,14 @@ Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
     return calibration;
   }
   calibration.start_rms = RootMeanSquare(last.residual);
+  calibration.cost = 0.5 * last.residual.squaredNorm();
   calibration.usable = true;
   if (count > 0) {
     DescentEnd end = Descend(parameters, options, std::move(last), predict);
     calibration.parameters = std::move(end.parameters);
     calibration.usable = end.usable;
     calibration.message = std::move(end.message);
+    calibration.cost = end.cost;
     calibration.iterations = end.iterations;
     calibration.predictions += end.predictions;
     calibration.is_out_of_budget = end.is_out_of_budget;

@@ -30,6 +30,7 @@ struct Calibration {
   std::vector<ParameterEstimate> estimates;  // empty if the first prediction failed
   Eigen::MatrixXd covariance;     // covariance of φ with prior, `inflation` and `memory`
   double start_rms = 0, rms = 0;  // √(‖r‖²/n) at the start and at the solution
+  double cost = 0;  // ½ ‖r‖² and half of the squares of the priors at the solution
   // √v = max(1, rms). All variances of the noise are multiplied by v, because a model that misses
   // the data by more than the noise determines its parameters less well than the noise would allow.
   double inflation = 1;

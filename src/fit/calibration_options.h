@@ -16,6 +16,9 @@ struct CalibrationOptions {
   // The search ends once it has made so many predictions; its best parameters are then given, and
   // the result says that it has not converged. A larger value delays giving up.
   int max_predictions = std::numeric_limits<int>::max();
+  // The search also ends, as not converged, where twice the gain of a full step would leave a cost
+  // (Calibration::cost) above this. It makes a few steps first.
+  double hopeless_cost = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace lacuna

@@ -157,6 +157,31 @@ TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
 }
 
+// The fit with both effects replaces what first order says of the second one beside the first.
+TEST(Decide, BelievesTheRefitOfAPairMoreThanFirstOrder) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd noise = SyntheticSpace::Noise(13);
+  const Eigen::VectorXd gravity = synthetic.Of("gravity") * Eigen::Vector3d(12, -9, 8);
+  const Eigen::VectorXd fibres = 10 * synthetic.Of("fibres");
+  // First order leaves a part of the fibres, as where their direction is another one.
+  DecisionInput input =
+      InputOf(synthetic, noise - gravity - fibres + 2 * synthetic.unknown.rowwise().sum());
+  input.refits.push_back(
+      {"gravity", 100, synthetic.With(noise - fibres + 2 * synthetic.unknown.rowwise().sum())});
+  EXPECT_EQ(Decide(input).verdict, Verdict::kNotInLibrary);
+  input.pairs.push_back({"gravity", "fibres", 60, synthetic.With(noise)});
+  const Decision both = Decide(input);
+  EXPECT_EQ(both.verdict, Verdict::kMissing);
+  EXPECT_THAT(both.names, UnorderedElementsAre("gravity", "fibres"));
+  // A second effect that gains nothing in the refit is not named, and neither is one that
+  // the held-out frames refute.
+  input.pairs.front().gain = 1;
+  EXPECT_THAT(Decide(input).names, ElementsAre("gravity"));
+  input.pairs.front().gain = 60;
+  input.pairs.front().predicts = false;
+  EXPECT_THAT(Decide(input).names, ElementsAre("gravity"));
+}
+
 // An effect that does not lower the error of the held-out frames is not named, alone or in a pair.
 TEST(Decide, DoesNotNameARefutedEffect) {
   const SyntheticSpace synthetic;
@@ -296,6 +321,7 @@ TEST(DecisionStore, DecidesAgainAsBefore) {
   const SyntheticSpace synthetic;
   DecisionInput input = InputOf(synthetic, SyntheticSpace::Noise(18) - 9 * synthetic.Of("drag"));
   input.refits.push_back({"drag", 30, synthetic.With(SyntheticSpace::Noise(18))});
+  input.pairs.push_back({"drag", "fibres", 7, synthetic.With(SyntheticSpace::Noise(20)), false});
   input.nuisances.push_back({"clock", 2});
   input.natural_value["gravity"] = 1.5;
   input.baseline.hypotheses.front().selection_penalty = 0.7;

@@ -354,6 +354,28 @@ TEST(Calibration, EndsWithTheBestParametersOfItsBudget) {
   EXPECT_FALSE(Calibrate(AmplitudeAndTime(), decay, {.max_predictions = 500}).is_out_of_budget);
 }
 
+// A search that cannot come down to a rival's cost need not go on to its own end.
+TEST(Calibration, EndsWhereItIsHopeless) {
+  // Steps towards a double root halve the way to it. The floor is a cost of 100.
+  const auto double_root = [](const Eigen::VectorXd& at, bool) {
+    Prediction prediction{true, "", Eigen::VectorXd(2), Eigen::MatrixXd(2, 1)};
+    prediction.residual << 100 * at[0] * at[0], std::sqrt(200.0);
+    prediction.jacobian << 200 * at[0], 0;
+    return prediction;
+  };
+  const std::vector<CalibratedParameter> start = {{.name = "x", .start = 10}};
+  const Calibration whole = Calibrate(start, double_root);
+  ASSERT_TRUE(whole.usable) << whole.message;
+  EXPECT_NEAR(whole.cost, 100, 1);
+  EXPECT_EQ(Calibrate(start, double_root, {.hopeless_cost = 101}).parameters, whole.parameters);
+  const Calibration hopeless = Calibrate(start, double_root, {.hopeless_cost = 30});
+  EXPECT_FALSE(hopeless.usable);
+  EXPECT_FALSE(hopeless.is_out_of_budget);
+  EXPECT_LT(hopeless.predictions, whole.predictions);
+  EXPECT_THAT(hopeless.message, testing::HasSubstr("close enough"));
+  EXPECT_EQ(hopeless.estimates.size(), 1u);
+}
+
 // A motion may be simulated where its derivative cannot be computed.
 TEST(Calibration, ReportsASolutionThatCannotBeLinearised) {
   const Decay decay(2, 0.7, 1);
