@@ -112,7 +112,7 @@ EffectRefit MakeRefit(bool with, double amount, bool held_out_agrees, std::mt199
   std::fill_n(misfit.parts[0].fitted.begin(), kFrames / 2, 1);
   const Eigen::Index half = column.size() / 2;
   misfit.residual = -amount * column;
-  if (!held_out_agrees) misfit.residual.tail(half) *= -1;
+  if (!held_out_agrees) misfit.residual.tail(half).setZero();
   for (double& value : misfit.residual) value += kSigma * normal(*random);
   EffectRefit refit;
   refit.errors.has_held_out = true;
