@@ -9,11 +9,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "diagnosis/decision.h"
 #include "diagnosis/diagnosed_bar.h"
 #include "diagnosis/recorded_diagnosis.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/verdict.h"
 #include "effects/catalogue.h"
+#include "effects/gravity.h"
 #include "report/verdict_text.h"
 #include "support/temporary_folder.h"
 
@@ -70,6 +72,22 @@ TEST(Diagnosis, DoesNotTakeTheErrorOfAVeryCoarseMeshForAnEffect) {
       [](const ScoredNuisance& nuisance) { return nuisance.candidate.card.name == "mesh"; });
   ASSERT_NE(mesh, diagnosis.nuisances.end());
   EXPECT_GT(mesh->candidate.columns.cwiseAbs().maxCoeff(), truth.noise);
+}
+
+TEST(Diagnosis, FitsTheMostProbablePairOfEffects) {
+  HeldBarTruth truth;
+  truth.alpha = 8;
+  const Eigen::Vector3d steady(0, 0.05, 0.1);  // N, of a bar of 32 g
+  truth.body_force = [&](double) { return steady; };
+  const Diagnosis diagnosis = DiagnoseBar(truth, kWithoutDamping);
+  ASSERT_EQ(diagnosis.decision_input.pairs.size(), 1u) << ExplainVerdict(RecordOf(diagnosis));
+  const WeighedPair& pair = diagnosis.decision_input.pairs.front();
+  EXPECT_EQ(pair.first, "mass_damping");
+  // A force on a part of the bar is much like one on all of it.
+  EXPECT_EQ(FamilyOf(diagnosis.decision_input.families, pair.second), GravityCard().family);
+  EXPECT_TRUE(pair.predicts);
+  EXPECT_GT(pair.gain, 20);
+  EXPECT_EQ(diagnosis.decision.probabilities.front().kind, HypothesisProbability::Kind::kPair);
 }
 
 // Without a time step in the experiment, the first fit starts with half of the frame spacing.
