@@ -93,33 +93,19 @@ Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
   return observed;
 }
 
-namespace {
-
-// The whitened rows that were observed: of fitted frames, and of those that were held out.
-struct SquaresOfRows {
-  double fitted = 0, held_out = 0;  // sums
+double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
+  double fitted_squares = 0, held_out_squares = 0;
   Eigen::Index fitted_rows = 0, held_out_rows = 0;
-};
-
-SquaresOfRows SquaresOf(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
-  SquaresOfRows squares;
   for (const LinearisedMisfit::Part& part : misfit.parts) {
     for (Eigen::Index row = 0; row < part.layout.Rows(); ++row) {
       if (part.layout.count[row] == 0) continue;
       const bool fitted = part.fitted[row / part.layout.series];
-      (fitted ? squares.fitted : squares.held_out) += std::pow(whitened[part.first_row + row], 2);
-      ++(fitted ? squares.fitted_rows : squares.held_out_rows);
+      (fitted ? fitted_squares : held_out_squares) += std::pow(whitened[part.first_row + row], 2);
+      ++(fitted ? fitted_rows : held_out_rows);
     }
   }
-  return squares;
-}
-
-}  // namespace
-
-double HeldOutInNoise(const Eigen::VectorXd& whitened, const LinearisedMisfit& misfit) {
-  const SquaresOfRows of = SquaresOf(whitened, misfit);
-  if (of.held_out_rows > 0) return std::sqrt(of.held_out / static_cast<double>(of.held_out_rows));
-  return of.fitted_rows > 0 ? std::sqrt(of.fitted / static_cast<double>(of.fitted_rows)) : 0;
+  if (held_out_rows > 0) return std::sqrt(held_out_squares / static_cast<double>(held_out_rows));
+  return fitted_rows > 0 ? std::sqrt(fitted_squares / static_cast<double>(fitted_rows)) : 0;
 }
 
 }  // namespace lacuna

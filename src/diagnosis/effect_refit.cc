@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "calibration/held_out_misfit.h"
-#include "diagnosis/model_change.h"
 #include "diagnosis/thresholds.h"
 #include "fit/active_bounds.h"
 
@@ -299,8 +298,10 @@ double PredictiveGain(const EffectRefit& with, const EffectRefit& without,
 }
 
 bool Predicts(const EffectRefit& with, const EffectRefit& without, const NoiseLevel& noise) {
-  constexpr double kOften = 100;
-  return !without.errors.has_held_out || PredictiveGain(with, without, noise) >= -std::log(kOften);
+  // Of recordings in which the effect is missing, one in so many at most refutes it. More: wrong
+  // effects that fail later in the motion stay possible.
+  constexpr double kOneIn = 100;
+  return !without.errors.has_held_out || PredictiveGain(with, without, noise) >= -std::log(kOneIn);
 }
 
 bool PredictsWorse(const ModelErrors& with, const ModelErrors& without) {

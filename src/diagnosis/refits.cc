@@ -31,13 +31,16 @@ bool IsLikelyLocalMinimum(const EffectRanking& ranking, const EffectRefit& refit
                     EvidenceOf(refit.hypothesis, ranking.noise), noise, score.evidence);
 }
 
-// The cost at which a refit would be beaten by the best one so far as clearly as IsBeaten() asks.
+// By how much an effect must be behind the best refit to be negligible, if that gains so much.
+double DecisiveLead(double gain) {
+  return std::max(kThresholds.refit.beaten_by, kThresholds.refit.beaten_share * gain);
+}
+
+// The cost of the fitted frames above which a refit is negligible beside the best one so far.
 double HopelessCost(const RefittedRanking& ranked) {
   if (!ranked.best) return std::numeric_limits<double>::infinity();
   const double best = ranked.refits[*ranked.best].calibration.cost;
-  const RefitThresholds& thresholds = kThresholds.refit;
-  return best + std::max(thresholds.beaten_by,
-                         thresholds.beaten_share * (ranked.baseline.calibration.cost - best));
+  return best + DecisiveLead(ranked.baseline.calibration.cost - best);
 }
 
 void RefitOne(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
@@ -71,11 +74,10 @@ bool IsBeaten(const RefittedRanking& ranked, size_t effect) {
   if (ranked.best && AreOfOneFamily(ranked.effects[effect], ranked.effects[*ranked.best]) &&
       !ranked.effects[effect].scored.candidate.IsPilot())
     return false;
-  const RefitThresholds& thresholds = kThresholds.refit;
   // First order may underrate a rival as much as it has underrated the best effect.
   const double lead =
       ranked.best_evidence - ranked.underrated - ranked.effects[effect].scored.score.evidence;
-  return lead > std::max(thresholds.beaten_by, thresholds.beaten_share * ranked.best_evidence);
+  return lead > DecisiveLead(ranked.best_evidence);
 }
 
 // `rivals`: number of effects from which this one was selected.

@@ -26,7 +26,8 @@ constexpr double kLonger = 2, kShorter = 0.5, kMuchShorter = 0.1;
 constexpr double kLongestStep = 100;
 // Nor does it change a parameter on a logarithmic scale by more than a factor of e. Where a time or
 // a place has little influence yet, as that of an effect that is still small, the model would move
-// it to the other end of its range for a small gain.
+// it to the other end of its range for a small gain. A derivative by the logarithm says little
+// beyond; smaller: more steps from a start that is several times too large or too small.
 constexpr double kLongestLogStep = 1;
 // The largest part of the way to an open bound that a step takes. The linearised model knows
 // nothing of what happens at the bound, and predictions there may take tens of times longer.
@@ -34,9 +35,9 @@ constexpr double kOfWayToOpenBound = 0.8;
 // Where a full step promises enough but the radius leaves only little of it, as in a curved valley,
 // the search goes on to this fraction of the promise at which it ends elsewhere.
 constexpr double kLeastOfCurved = 0.1;
-// A bent step keeps the bend shorter than this part of the straight way: beyond, its end would be
-// extrapolated from a single prediction. It is looked for at shares of the way that fall by this
-// factor, down to the least one.
+// A bent step keeps the bend shorter than this part of the straight way: beyond, the parabola says
+// less than the prediction that it comes from. Smaller: shorter bent steps. It is looked for at
+// shares of the way that fall by the factor, down to the least one; these cost no prediction.
 constexpr double kMostBent = 0.75;
 constexpr double kNextShare = 0.8, kLeastShare = 0.05;
 // A search is not called hopeless before it has made so many steps.
