@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
+#include "trials/interval_trials.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
 #include "trials/trial_suite.h"
@@ -19,6 +20,16 @@ int Report(const std::filesystem::path& folder) {
   const TrialReport report = ReportTrials(folder);
   SaveTrialReport(report, folder);
   fmt::print("{}", ReportInWords(report));
+  return 0;
+}
+
+int Intervals(const std::filesystem::path& suite, const std::filesystem::path& folder,
+              int workers) {
+  const int status = RunIntervalSuite(ReadIntervalSuite(Config::Load(suite)), folder, workers);
+  if (status != 0) return status;
+  const IntervalReport report = ReportIntervals(folder);
+  SaveIntervalReport(report, folder);
+  fmt::print("{}", IntervalReportInWords(report));
   return 0;
 }
 
@@ -43,10 +54,18 @@ int Main(int argc, char** argv) {
   redecide->add_option("folder", folder, "Folder of the cases")->required();
   CLI::App* report = app.add_subcommand("report", "Report how often the diagnosis was right");
   report->add_option("folder", folder, "Folder of the cases")->required();
+  CLI::App* intervals =
+      app.add_subcommand("intervals", "Count how often the intervals of a fit contain the truth");
+  intervals->add_option("suite", suite, "The suite's YAML file, experiments/trials/intervals*.yaml")
+      ->required();
+  intervals->add_option("folder", folder, "Folder for the draws")->required();
+  intervals->add_option("--workers", workers, "Number of processes that run at the same time")
+      ->check(CLI::Range(1, 64));
   CLI11_PARSE(app, argc, argv);
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
     if (run->parsed()) return RunTrials(folder, workers);
+    if (intervals->parsed()) return Intervals(suite, folder, workers);
     if (redecide->parsed()) fmt::print("{} cases decided\n", RedecideTrials(folder));
     return Report(folder);
   } catch (const InputError& problem) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration/adaptive_time_step.h"
-#include "calibration/mesh_limit.h"
+#include "calibration/known_errors.h"
 #include "calibration/misfit_report.h"
 #include "calibration/prior_conflicts.h"
 #include "calibration/reaction_report.h"
@@ -23,7 +23,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 23;
+constexpr int kCalibrationVersion = 24;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -108,13 +108,16 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].share_of_forces = shares[k];
   progress->End();
   if (calibration.rms <= kFarFromTruth) {
-    progress->Begin("finer elements", 0);
-    if (const auto limit = AtMeshLimit(problem, calibration.parameters))
-      for (size_t k = 0; k < record.parameters.size(); ++k) {
-        FittedParameter& parameter = record.parameters[k];
-        parameter.with_finest_mesh = (*limit)[static_cast<Eigen::Index>(k)];
-        CountModelError(problem.parameters()[k], *parameter.with_finest_mesh, &parameter.estimate);
-      }
+    progress->Begin("errors of the model", 0);
+    const KnownErrors errors = FindKnownErrors(problem, calibration.parameters);
+    for (size_t k = 0; k < record.parameters.size(); ++k) {
+      const Eigen::Index at = static_cast<Eigen::Index>(k);
+      FittedParameter& parameter = record.parameters[k];
+      if (errors.at_mesh_limit.size() > 0) parameter.with_finest_mesh = errors.at_mesh_limit[at];
+      CountModelErrors(problem.parameters()[k],
+                       parameter.with_finest_mesh.value_or(parameter.estimate.value),
+                       errors.deviation[at], &parameter.estimate);
+    }
     progress->End();
   }
   for (size_t k = 0; k < record.parameters.size(); ++k) {

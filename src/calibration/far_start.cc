@@ -70,7 +70,8 @@ void SearchTowards(double factor, const CalibrationProblem& problem, const Eigen
 }  // namespace
 
 FarStart FindFarStart(const CalibrationProblem& problem, const Eigen::VectorXd& start) {
-  FarStart far{.values = start};
+  FarStart far;
+  far.values = start;
   if (!problem.HasScans() || problem.study().scheme != TimeScheme::kQuasiStatic) return far;
   FitMemory memory;
   Search search{.best = start, .predictions = 1};

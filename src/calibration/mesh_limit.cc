@@ -105,6 +105,11 @@ PredictionStudy WithLongSteps(const CalibrationProblem& problem) {
 }  // namespace
 
 double OtherMesh::ToLimit() const { return 1 / (1 - std::pow(ratio, -kVolumePower)); }
+double OtherMesh::DeviationOfLimit() const {
+  constexpr double kLeast = 0.4;
+  const double known = IsFiner() ? 1 : 0;
+  return std::max(kLeast, std::abs(ToLimit() - known));
+}
 double OtherMesh::ToRatio(double other_ratio) const {
   return (1 - std::pow(other_ratio, -kVolumePower)) * ToLimit();
 }
@@ -238,16 +243,6 @@ Eigen::VectorXd ResidualAtRatio(const CalibrationProblem& problem, const Eigen::
   if (!other) return {};
   const Eigen::VectorXd change = known.ToRatio(other->ratio) * known.change;
   return other->problem->Linearise(MovedBy(problem.parameters(), values, change), false).residual;
-}
-
-std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
-                                           const Eigen::VectorXd& values) {
-  const LinearisedMisfit misfit = problem.Linearise(values, true);
-  if (!misfit.usable) return std::nullopt;
-  const std::optional<OtherMesh> other =
-      MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true);
-  if (!other) return std::nullopt;
-  return MovedBy(problem.parameters(), values, other->ToLimit() * other->change);
 }
 
 }  // namespace lacuna

@@ -34,12 +34,16 @@ struct OtherMesh {
   // Factors by which the change is to be multiplied for the limit of infinitely fine elements
   // (negative if the other mesh is coarser), and for elements of another ratio.
   double ToLimit() const;
+  // The standard deviation of ToLimit(): the correction beyond the finest of the meshes is
+  // uncertain by itself, and by no less than 0.4 of the change. Calibrated on bars of 160 to 190
+  // quadratic elements; larger: wider intervals, and more evidence is asked of an effect.
+  double DeviationOfLimit() const;
   double ToRatio(double other_ratio) const;
 };
 
 // `misfit` is that at `values`, with its Jacobian. `fitted_only`: compare the motions in the fitted
-// frames alone. `limit`: the result of an earlier AtMeshLimit(), near which the change is sought;
-// empty: there is none. Returns nothing where another mesh cannot be made
+// frames alone. `limit`: KnownErrors::at_mesh_limit of an earlier fit, near which the change is
+// sought; empty: there is none. Returns nothing where another mesh cannot be made
 // (calibration/other_elements.h) or cannot be simulated. Throws Interrupted.
 std::optional<OtherMesh> MakeOtherMesh(const CalibrationProblem& problem,
                                        const Eigen::VectorXd& values,
@@ -61,11 +65,6 @@ struct ProblemOnOtherMesh {
 };
 std::optional<ProblemOnOtherMesh> WithOtherElements(const PredictionStudy& study,
                                                     const TetMesh& own, double ratio);
-
-// The values to which the study, fitted to `values`, would be fitted with infinitely fine elements.
-// Returns nothing where MakeOtherMesh does.
-std::optional<Eigen::VectorXd> AtMeshLimit(const CalibrationProblem& problem,
-                                           const Eigen::VectorXd& values);
 
 }  // namespace lacuna
 

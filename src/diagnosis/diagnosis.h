@@ -35,7 +35,7 @@ struct DiagnosisOptions {
 // the error of the step could explain the evidence for an effect, the study is fitted and diagnosed
 // again with a shorter step. `kept`: where fits are kept, so that an interrupted diagnosis
 // continues there; null: they are not kept. `at_mesh_limit`: the fitted values with infinitely fine
-// elements, as AtMeshLimit() has found them; empty: unknown. Throws Interrupted.
+// elements, as FindKnownErrors() has found them; empty: unknown. Throws Interrupted.
 Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                    const DiagnosisOptions& options, Progress* progress, RefitStore* kept = nullptr,
                    const Eigen::VectorXd& at_mesh_limit = {});

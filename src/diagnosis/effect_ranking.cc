@@ -393,7 +393,9 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
         tried.columns);
     priors.insert(priors.end(), tried.priors.begin(), tried.priors.end());
   }
-  add({.kind = HypothesisKind::kUnknownForce}, ranking.unknown_force);
+  WeighedHypothesis unknown;
+  unknown.kind = HypothesisKind::kUnknownForce;
+  add(std::move(unknown), ranking.unknown_force);
   priors.resize(static_cast<size_t>(width), {0, 1, false});
   HypothesisSpace space = MakeHypothesisSpace(
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),

@@ -26,7 +26,7 @@ struct NuisanceContext {
   const LinearisedMisfit& misfit;  // at `values`, with the Jacobian of the parameters
   const GripMotions& grips;
   const Eigen::MatrixXd& grip_columns;  // changes of the rows by grips.directions
-  // The values with infinitely fine elements, as AtMeshLimit() has found them; empty: unknown.
+  // The values with infinitely fine elements, as FindKnownErrors() has found them; empty: unknown.
   Eigen::VectorXd at_mesh_limit = {};
 };
 

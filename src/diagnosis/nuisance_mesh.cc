@@ -50,9 +50,8 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   candidate.columns.resize(between.size(), 2);
   candidate.columns << mesh->other - mesh->own,
       (mesh->IsFiner() ? mesh->other : mesh->own) - between;
-  const double limit = mesh->ToLimit(), known = mesh->IsFiner() ? 1 : 0;
   const NuisanceThresholds& thresholds = kThresholds.nuisances;
-  candidate.priors = {{limit, std::max(thresholds.mesh_limit, std::abs(limit - known)), false},
+  candidate.priors = {{mesh->ToLimit(), mesh->DeviationOfLimit(), false},
                       {0, thresholds.mesh_unknown, false}};
   candidate.unknown = thresholds.mesh_unknown * candidate.columns.col(1);
   return candidate;

@@ -67,9 +67,10 @@ struct RefitThresholds {
   // Higher: the motion may have lost the phase already. Lower: less data.
   double early_share = 0.25;
   // A time step is halved, so many times at most, where the unknown part of its error could
-  // contribute this evidence to an effect. Higher: faster, and more doubt about small effects.
+  // contribute this evidence and this share of it to the best effect. Higher: faster, and more
+  // doubt about small effects, or about the order of several strong ones.
   int most_halvings = 3;
-  double uncertain_step_evidence = 1;
+  double uncertain_step_evidence = 1, uncertain_step_share = 0.05;
 
   // A refit that leaves a larger rms over σ is repeated from another start if the model was far
   // off. Higher: a refit may stay in a local minimum. Lower: every refit is made twice.
@@ -97,15 +98,10 @@ struct RefitThresholds {
 // explain more, so that effects need more evidence; lower values let effects explain errors of the
 // experiment.
 struct NuisanceThresholds {
-  // Dimensions of the object, relative: 0.05 mm of 17 mm.
-  double shape = 0.003;
   // A misplaced grip, frame or registration, m, and a misoriented one, rad.
   double shift = 1e-3, rotation = 0.02;
   // The time of a single frame, as a share of the frame spacing.
   double frame_time = 0.1;
-  // The extrapolation to infinitely fine elements: the correction beyond the finer mesh, relative
-  // to the change of that mesh, is uncertain by itself and by no less than this.
-  double mesh_limit = 0.4;
   // The part of the last refinement's change that the fitted parameters cannot compensate for is
   // known to this share, in any direction. Calibrated on bars of 160 to 190 quadratic elements,
   // where refining twelvefold left 2 to 5 σ of an error of 70 to 95 σ in other directions.

@@ -77,10 +77,10 @@ Eigen::MatrixXd Widened(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd
   return covariance + known * more * known;
 }
 
-// Sets the 95 % interval for a given standard deviation of φ.
-void SetInterval(const CalibratedParameter& parameter, double deviation,
+// Sets the 95 % interval about a value, for a given standard deviation of φ.
+void SetInterval(const CalibratedParameter& parameter, double centre, double deviation,
                  ParameterEstimate* estimate) {
-  const double free = ToFree(parameter, estimate->value), reach = kNormalQuantile * deviation;
+  const double free = ToFree(parameter, centre), reach = kNormalQuantile * deviation;
   estimate->low = std::max(parameter.min, FromFree(parameter, free - reach));
   estimate->high = std::min(parameter.max, FromFree(parameter, free + reach));
 }
@@ -106,7 +106,7 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
     estimate.value = value;
     estimate.deviation = std::sqrt(data_only(k, k));
     estimate.posterior_deviation = std::sqrt(calibration->covariance(k, k));
-    SetInterval(parameter, estimate.posterior_deviation, &estimate);
+    SetInterval(parameter, value, estimate.posterior_deviation, &estimate);
     for (Eigen::Index i = 0; i < count; ++i) {
       const double product = information(i, i) * information(k, k);
       if (i == k || !(product > 0)) continue;
@@ -136,10 +136,9 @@ void Estimate(const std::vector<CalibratedParameter>& parameters, const Predicti
 
 }  // namespace
 
-void CountModelError(const CalibratedParameter& parameter, double other,
-                     ParameterEstimate* estimate) {
-  const double change = ToFree(parameter, other) - ToFree(parameter, estimate->value);
-  SetInterval(parameter, std::hypot(estimate->posterior_deviation, change), estimate);
+void CountModelErrors(const CalibratedParameter& parameter, double centre, double deviation,
+                      ParameterEstimate* estimate) {
+  SetInterval(parameter, centre, std::hypot(estimate->posterior_deviation, deviation), estimate);
 }
 
 double RootMeanSquare(const Eigen::VectorXd& residual) {

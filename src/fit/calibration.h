@@ -48,11 +48,11 @@ struct Calibration {
 Calibration Calibrate(const std::vector<CalibratedParameter>& parameters,
                       const PredictionFunction& predict, const CalibrationOptions& options = {});
 
-// Widens the interval of an estimate by a known error of the model: `other` (SI) is the value that
-// a model without this error would have given, and the difference counts as one additional standard
-// deviation. The posterior deviation is left unchanged.
-void CountModelError(const CalibratedParameter& parameter, double other,
-                     ParameterEstimate* estimate);
+// Sets the 95 % interval of an estimate to that of the value that a model without its known errors
+// would have given: its centre (SI), and the standard deviation (of φ) that these errors add to
+// that of the estimate. The value and the posterior deviation are left unchanged.
+void CountModelErrors(const CalibratedParameter& parameter, double centre, double deviation,
+                      ParameterEstimate* estimate);
 
 // √(‖r‖²/n); 0 for an empty residual.
 double RootMeanSquare(const Eigen::VectorXd& residual);

@@ -92,6 +92,7 @@ struct PredictionStudy {
   // m, σ of a marker's place on the object, an error that is the same in all frames.
   double place_deviation = 0.001;
   bool place_deviation_is_given = false;
+  double size_deviation = 0.003;  // relative, σ of each dimension of the object: 0.05 mm of 17 mm
   // The squared misfit, σ², that effects have removed which a diagnosis has added to the model. The
   // next diagnosis judges what the model leaves by it.
   double explained_misfit = 0;

@@ -140,6 +140,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
   study.place_deviation_is_given = config.Has("place_deviation");
   study.place_deviation =
       config.Quantity("place_deviation", kLength, kNotNegative, study.place_deviation);
+  study.size_deviation = config.Number("size_deviation", Bounds{0, 0.2}, study.size_deviation);
   study.explained_misfit = config.Number("explained_misfit", kNotNegative, study.explained_misfit);
   study.scan = ReadScanSettings(config);
   for (const Config& item : config.Items("recordings")) {

@@ -35,8 +35,8 @@ struct FittedParameter {
   std::string name, unit;
   bool log_scale = false;  // estimated on a logarithmic scale
   ParameterEstimate estimate;
-  // The value extrapolated to infinitely fine elements, which the interval includes as a model
-  // error. Absent where the extrapolation was not possible.
+  // The value extrapolated to infinitely fine elements, about which the interval is centred. Absent
+  // where the extrapolation was not possible.
   std::optional<double> with_finest_mesh;
   std::optional<NearBound> near_bound = {};
   // The share of the measured forces in what the fitted data tell about the parameter if all others

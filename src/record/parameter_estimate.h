@@ -22,8 +22,8 @@ struct ParameterEstimate {
   // priors together. Infinite where the data do not determine the parameter.
   double deviation = std::numeric_limits<double>::infinity();
   double posterior_deviation = std::numeric_limits<double>::infinity();
-  // 95 % interval of θ, SI. It includes the prior and, after CountModelError (fit/calibration.h),
-  // a known error of the model.
+  // 95 % interval of θ, SI. It includes the prior and, after CountModelErrors (fit/calibration.h),
+  // known errors of the model, for which it may have another centre than `value`.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   Verdict verdict = Verdict::kPinnedDown;

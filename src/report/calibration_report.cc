@@ -52,8 +52,8 @@ std::string ParameterTable(const CalibrationRecord& record) {
   for (const FittedParameter& parameter : record.parameters) AppendParameter(parameter, &table);
   if (table.moved)
     table.text +=
-        "  The intervals include the change that finer elements would make; a smaller "
-        "mesh.max_volume\n  makes them narrower.\n";
+        "  The intervals are those of the values with infinitely fine elements; a smaller "
+        "mesh.max_volume\n  brings the values of the model closer to them.\n";
   return table.text;
 }
 

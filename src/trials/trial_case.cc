@@ -75,14 +75,15 @@ void PlacePlane(const TrialCase& trial, double gap, std::map<std::string, double
 }
 
 // Throws InputError if the case was drawn for another card of the effect.
-void RequireCard(const HiddenEffect& hidden, const std::filesystem::path& file) {
-  const CatalogueEntry* entry = FindEntry(hidden.type);
-  for (const auto& [name, value] : hidden.parameters)
+void RequireCard(const std::string& type, const std::map<std::string, double>& parameters,
+                 const std::filesystem::path& file) {
+  const CatalogueEntry* entry = FindEntry(type);
+  for (const auto& [name, value] : parameters)
     if (entry == nullptr || ParameterIndex(*entry->card, name) < 0)
       throw InputError(fmt::format(
-          "{}: hides {} with the parameter {}, which it does not have in this version of Lacuna; "
-          "draw the suite again",
-          file.string(), hidden.type, name));
+          "{}: contains {} with the parameter {}, which it does not have in this version of "
+          "Lacuna; draw the suite again",
+          file.string(), type, name));
 }
 
 nlohmann::json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -207,6 +208,10 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
                       {"factor", effect.factor}});
   nlohmann::json forces = nlohmann::json::array();
   for (const Eigen::Vector3d& force : trial.hold_forces) forces.push_back(ToJson(force));
+  nlohmann::json modelled = nlohmann::json::array();
+  for (const ModelledEffect& effect : trial.modelled)
+    modelled.push_back(
+        {{"type", effect.type}, {"parameters", effect.parameters}, {"starts", effect.starts}});
   const nlohmann::json all = {{"schema_version", 1},
                               {"name", trial.name},
                               {"group", trial.group},
@@ -215,11 +220,15 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
                               {"is_scanned", trial.is_scanned},
                               {"nuisance", trial.nuisance},
                               {"hidden", hidden},
+                              {"modelled", modelled},
                               {"young_modulus", trial.young_modulus},
                               {"poisson_ratio", trial.poisson_ratio},
                               {"damping", trial.damping},
                               {"size", ToJson(trial.size)},
                               {"true_size", ToJson(trial.true_size)},
+                              {"element_volume", trial.element_volume},
+                              {"true_element_volume", trial.true_element_volume},
+                              {"true_step", trial.true_step},
                               {"clamp_error", trial.clamp_error},
                               {"hold_forces", forces},
                               {"noise", trial.noise},
@@ -242,13 +251,20 @@ TrialCase LoadCase(const std::filesystem::path& file) {
     for (const auto& effect : json.at("hidden")) {
       trial.hidden.push_back({effect.at("type"), effect.at("parameters"), effect.at("amplitude"),
                               effect.at("factor")});
-      RequireCard(trial.hidden.back(), file);
+      RequireCard(trial.hidden.back().type, trial.hidden.back().parameters, file);
+    }
+    for (const auto& effect : json.value("modelled", nlohmann::json::array())) {
+      trial.modelled.push_back({effect.at("type"), effect.at("parameters"), effect.at("starts")});
+      RequireCard(trial.modelled.back().type, trial.modelled.back().parameters, file);
     }
     trial.young_modulus = json.at("young_modulus");
     trial.poisson_ratio = json.at("poisson_ratio");
     trial.damping = json.at("damping");
     trial.size = VectorOf(json.at("size"));
     trial.true_size = VectorOf(json.at("true_size"));
+    trial.element_volume = json.value("element_volume", trial.element_volume);
+    trial.true_element_volume = json.value("true_element_volume", trial.true_element_volume);
+    trial.true_step = json.value("true_step", trial.true_step);
     trial.clamp_error = json.at("clamp_error");
     for (const auto& force : json.at("hold_forces")) trial.hold_forces.push_back(VectorOf(force));
     trial.noise = json.at("noise");

@@ -36,10 +36,26 @@ bool IsLaw(const HiddenEffect& hidden);
 // Whether the model of every case contains the effect unless it is hidden.
 bool IsInEveryModel(const std::string& type);
 
+// An effect that the model has too, but whose parameters it does not know.
+struct ModelledEffect {
+  std::string type;
+  std::map<std::string, double> parameters;  // all parameters of the card, SI, as in the truth
+  std::map<std::string, double> starts;      // those that are fitted, and where their fit starts
+};
+
+// The prior from which the true value of a fitted parameter is drawn, and with which it is fitted:
+// normal, or normal in the logarithm for a parameter on a logarithmic scale. SI.
+struct TrialPrior {
+  std::string name;  // as in a fit: "young_modulus", "attached_mass.centre_x"
+  std::string unit;
+  double mean = 0, deviation = 0;
+  bool log_scale = false;
+};
+
 struct TrialCase {
   std::string name;
-  // "control", "hard_control", "one_effect", "pair" or "removed"; the last hides an effect and
-  // removes it from the library of the diagnosis.
+  // "control", "hard_control", "one_effect", "pair", "removed" or "intervals". A removed effect is
+  // hidden and not in the library of the diagnosis; "intervals": see trials/interval_trials.h.
   std::string group;
   uint64_t seed = 0;
   int recordings = 1;
@@ -48,12 +64,17 @@ struct TrialCase {
   // there is none.
   std::string nuisance;
   std::vector<HiddenEffect> hidden;
+  std::vector<ModelledEffect> modelled;
+  std::vector<TrialPrior> priors;  // of the fit, where it has any; not in truth.json
 
   // The following values are drawn from the seed.
   double young_modulus = 1e5, poisson_ratio = 0.42;  // Pa, –
   double damping = 0;                      // s, stiffness-proportional, typical of soft rubber
   Eigen::Vector3d size{0.08, 0.02, 0.02};  // m, size in the model
   Eigen::Vector3d true_size = size;        // m
+  double element_volume = 4e-7;            // m³, of the model's largest element
+  double true_element_volume = 8e-8;       // m³, of the truth's
+  double true_step = 5e-4;                 // s, time step of the truth
   double clamp_error = 0;                  // m, along x
   std::vector<Eigen::Vector3d>
       hold_forces;                    // N, force of the hand before the release, per recording

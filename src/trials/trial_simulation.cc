@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "effects/catalogue.h"
+#include "effects/effect_text.h"
 #include "effects/gravity.h"
 #include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
@@ -21,10 +22,9 @@
 namespace lacuna {
 namespace {
 
-constexpr double kRelease = 0.1037;                        // s
-constexpr double kFitUntil = 0.451;                        // s
-constexpr double kTrueVolume = 8e-8, kModelVolume = 4e-7;  // m³, tetrahedra
-constexpr double kTrueStep = 0.0005, kRoughStep = 0.002;   // s
+constexpr double kRelease = 0.1037;   // s
+constexpr double kFitUntil = 0.451;   // s
+constexpr double kRoughStep = 0.002;  // s
 
 Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double high) {
   std::vector<int> chosen;
@@ -34,7 +34,7 @@ Eigen::VectorXi NodesBetween(const Eigen::Matrix3Xd& nodes, double low, double h
 }
 
 // The true model: the material and the effects of every model, except those that are hidden by
-// their absence from it, and the hidden effects.
+// their absence from it, those that the model of this case has too, and the hidden effects.
 std::vector<std::shared_ptr<const Effect>> TrueEffects(const TrialCase& trial) {
   std::vector<std::shared_ptr<const Effect>> effects = {
       MakeEffect(NeoHookeanCard().type,
@@ -45,6 +45,8 @@ std::vector<std::shared_ptr<const Effect>> TrueEffects(const TrialCase& trial) {
                                                  {"young_modulus", trial.young_modulus},
                                                  {"poisson_ratio", trial.poisson_ratio}}));
   if (!trial.Hides(GravityCard().type)) effects.push_back(MakeGravity({0, 0, -kStandardGravity}));
+  for (const ModelledEffect& modelled : trial.modelled)
+    effects.push_back(MakeEffect(modelled.type, modelled.parameters));
   for (const HiddenEffect& hidden : trial.hidden) {
     if (IsLaw(hidden))
       effects.front() = MakeHidden(hidden);
@@ -71,11 +73,12 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
   Eigen::Vector3d size = trial.true_size;
   size[0] -= trial.clamp_error;
   const Eigen::Vector3d centre(trial.clamp_error + 0.5 * size[0], 0, 0);
-  const MeshResult mesh = MeshTetrahedra(RoundedBox(centre, size, 0, 0.006),
-                                         {.radius_edge_ratio = 1.7,
-                                          .max_volume = rough ? kModelVolume : kTrueVolume,
-                                          .preserve_surface = false,
-                                          .order = 2});
+  const MeshResult mesh =
+      MeshTetrahedra(RoundedBox(centre, size, 0, 0.006),
+                     {.radius_edge_ratio = 1.7,
+                      .max_volume = rough ? trial.element_volume : trial.true_element_volume,
+                      .preserve_surface = false,
+                      .order = 2});
   if (!mesh.IsUsable()) throw InputError(trial.name + ": " + mesh.message);
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(mesh.mesh, kTrialDensity));
@@ -90,7 +93,7 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
       *model.body, NodesBetween(nodes, trial.true_size[0] - kTrialFace, trial.true_size[0] + 1));
   PredictionOptions options;
   options.start_time = kRelease;
-  options.time_step = rough ? kRoughStep : kTrueStep;
+  options.time_step = rough ? kRoughStep : trial.true_step;
   options.held_force.resize(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i)
     options.held_force.segment<3>(3 * i) = share[i] * trial.hold_forces[recording];
@@ -105,20 +108,39 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
   return motion;
 }
 
+// The entry of a parameter under fit.parameters.
+std::string Fitted(const TrialCase& trial, const std::string& name) {
+  std::string entry = "{name: " + name;
+  for (const TrialPrior& prior : trial.priors)
+    if (prior.name == name)
+      entry += fmt::format(", mean: {0} {2}, deviation: {1} {2}", prior.mean, prior.deviation,
+                           prior.unit);
+  return entry + "}";
+}
+
 }  // namespace
 
 void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough) {
   MakeFolder(folder);
-  std::string known, fitted = "{name: young_modulus}, {name: poisson_ratio}";
+  std::string known,
+      fitted = Fitted(trial, "young_modulus") + ", " + Fitted(trial, "poisson_ratio");
   const std::string& damping = StiffnessDampingCard().type;
   if (!trial.Hides(damping)) {
     known += fmt::format("  - {{type: {}, beta: 0.5 ms}}\n", damping);
-    fitted += fmt::format(", {{name: {}.beta}}", damping);
+    fitted += ", " + Fitted(trial, damping + ".beta");
   }
   const std::string& gravity = GravityCard().type;
   if (!trial.Hides(gravity))
     known += fmt::format("  - {{type: {}, acceleration: [0, 0, {} m/s^2]}}\n", gravity,
                          -kStandardGravity);
+  for (const ModelledEffect& modelled : trial.modelled) {
+    std::map<std::string, double> start = modelled.parameters;
+    for (const auto& [name, value] : modelled.starts) {
+      start[name] = value;
+      fitted += ", " + Fitted(trial, modelled.type + "." + name);
+    }
+    known += "  - " + FormatEffect(*MakeEffect(modelled.type, start)).value() + "\n";
+  }
   const double wrong_volume = trial.Disturbance().element_volume;
   std::string yaml = fmt::format(
       "schema_version: 1\nname: {}\nmesh: {{max_volume: {} m^3, order: 2, preserve_surface: "
@@ -126,7 +148,7 @@ void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, b
       "material: {{law: {}, young_modulus: 0.12 MPa, poisson_ratio: 0.42}}\n"
       "effects:{}\nfit: {{parameters: [{}]}}\n"
       "{}{}recordings:\n",
-      trial.name, wrong_volume > 0 ? wrong_volume : kModelVolume, NeoHookeanCard().type,
+      trial.name, wrong_volume > 0 ? wrong_volume : trial.element_volume, NeoHookeanCard().type,
       known.empty() ? " []" : "\n" + known, fitted,
       rough ? fmt::format("motion: {{time_step: {} s}}\n", kRoughStep) : "",
       trial.is_scanned ? fmt::format("scan: {{shape_deviation: {} m}}\n", kTrialShapeError)

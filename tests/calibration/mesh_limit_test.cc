@@ -1,3 +1,4 @@
+#include "calibration/known_errors.h"
 #include "calibration/mesh_limit.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +49,9 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   const BarFit coarse(folder.Path(), "4000 mm^3"), fine(folder.Path(), "400 mm^3");
   const Eigen::VectorXd& values = coarse.calibration.parameters;
   const Eigen::VectorXd before = coarse.problem.Linearise(values, false).residual;
-  const auto limit = AtMeshLimit(coarse.problem, values);
-  ASSERT_TRUE(limit.has_value());
+  const KnownErrors errors = FindKnownErrors(coarse.problem, values);
+  const Eigen::VectorXd& limit = errors.at_mesh_limit;
+  ASSERT_EQ(limit.size(), values.size());
   // A coarse mesh is stiff: its modulus is fitted too low.
   const double missing = fine.calibration.parameters[0] - values[0];
   EXPECT_GT(missing, coarse.calibration.estimates[0].posterior_deviation * values[0]);
@@ -57,12 +59,13 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   refined.ratio = static_cast<double>(fine.problem.body()->ElementCount()) /
                   static_cast<double>(coarse.problem.body()->ElementCount());
   const double share_of_limit = 1 / refined.ToLimit();
-  EXPECT_NEAR(share_of_limit * ((*limit)[0] - values[0]), missing, 0.25 * missing);
+  EXPECT_NEAR(share_of_limit * (limit[0] - values[0]), missing, 0.25 * missing);
   ParameterEstimate estimate = coarse.calibration.estimates[0];
   const double of_fine = fine.calibration.parameters[0];
   EXPECT_LT(estimate.high, of_fine);
-  CountModelError(coarse.problem.parameters()[0], (*limit)[0], &estimate);
+  CountModelErrors(coarse.problem.parameters()[0], limit[0], errors.deviation[0], &estimate);
   EXPECT_GT(estimate.high, of_fine) << "an interval that counts the mesh";
+  EXPECT_LT(estimate.low, of_fine);
   // With parameters of its own a finer mesh moves as the coarse one does; with the same, it parts.
   const LinearisedMisfit misfit = coarse.problem.Linearise(values, /*with_jacobian=*/true);
   const auto finer = MakeOtherMesh(coarse.problem, values, misfit, /*fitted_only=*/false);

@@ -232,7 +232,7 @@ TEST(Calibration, WidensItsIntervalsIfTheModelDoesNotFit) {
               poor.inflation / good.inflation, 0.3 * poor.inflation);
 }
 
-TEST(Calibration, AnIntervalIncludesAKnownModelError) {
+TEST(Calibration, AnIntervalIsCentredWhereKnownErrorsPutIt) {
   CalibratedParameter modulus;
   modulus.min = 1e3;
   modulus.max = 1e6;
@@ -240,11 +240,12 @@ TEST(Calibration, AnIntervalIncludesAKnownModelError) {
   ParameterEstimate estimate;
   estimate.value = 1e5;
   estimate.posterior_deviation = 0.03;
-  CountModelError(modulus, 1e5 * std::exp(0.04), &estimate);
-  EXPECT_NEAR(std::log(estimate.high / 1e5), 1.96 * 0.05, 1e-4);
-  EXPECT_NEAR(std::log(estimate.low / 1e5), -1.96 * 0.05, 1e-4);
+  CountModelErrors(modulus, 2e5, 0.04, &estimate);
+  EXPECT_NEAR(std::log(estimate.high / 2e5), 1.96 * 0.05, 1e-4);
+  EXPECT_NEAR(std::log(estimate.low / 2e5), -1.96 * 0.05, 1e-4);
   EXPECT_EQ(estimate.posterior_deviation, 0.03);
-  CountModelError(modulus, 1e6, &estimate);
+  EXPECT_EQ(estimate.value, 1e5);
+  CountModelErrors(modulus, 9e5, 1, &estimate);
   EXPECT_EQ(estimate.high, 1e6) << "the upper bound";
 }
 

@@ -1,0 +1,36 @@
+// Errors of a fitted model that its fit does not estimate: the size of its elements and the
+// dimensions of the object. They move the fitted parameters, so that an interval of the noise alone
+// would be too narrow and in the wrong place.
+//
+// To first order, an error that changes the whitened residual by c moves the parameters by
+//   δ = −(JᵀJ + P⁻¹)⁻¹ Jᵀ c,
+// with their Jacobian J and prior covariance P: the fit compensates for as much of c as it can. An
+// error whose size is known in distribution only adds δ δᵀ for each standard deviation to the
+// covariance of the parameters ("consider" parameters: Schmidt, Advances in Control Systems 3,
+// 1966).
+#ifndef LACUNA_CALIBRATION_KNOWN_ERRORS_H_
+#define LACUNA_CALIBRATION_KNOWN_ERRORS_H_
+
+#include <Eigen/Core>
+
+#include "calibration/calibration_problem.h"
+
+namespace lacuna {
+
+// In the order of CalibrationProblem::parameters().
+struct KnownErrors {
+  // The values that would have been fitted with infinitely fine elements; empty where no other mesh
+  // can be made or simulated (calibration/mesh_limit.h).
+  Eigen::VectorXd at_mesh_limit;
+  // Standard deviations by which unknown parts of the errors move the parameters, on the scale on
+  // which each is fitted: of the extrapolation to infinitely fine elements, and of the dimensions
+  // (PredictionStudy::size_deviation).
+  Eigen::VectorXd deviation;
+};
+
+// `values`: the fitted ones. Throws Interrupted.
+KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_CALIBRATION_KNOWN_ERRORS_H_

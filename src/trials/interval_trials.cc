@@ -1,0 +1,355 @@
+#include "trials/interval_trials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+#include "analysis/whiteness.h"
+#include "calibration/calibration_run.h"
+#include "core/atomic_file.h"
+#include "core/claim.h"
+#include "core/error.h"
+#include "core/progress.h"
+#include "core/workers.h"
+#include "effects/catalogue.h"
+#include "effects/neo_hookean.h"
+#include "effects/stiffness_damping.h"
+#include "prediction/prediction_study_reader.h"
+#include "report/line_chart.h"
+#include "scan/random_bits.h"
+#include "trials/trial_simulation.h"
+
+namespace lacuna {
+namespace {
+
+constexpr int kIntervalsVersion = 1;  // of intervals.json
+constexpr double kFinerTruth = 20;    // volume of the model's elements over that of the truth's
+constexpr double kTrueStep = 1e-3;    // s
+constexpr int kBins = 10;
+constexpr const char* kRadius = "radius";
+constexpr double kLastPlace = 0.95;                    // of the bar's length
+constexpr double kNormalQuantile = 1.959963984540054;  // of the 97.5 % quantile
+constexpr uint64_t kShapeStream = 70, kEffectStream = 71, kPriorStream = 72;
+
+std::vector<std::string> ReadTypes(const Config& config, const std::string& key) {
+  const std::vector<std::string> types = config.Texts(key);
+  for (const std::string& type : types)
+    if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
+  return types;
+}
+
+// "attached_mass.mass" → "attached_mass", "mass"; the type of a parameter of the material is that
+// of its law.
+std::pair<std::string, std::string> TypeAndParameter(const std::string& name) {
+  const size_t dot = name.find('.');
+  if (dot == std::string::npos) return {NeoHookeanCard().type, name};
+  return {name.substr(0, dot), name.substr(dot + 1)};
+}
+
+TrialPrior ReadTrialPrior(const Config& item, const IntervalSuite& suite) {
+  TrialPrior prior;
+  prior.name = item.Text("name");
+  const auto [type, name] = TypeAndParameter(prior.name);
+  std::vector<std::string> types = {NeoHookeanCard().type, StiffnessDampingCard().type};
+  types.insert(types.end(), suite.modelled.begin(), suite.modelled.end());
+  types.insert(types.end(), suite.missing.begin(), suite.missing.end());
+  const CatalogueEntry* entry = FindEntry(type);
+  const int index = entry == nullptr ? -1 : ParameterIndex(*entry->card, name);
+  if (std::find(types.begin(), types.end(), type) == types.end() || index < 0 ||
+      entry->card->parameters[index].setting)
+    item.Fail("name", "the truth has no parameter \"" + prior.name + "\" that can be fitted");
+  const ParameterCard& card = entry->card->parameters[index];
+  prior.unit = card.dimension.unit;
+  prior.log_scale = card.log_scale;
+  prior.mean = item.Quantity("mean", card.dimension, card.bounds);
+  prior.deviation = item.Quantity("deviation", card.dimension, kPositive);
+  if (prior.log_scale && !(prior.mean > 0))
+    item.Fail("mean", "must be positive: the parameter is fitted on a logarithmic scale");
+  item.RefuseUnknownKeys();
+  return prior;
+}
+
+bool HasPrior(const IntervalSuite& suite, const std::string& name) {
+  return std::any_of(suite.priors.begin(), suite.priors.end(),
+                     [&](const TrialPrior& prior) { return prior.name == name; });
+}
+
+double Drawn(const TrialPrior& prior, uint64_t bits) {
+  const double normal = Normal(bits);
+  if (prior.log_scale) return prior.mean * std::exp(prior.deviation / prior.mean * normal);
+  return prior.mean + prior.deviation * normal;
+}
+
+// The true values of the parameters that are drawn, by their names in a fit.
+std::map<std::string, double> TrueParameters(const TrialCase& trial) {
+  std::map<std::string, double> truth = {{"young_modulus", trial.young_modulus},
+                                         {"poisson_ratio", trial.poisson_ratio},
+                                         {StiffnessDampingCard().type + ".beta", trial.damping}};
+  for (const ModelledEffect& effect : trial.modelled)
+    for (const auto& [name, start] : effect.starts)
+      truth[effect.type + "." + name] = effect.parameters.at(name);
+  return truth;
+}
+
+double NormalBelow(double deviations) { return 0.5 * std::erfc(-deviations / std::numbers::sqrt2); }
+
+nlohmann::json ToJson(const std::vector<JudgedParameter>& parameters) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const JudgedParameter& parameter : parameters)
+    list.push_back({{"name", parameter.name},
+                    {"unit", parameter.unit},
+                    {"truth", parameter.truth},
+                    {"value", parameter.value},
+                    {"low", parameter.low},
+                    {"high", parameter.high},
+                    {"deviations", parameter.deviations}});
+  return {{"schema_version", kIntervalsVersion}, {"parameters", list}};
+}
+
+std::vector<JudgedParameter> LoadJudged(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError(file.string() + ": cannot be opened");
+  try {
+    const auto json = nlohmann::json::parse(stream);
+    if (json.at("schema_version") != kIntervalsVersion)
+      throw InputError(file.string() + ": is of another version of the program; make it again");
+    std::vector<JudgedParameter> parameters;
+    for (const auto& item : json.at("parameters"))
+      parameters.push_back({item.at("name"), item.at("unit"), item.at("truth"), item.at("value"),
+                            item.at("low"), item.at("high"), item.at("deviations")});
+    return parameters;
+  } catch (const nlohmann::json::exception& problem) {
+    throw InputError(fmt::format("{}: {}", file.string(), problem.what()));
+  }
+}
+
+IntervalTally TallyOf(const std::string& name, const std::vector<double>& deviations) {
+  IntervalTally tally;
+  tally.name = name;
+  tally.draws = static_cast<int>(deviations.size());
+  std::array<int, kBins> counts{};
+  double squares = 0;
+  for (const double deviation : deviations) {
+    const double position = NormalBelow(deviation);
+    tally.positions.push_back(position);
+    ++counts[std::min(kBins - 1, static_cast<int>(kBins * position))];
+    const double outside = 2 * std::abs(position - 0.5);
+    tally.covered_50 += outside <= 0.5;
+    tally.covered_80 += outside <= 0.8;
+    tally.covered_95 += outside <= 0.95;
+    tally.mean += deviation;
+    squares += deviation * deviation;
+  }
+  const double count = tally.draws, expected = count / kBins;
+  for (double* share : {&tally.covered_50, &tally.covered_80, &tally.covered_95, &tally.mean})
+    *share /= count;
+  tally.spread = std::sqrt(std::max(0.0, squares / count - tally.mean * tally.mean));
+  double statistic = 0;
+  for (const int in_bin : counts) statistic += std::pow(in_bin - expected, 2) / expected;
+  tally.p_uniform = ChiSquareTail(statistic, kBins - 1);
+  std::sort(tally.positions.begin(), tally.positions.end());
+  return tally;
+}
+
+// Fits the draw in `folder`, and compares it with its truth.
+void FitDraw(const std::filesystem::path& folder) {
+  PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  study.output = folder / "fit";
+  ProgressOptions silent;
+  silent.style = ProgressStyle::kSilent;
+  Progress progress(silent);
+  const CalibrationRecord record = RunCalibration(study, &progress);
+  if (!record.usable) throw InputError(folder.string() + ": " + record.message);
+  const TrialCase truth = LoadCase(folder / "truth.json");
+  WriteFileAtomically(folder / "intervals.json", ToJson(Judge(record, truth)).dump(2) + "\n");
+}
+
+}  // namespace
+
+IntervalSuite ReadIntervalSuite(const Config& config) {
+  constexpr int kMost = 1'000'000;
+  IntervalSuite suite;
+  config.Integer("schema_version", 1, 1);
+  suite.name = config.Text("name");
+  suite.seed = static_cast<uint64_t>(config.Integer("seed", 0, kMost));
+  suite.draws = config.Integer("draws", 1, kMost);
+  suite.recordings = config.Integer("recordings", 1, 2, suite.recordings);
+  suite.element_volume =
+      config.Quantity("element_volume", kVolume, kPositive, suite.element_volume);
+  suite.modelled = ReadTypes(config, "modelled");
+  suite.missing = ReadTypes(config, "missing");
+  for (const Config& item : config.Items("priors"))
+    suite.priors.push_back(ReadTrialPrior(item, suite));
+  for (const auto& [key, types] :
+       {std::pair{"modelled", &suite.modelled}, std::pair{"missing", &suite.missing}})
+    for (const std::string& type : *types) {
+      const EffectCard& card = *FindEntry(type)->card;
+      for (const int size : SizeParameters(card))
+        if (const std::string name = type + "." + card.parameters[size].name;
+            !HasPrior(suite, name))
+          config.Fail(key, "priors has no entry for " + name);
+    }
+  config.RefuseUnknownKeys();
+  return suite;
+}
+
+TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
+  TrialCase trial = DrawCase(fmt::format("{:04}", number), "intervals",
+                             RandomBits({suite.seed, static_cast<uint64_t>(number)}),
+                             suite.recordings, false, "");
+  for (int axis = 0; axis < 3; ++axis)
+    trial.true_size[axis] =
+        trial.size[axis] *
+        (1 + PredictionStudy{}.size_deviation *
+                 Normal(RandomBits({trial.seed, kShapeStream, static_cast<uint64_t>(axis)})));
+  trial.element_volume = suite.element_volume;
+  // The intervals are those of infinitely fine elements and steps. A truth of which a fifth of the
+  // model's error is left would look like a bias.
+  trial.true_element_volume = suite.element_volume / kFinerTruth;
+  trial.true_step = kTrueStep;
+  trial.priors = suite.priors;
+
+  std::map<std::string, double> drawn;
+  for (size_t k = 0; k < suite.priors.size(); ++k)
+    drawn[suite.priors[k].name] =
+        Drawn(suite.priors[k], RandomBits({trial.seed, kPriorStream, static_cast<uint64_t>(k)}));
+  const auto take = [&](const std::string& name, double* value) {
+    if (drawn.contains(name)) *value = drawn[name];
+  };
+  take("young_modulus", &trial.young_modulus);
+  take("poisson_ratio", &trial.poisson_ratio);
+  take(StiffnessDampingCard().type + ".beta", &trial.damping);
+  uint64_t effects = 0;
+  const auto with_drawn = [&](const std::string& type) {
+    HiddenEffect effect =
+        DrawHidden(type, trial, RandomBits({trial.seed, kEffectStream, effects++}));
+    for (auto& [name, value] : effect.parameters) take(type + "." + name, &value);
+    return effect;
+  };
+  for (const std::string& type : suite.modelled) {
+    ModelledEffect& modelled = trial.modelled.emplace_back();
+    modelled.type = type;
+    modelled.parameters = with_drawn(type).parameters;
+    for (const TrialPrior& prior : suite.priors)
+      if (const auto [of, name] = TypeAndParameter(prior.name); of == type)
+        modelled.starts[name] = prior.mean;
+  }
+  for (const std::string& type : suite.missing) trial.hidden.push_back(with_drawn(type));
+  return trial;
+}
+
+std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialCase& truth) {
+  const std::map<std::string, double> known = TrueParameters(truth);
+  std::vector<JudgedParameter> judged;
+  for (const FittedParameter& parameter : record.parameters) {
+    const auto found = known.find(parameter.name);
+    if (found == known.end()) continue;
+    const ParameterEstimate& estimate = parameter.estimate;
+    const auto free = [&](double value) { return parameter.log_scale ? std::log(value) : value; };
+    // A bound may cut the interval off on one side.
+    const double centre = free(parameter.with_finest_mesh.value_or(estimate.value));
+    const double half =
+        std::max(free(estimate.high) - centre, centre - free(estimate.low)) / kNormalQuantile;
+    judged.push_back({parameter.name, parameter.unit, found->second, estimate.value, estimate.low,
+                      estimate.high, (free(found->second) - centre) / half});
+  }
+  return judged;
+}
+
+int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& folder, int workers) {
+  MakeFolder(folder);
+  std::vector<std::filesystem::path> draws;
+  for (int k = 0; k < suite.draws; ++k) {
+    draws.push_back(folder / DrawIntervalCase(suite, k).name);
+    MakeFolder(draws.back());
+  }
+  const auto keep_failure = [&](size_t k, const std::string& reason) {
+    WriteFileAtomically(draws[k] / "failed.txt", reason + "\n");
+  };
+  return ShareOut(draws.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
+    const Claim claim(draws[k] / "claimed");
+    if (!claim.holds() || std::filesystem::exists(draws[k] / "intervals.json")) return;
+    try {
+      if (!std::filesystem::exists(draws[k] / "truth.json")) {
+        const TrialCase trial = DrawIntervalCase(suite, static_cast<int>(k));
+        SimulateCase(trial, draws[k]);
+        SaveCase(trial, draws[k] / "truth.json");
+      }
+      FitDraw(draws[k]);
+    } catch (const InputError& problem) {
+      keep_failure(k, problem.what());
+    }
+  });
+}
+
+IntervalReport ReportIntervals(const std::filesystem::path& folder) {
+  IntervalReport report;
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<double>> deviations;
+  for (const std::filesystem::path& draw : CasesIn(folder)) {
+    if (!std::filesystem::exists(draw / "intervals.json")) {
+      std::string reason = "not fitted yet";
+      if (std::ifstream stream(draw / "failed.txt"); stream) std::getline(stream, reason);
+      report.failed.push_back(draw.filename().string() + ": " + reason);
+      continue;
+    }
+    for (const JudgedParameter& parameter : LoadJudged(draw / "intervals.json")) {
+      if (!deviations.contains(parameter.name)) names.push_back(parameter.name);
+      deviations[parameter.name].push_back(parameter.deviations);
+    }
+  }
+  for (const std::string& name : names) report.tallies.push_back(TallyOf(name, deviations[name]));
+  return report;
+}
+
+std::string IntervalReportInWords(const IntervalReport& report) {
+  std::string text =
+      fmt::format("{:28} {:>5}  {:>5} {:>5} {:>5}  {:>6} {:>6}  {:>8}\n", "parameter", "draws",
+                  "50 %", "80 %", "95 %", "mean", "spread", "χ² p");
+  for (const IntervalTally& tally : report.tallies)
+    text += fmt::format("{:28} {:5}  {:4.0f}% {:4.0f}% {:4.0f}%  {:6.2f} {:6.2f}  {:8.2g}\n",
+                        tally.name, tally.draws, 100 * tally.covered_50, 100 * tally.covered_80,
+                        100 * tally.covered_95, tally.mean, tally.spread, tally.p_uniform);
+  for (const std::string& failed : report.failed) text += "no fit: " + failed + "\n";
+  return text;
+}
+
+void SaveIntervalReport(const IntervalReport& report, const std::filesystem::path& folder) {
+  nlohmann::json tallies = nlohmann::json::array();
+  LineChart chart{"Where the truth lies in the posterior",
+                  "p",
+                  "share of draws whose truth lies below the p-quantile",
+                  {}};
+  for (const IntervalTally& tally : report.tallies) {
+    tallies.push_back({{"name", tally.name},
+                       {"draws", tally.draws},
+                       {"covered_50", tally.covered_50},
+                       {"covered_80", tally.covered_80},
+                       {"covered_95", tally.covered_95},
+                       {"mean", tally.mean},
+                       {"spread", tally.spread},
+                       {"p_uniform", tally.p_uniform},
+                       {"positions", tally.positions}});
+    const Eigen::Index count = static_cast<Eigen::Index>(tally.positions.size());
+    chart.lines.push_back({tally.name,
+                           Eigen::Map<const Eigen::VectorXd>(tally.positions.data(), count),
+                           Eigen::VectorXd::LinSpaced(count, 1.0 / count, 1)});
+  }
+  chart.lines.push_back(
+      {"if the intervals are right", Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 1)});
+  WriteFileAtomically(
+      folder / "intervals.json",
+      nlohmann::json({{"schema_version", kIntervalsVersion}, {"parameters", tallies}}).dump(2) +
+          "\n");
+  WriteFileAtomically(folder / "intervals.txt", IntervalReportInWords(report));
+  WriteLineChart(folder / "intervals.svg", chart);
+}
+
+}  // namespace lacuna
