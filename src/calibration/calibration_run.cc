@@ -114,9 +114,9 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
       const Eigen::Index at = static_cast<Eigen::Index>(k);
       FittedParameter& parameter = record.parameters[k];
       if (errors.at_mesh_limit.size() > 0) parameter.with_finest_mesh = errors.at_mesh_limit[at];
-      CountModelErrors(problem.parameters()[k],
-                       parameter.with_finest_mesh.value_or(parameter.estimate.value),
-                       errors.deviation[at], &parameter.estimate);
+      parameter.at_limit = errors.at_limit[at];
+      CountModelErrors(problem.parameters()[k], *parameter.at_limit, errors.deviation[at],
+                       &parameter.estimate);
     }
     progress->End();
   }

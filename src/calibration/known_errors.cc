@@ -1,7 +1,6 @@
 #include "calibration/known_errors.h"
 
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -9,11 +8,12 @@
 #include "calibration/linear_misfit.h"
 #include "calibration/mesh_limit.h"
 #include "calibration/size_errors.h"
+#include "calibration/step_errors.h"
 
 namespace lacuna {
 
 KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::VectorXd& values) {
-  KnownErrors errors{{}, Eigen::VectorXd::Zero(values.size())};
+  KnownErrors errors{{}, values, Eigen::VectorXd::Zero(values.size())};
   const std::vector<CalibratedParameter>& parameters = problem.parameters();
   const LinearisedMisfit misfit = problem.Linearise(values, true);
   if (!misfit.usable) return errors;
@@ -24,23 +24,35 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
           std::hypot(errors.deviation[k], log_scale ? change[k] / values[k] : change[k]);
     }
   };
-  if (const auto mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true)) {
-    errors.at_mesh_limit = MovedBy(parameters, values, mesh->ToLimit() * mesh->change);
-    add(mesh->DeviationOfLimit() * mesh->change);
-  }
-  const Eigen::MatrixXd by_size = ChangesBySize(problem, values, misfit);
-  if (by_size.cols() == 0) return errors;
-  const Eigen::MatrixXd by_parameters =
-      WhitenedRows(misfit.jacobian.leftCols(values.size()), misfit, 0, /*fitted_only=*/true);
+  const Eigen::MatrixXd jacobian = misfit.jacobian.leftCols(values.size());
+  const Eigen::MatrixXd by_parameters = WhitenedRows(jacobian, misfit, 0, /*fitted_only=*/true);
   std::vector<LinearPrior> priors = PriorsAbout(parameters, values);
   for (LinearPrior& prior : priors) prior.mean = 0;  // only the response to the error counts
   const LinearGaussianModel model(Eigen::VectorXd::Zero(by_parameters.rows()), by_parameters,
                                   std::move(priors));
-  std::vector<int> all(static_cast<size_t>(values.size()));
-  std::iota(all.begin(), all.end(), 0);
-  const Eigen::MatrixXd whitened = WhitenedRows(by_size, misfit, 0, /*fitted_only=*/true);
-  for (Eigen::Index axis = 0; axis < whitened.cols(); ++axis)
-    add(model.WithResidual(whitened.col(axis), by_parameters).Fit(all, 1).change);
+  // The change of the parameters by which the fit would compensate for a change of the residual, m.
+  const auto response = [&](const Eigen::MatrixXd& change) -> Eigen::VectorXd {
+    const Eigen::VectorXd whitened = WhitenedRows(change, misfit, 0, /*fitted_only=*/true);
+    return model.WithResidual(whitened, by_parameters).FitAll(1).change;
+  };
+  Eigen::VectorXd to_limit = Eigen::VectorXd::Zero(values.size());
+  if (const auto mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true)) {
+    // `mesh` was compared with other parameters, chosen under a narrower prior than that of the
+    // fit.
+    const Eigen::VectorXd change = response(mesh->other - mesh->own - jacobian * mesh->change);
+    errors.at_mesh_limit = MovedBy(parameters, values, mesh->ToLimit() * change);
+    to_limit = mesh->ToLimit() * change;
+    add(mesh->DeviationOfLimit() * change);
+  }
+  if (const auto step = FindStepErrors(problem, values, misfit)) {
+    const Eigen::VectorXd change = response(step->to_limit);
+    to_limit += change;
+    add(StepErrors::kLimitDeviation * change);
+    add(StepErrors::kDepartureDeviation * response(step->departure));
+  }
+  errors.at_limit = MovedBy(parameters, values, to_limit);
+  const Eigen::MatrixXd by_size = ChangesBySize(problem, values, misfit);
+  for (Eigen::Index axis = 0; axis < by_size.cols(); ++axis) add(response(by_size.col(axis)));
   return errors;
 }
 

@@ -1,6 +1,6 @@
-// Errors of a fitted model that its fit does not estimate: the size of its elements and the
-// dimensions of the object. They move the fitted parameters, so that an interval of the noise alone
-// would be too narrow and in the wrong place.
+// Errors of a fitted model that its fit does not estimate: the size of its elements, the
+// length of its time step, and the dimensions of the object. They move the fitted parameters, so
+// that an interval of the noise alone would be too narrow and in the wrong place.
 //
 // To first order, an error that changes the whitened residual by c moves the parameters by
 //   δ = −(JᵀJ + P⁻¹)⁻¹ Jᵀ c,
@@ -22,9 +22,12 @@ struct KnownErrors {
   // The values that would have been fitted with infinitely fine elements; empty where no other mesh
   // can be made or simulated (calibration/mesh_limit.h).
   Eigen::VectorXd at_mesh_limit;
+  // The values that would have been fitted with infinitely fine elements, as far as these are
+  // known, and infinitely short time steps.
+  Eigen::VectorXd at_limit;
   // Standard deviations by which unknown parts of the errors move the parameters, on the scale on
-  // which each is fitted: of the extrapolation to infinitely fine elements, and of the dimensions
-  // (PredictionStudy::size_deviation).
+  // which each is fitted: of the extrapolations to infinitely fine elements and short steps, and of
+  // the dimensions (PredictionStudy::size_deviation).
   Eigen::VectorXd deviation;
 };
 

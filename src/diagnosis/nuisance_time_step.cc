@@ -1,14 +1,7 @@
-// The error of the time step.
-//
-// With the residuals r, r½ and r¼ for the step h, h/2 and h/4, Richardson's extrapolation (Phil.
-// Trans. A 210, 1911) to h → 0 is r¼ + (r¼ − r½)/(p − 1), where p is the factor by which the change
-// falls with each halving. The first column is the change to that limit, the second the departure
-// of the two halvings from the factor p.
-#include <algorithm>
-#include <cmath>
-
+// The error of the time step: the change to infinitely short steps, and the part of it that is
+// unknown (calibration/step_errors.h).
+#include "calibration/step_errors.h"
 #include "diagnosis/nuisance_catalogue.h"
-#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
@@ -33,37 +26,15 @@ NuisanceCard Card() {
   return card;
 }
 
-// The factor p. A scheme of first order may converge with second order, and effects with memory may
-// reduce the order, so p is the observed one (Roache, Verification and Validation in Computational
-// Science and Engineering, 1998), between that of the scheme and second order.
-double ChangePerHalving(TimeScheme scheme, const Eigen::VectorXd& whole,
-                        const Eigen::VectorXd& half, const Eigen::VectorXd& quarter) {
-  constexpr double kSecondOrder = 4;
-  const double least = std::exp2(OrderOf(scheme));
-  const double along = (half - whole).dot(quarter - half);
-  if (!(along > 0)) return least;
-  return std::clamp((half - whole).squaredNorm() / along, least, kSecondOrder);
-}
-
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
-  const auto with_steps = [&](double ratio) {
-    PredictionStudy study = at.problem.WithEstimatedNoise();
-    study.time_step /= ratio;
-    return CalibrationProblem(study, at.problem.body()->mesh)
-        .Linearise(at.values, false, {}, nullptr, &at.misfit)
-        .residual;
-  };
-  const Eigen::VectorXd& whole = at.misfit.residual;
-  const Eigen::VectorXd half = with_steps(2), quarter = with_steps(4);
-  if (half.size() != whole.size() || quarter.size() != half.size()) return std::nullopt;
-  const double power = ChangePerHalving(at.problem.study().scheme, whole, half, quarter);
+  const std::optional<StepErrors> errors = FindStepErrors(at.problem, at.values, at.misfit);
+  if (!errors) return std::nullopt;
   NuisanceCandidate candidate;
-  candidate.columns.resize(half.size(), 2);
-  candidate.columns << quarter + (quarter - half) / (power - 1) - whole,
-      (quarter - half) - (half - whole) / power;
-  const NuisanceThresholds& thresholds = kThresholds.nuisances;
-  candidate.priors = {{1, thresholds.step_limit, false}, {0, thresholds.step_unknown, false}};
-  candidate.unknown = thresholds.step_unknown * candidate.columns.col(1);
+  candidate.columns.resize(errors->to_limit.size(), 2);
+  candidate.columns << errors->to_limit, errors->departure;
+  candidate.priors = {{1, StepErrors::kLimitDeviation, false},
+                      {0, StepErrors::kDepartureDeviation, false}};
+  candidate.unknown = StepErrors::kDepartureDeviation * errors->departure;
   return candidate;
 }
 

@@ -106,11 +106,6 @@ struct NuisanceThresholds {
   // known to this share, in any direction. Calibrated on bars of 160 to 190 quadratic elements,
   // where refining twelvefold left 2 to 5 σ of an error of 70 to 95 σ in other directions.
   double mesh_unknown = 0.4;
-  // The extrapolation to infinitely short time steps, relative to its change; and the share to
-  // which the departure from the assumed order is known. Calibrated on bars with a second-order
-  // scheme: 1/16 of the step was off the limit by 0.1 of that departure in eight bars, and by 0.6
-  // in two that vibrate in modes which no step resolves.
-  double step_limit = 0.05, step_unknown = 0.7;
   // Nuisances of single frames are left out of recordings with more frames: each frame is too small
   // a part of the data, and the columns would need too much memory.
   size_t most_single_frames = 400;

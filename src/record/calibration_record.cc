@@ -69,6 +69,7 @@ json ToJson(const CalibrationRecord& record) {
     parameters.back().update(EstimateToJson(parameter.estimate));
     if (parameter.with_finest_mesh)
       parameters.back()["with_finest_mesh"] = *parameter.with_finest_mesh;
+    if (parameter.at_limit) parameters.back()["at_limit"] = *parameter.at_limit;
     if (parameter.share_of_forces)
       parameters.back()["share_of_forces"] = *parameter.share_of_forces;
     if (const auto& near = parameter.near_bound)
@@ -133,6 +134,7 @@ CalibrationRecord FromJson(const json& value) {
     parameter.log_scale = entry.at("log_scale");
     parameter.estimate = EstimateFromJson(entry);
     if (entry.contains("with_finest_mesh")) parameter.with_finest_mesh = entry["with_finest_mesh"];
+    if (entry.contains("at_limit")) parameter.at_limit = entry["at_limit"];
     if (entry.contains("share_of_forces")) parameter.share_of_forces = entry["share_of_forces"];
     if (entry.contains("near_bound"))
       parameter.near_bound = {entry["near_bound"].at("side") == "upper",

@@ -35,10 +35,12 @@ struct FittedParameter {
   std::string name, unit;
   bool log_scale = false;  // estimated on a logarithmic scale
   ParameterEstimate estimate;
-  // The value extrapolated to infinitely fine elements, about which the interval is centred. Absent
-  // where the extrapolation was not possible.
+  // The value extrapolated to infinitely fine elements; absent where this was not possible.
   std::optional<double> with_finest_mesh;
   std::optional<NearBound> near_bound = {};
+  // The value extrapolated to infinitely fine elements, where possible, and infinitely short time
+  // steps. The interval is centred there. Absent where the model misses the data by far.
+  std::optional<double> at_limit = {};
   // The share of the measured forces in what the fitted data tell about the parameter if all others
   // are known, Σ (∂r/∂θ)² over their whitened rows. Absent where no force is measured.
   std::optional<double> share_of_forces = {};

@@ -14,13 +14,13 @@
 namespace lacuna {
 namespace {
 
-// A parameter that finer elements would change by more than this many standard deviations gets a
-// note.
+// A parameter that finer elements and steps would change by more than this many standard deviations
+// gets a note.
 constexpr double kMoved = 1;
 
 struct TableText {
   std::string text;
-  bool moved = false;  // whether finer elements would move a parameter
+  bool moved = false;  // whether finer elements and steps would move a parameter
 };
 
 std::string TableHeader() {
@@ -34,9 +34,10 @@ void AppendParameter(const FittedParameter& parameter, TableText* table) {
   if (estimate.verdict == ParameterEstimate::Verdict::kTradedOff)
     note +=
         fmt::format(" with {} (correlation {:.2f})", estimate.traded_with, estimate.correlation);
-  const double with_finest_mesh = parameter.with_finest_mesh.value_or(estimate.value);
-  if (std::abs(DeviationsTo(with_finest_mesh, estimate, parameter.log_scale)) > kMoved) {
-    note += fmt::format("{}{:.4g} with finer elements", note.empty() ? "" : "; ", with_finest_mesh);
+  const double at_limit = parameter.at_limit.value_or(estimate.value);
+  if (std::abs(DeviationsTo(at_limit, estimate, parameter.log_scale)) > kMoved) {
+    note +=
+        fmt::format("{}{:.4g} with finer elements and steps", note.empty() ? "" : "; ", at_limit);
     table->moved = true;
   }
   if (const auto& near = parameter.near_bound;
@@ -52,8 +53,9 @@ std::string ParameterTable(const CalibrationRecord& record) {
   for (const FittedParameter& parameter : record.parameters) AppendParameter(parameter, &table);
   if (table.moved)
     table.text +=
-        "  The intervals are those of the values with infinitely fine elements; a smaller "
-        "mesh.max_volume\n  brings the values of the model closer to them.\n";
+        "  The intervals are those of the values with infinitely fine elements and time steps, to "
+        "which a smaller\n  mesh.max_volume and motion.time_step bring the values of the model "
+        "closer.\n";
   return table.text;
 }
 

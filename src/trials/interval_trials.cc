@@ -254,7 +254,7 @@ std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialC
     const ParameterEstimate& estimate = parameter.estimate;
     const auto free = [&](double value) { return parameter.log_scale ? std::log(value) : value; };
     // A bound may cut the interval off on one side.
-    const double centre = free(parameter.with_finest_mesh.value_or(estimate.value));
+    const double centre = free(parameter.at_limit.value_or(estimate.value));
     const double half =
         std::max(free(estimate.high) - centre, centre - free(estimate.low)) / kNormalQuantile;
     judged.push_back({parameter.name, parameter.unit, found->second, estimate.value, estimate.low,

@@ -23,14 +23,14 @@ TEST(CalibrationReport, ShowsParametersErrorsAndConflicts) {
   parameter.estimate.verdict = ParameterEstimate::Verdict::kTradedOff;
   parameter.estimate.traded_with = "drag.coefficient";
   parameter.estimate.correlation = 0.97;
-  parameter.with_finest_mesh = 14;
+  parameter.at_limit = 14;
   parameter.near_bound = {false, 10.9};
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"swing", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
   record.prior_conflicts = {MarkerConflictCount{"swing", 7, 8}};
   const std::string text = CalibrationReport(record);
   EXPECT_THAT(text, HasSubstr("traded off with drag.coefficient (correlation 0.97)"));
-  EXPECT_THAT(text, HasSubstr("14 with finer elements; near its lower bound 10.9"));
+  EXPECT_THAT(text, HasSubstr("14 with finer elements and steps; near its lower bound 10.9"));
   EXPECT_THAT(text, HasSubstr("held fixed: density 1070 kg/m^3; gravity.acceleration [0, 0, -9.81] "
                               "m/s^2\n"));
   EXPECT_THAT(text, HasSubstr("fitted    0.100 mm (largest 0.200), 1.5 σ, 3 frames"));

@@ -82,7 +82,7 @@ TEST(IntervalTrials, MeasuresTheTruthInDeviationsFromTheCentreOfTheInterval) {
   modulus.estimate.value = 0.9e5;  // of a coarse mesh; the interval is centred at 1e5
   modulus.estimate.low = 1e5 * std::exp(-1.96 * 0.05);
   modulus.estimate.high = 1e5 * std::exp(1.96 * 0.05);
-  modulus.with_finest_mesh = 1e5;
+  modulus.at_limit = 1e5;
   FittedParameter& ratio = record.parameters.emplace_back();
   ratio.name = "poisson_ratio";
   ratio.estimate.value = 0.48;
