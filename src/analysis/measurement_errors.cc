@@ -8,7 +8,7 @@
 
 namespace lacuna {
 
-Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& count, int points,
+Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<double>& count, int points,
                          const MeasurementErrors& errors,
                          const std::vector<Eigen::Matrix3d>& deformation) {
   SeriesLayout layout;
@@ -17,12 +17,12 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& co
     const size_t components = static_cast<size_t>(rows.rows()) / count.size();
     layout.series = static_cast<int>(components) * points;
     layout.times.resize(count.size() / static_cast<size_t>(points));  // white: times do not matter
-    for (const int n : count) layout.count.insert(layout.count.end(), components, n);
+    for (const double n : count) layout.count.insert(layout.count.end(), components, n);
   }
   return Whitened(rows, layout, {errors.noise, 0, errors.common});
 }
 
-Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<int>& count,
+Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<double>& count,
                             int points, const MeasurementErrors& errors,
                             const std::vector<char>& among,
                             const std::vector<Eigen::Matrix3d>& deformation) {

@@ -8,7 +8,9 @@
 namespace lacuna {
 
 // Each component of each point (a marker, or a patch of a surface) is observed in the frames f as
-// the mean of n_f measurements, and its errors have the covariance diag(σ²/n_f) + s² 1 1ᵀ. If the
+// the mean of n_f measurements, and its errors have the covariance diag(σ²/n_f) + s² 1 1ᵀ. n_f is
+// the weight of the point, which need not be whole: a marker whose error is σ_f counts as (σ/σ_f)²
+// measurements. If the
 // deformation gradient F_f at each point in each frame (points × frames) is given, the common part
 // is an error of the point's place on the undeformed object, which is multiplied by F_f: the second
 // term is then s² F_f F_gᵀ (analysis/series_noise.h).
@@ -21,13 +23,13 @@ struct MeasurementErrors {
 // The inverse square root of the covariance times `rows` (components of points, frames outermost),
 // a residual or its Jacobian. `count` (points × frames) holds the n_f; rows of points that were not
 // seen (0) must be 0.
-Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<int>& count, int points,
+Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const std::vector<double>& count, int points,
                          const MeasurementErrors& errors,
                          const std::vector<Eigen::Matrix3d>& deformation = {});
 
 // The posterior mean of the common part of the errors given the residual of the frames `among` (one
 // flag per frame): components × points, m, on the undeformed object.
-Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<int>& count,
+Eigen::MatrixXd CommonError(const Eigen::VectorXd& residual, const std::vector<double>& count,
                             int points, const MeasurementErrors& errors,
                             const std::vector<char>& among,
                             const std::vector<Eigen::Matrix3d>& deformation = {});

@@ -22,7 +22,7 @@ constexpr double kCorrelationStep = kLargestCorrelation / kCorrelationSteps;
 // Applies R^(−1/2) to each column of `values` (frames × columns) of one series. Frames in which the
 // series was not observed become 0.
 Eigen::MatrixXd Uncorrelated(const Eigen::MatrixXd& values, const std::vector<double>& times,
-                             const std::vector<int>& count, double correlation_time) {
+                             const std::vector<double>& count, double correlation_time) {
   Eigen::MatrixXd white = Eigen::MatrixXd::Zero(values.rows(), values.cols());
   Eigen::Index last = -1;
   for (Eigen::Index f = 0; f < values.rows(); ++f) {
@@ -55,7 +55,7 @@ Eigen::MatrixXd Whitened(const Eigen::MatrixXd& rows, const SeriesLayout& layout
   for (int first = 0; first < layout.series; first += width) {
     for (int c = 0; c < width; ++c) {
       const int s = first + c;
-      std::vector<int> count(layout.times.size());
+      std::vector<double> count(layout.times.size());
       Eigen::MatrixXd own(frame_count, width);
       for (Eigen::Index f = 0; f < frame_count; ++f) {
         const bool is_chosen = frames.empty() || frames[f];

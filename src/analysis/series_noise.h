@@ -20,7 +20,8 @@ namespace lacuna {
 struct SeriesLayout {
   int series = 0;             // number of series
   std::vector<double> times;  // s, times of the frames, ascending
-  std::vector<int> count;     // series × frames: n of each mean; 0 where nothing was observed
+  // series × frames: n of each mean, which need not be whole; 0 where nothing was observed.
+  std::vector<double> count;
   // (series/3) × frames: F at the point whose coordinates are three consecutive series. Empty: the
   // offset is constant and the series are independent.
   std::vector<Eigen::Matrix3d> deformation;

@@ -44,6 +44,9 @@ void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& fol
   for (Eigen::Index row = 0; row < motion.reactions.rows(); ++row)
     table.push_back({fmt::format("grip_{}_{}_N", row / 3 + 1, "xyz"[row % 3]),
                      motion.reactions.row(row).head(frames)});
+  for (Eigen::Index row = 0; row < motion.torques.rows(); ++row)
+    table.push_back({fmt::format("grip_{}_torque_{}_N_m", row / 3 + 1, "xyz"[row % 3]),
+                     motion.torques.row(row).head(frames)});
   SaveCsv(table, folder / "loads.csv");
 }
 

@@ -369,7 +369,7 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     part.layout.times.push_back(item.recording.times[frame]);
     part.fitted.push_back(item.recording.times[frame] <= item.fit_until);
   }
-  for (const int count : misfit.count)
+  for (const double count : misfit.count)
     part.layout.count.insert(part.layout.count.end(), static_cast<size_t>(components), count);
   part.layout.deformation = std::move(misfit.deformation);
   part.observed = std::move(misfit.observed);
@@ -387,6 +387,7 @@ CalibrationProblem::LinearisedRecording CalibrationProblem::LineariseRecording(
     of_force.layout = {reaction.components, part.layout.times, reaction.count, {}};
     of_force.fitted = part.fitted;
     of_force.speed = -reaction.jacobian.rightCols<1>();
+    of_force.sign = reaction.sign;
     linearised.residual.conservativeResize(of_force.first_row + reaction.residual.size());
     linearised.residual.tail(reaction.residual.size()) = reaction.residual;
     if (with_jacobian) AppendRows(columns(reaction.jacobian), &linearised.jacobian);

@@ -23,7 +23,7 @@ namespace lacuna {
 
 // The misfit of the fitted recordings over all of their frames, held-out frames included, and its
 // derivatives at some parameter values. The rows of the recordings follow one another; they are in
-// m, those of reactions in N, and not whitened.
+// m, those of reactions in N or N m, and not whitened.
 struct LinearisedMisfit {
   // The points of one recording, or one of its measured reactions; the latter follow the former.
   struct Part {
@@ -34,6 +34,7 @@ struct LinearisedMisfit {
     MeasurementErrors errors;
     std::vector<char> fitted;  // for each frame: 1 where it was fitted, 0 where held out
     Eigen::VectorXd speed;     // d(predicted)/dt, one entry per row, m/s or N/s
+    double sign = 1;           // ReactionMisfit::sign
     // Of points only. For each frame: what the prediction was compared with.
     std::vector<Observed> observed;
     Eigen::VectorXd held;  // 3n, m: the equilibrium before the motion

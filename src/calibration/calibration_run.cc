@@ -52,7 +52,7 @@ std::vector<HeldParameter> HeldIn(const PredictionStudy& study) {
 
 struct CalibrationStage {
   CalibrationRecord record;
-  CsvTable misfit, reactions;
+  CsvTable misfit, reactions, torques;
 };
 
 CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& reference,
@@ -103,7 +103,8 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   }
   record.prior_conflicts = FindPriorConflicts(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);
-  stage.reactions = ReactionTable(problem, misfits);
+  stage.reactions = ReactionTable(problem, misfits, /*torques=*/false);
+  stage.torques = ReactionTable(problem, misfits, /*torques=*/true);
   const std::vector<double> shares = SharesOfForces(problem, calibration.parameters);
   for (size_t k = 0; k < shares.size(); ++k) record.parameters[k].share_of_forces = shares[k];
   progress->End();
@@ -172,9 +173,10 @@ CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progres
         WriteCalibrationFile(value.record, folder / "calibration.json");
         if (!value.misfit.empty()) SaveCsv(value.misfit, folder / "misfit.csv");
         if (!value.reactions.empty()) SaveCsv(value.reactions, folder / "reactions.csv");
+        if (!value.torques.empty()) SaveCsv(value.torques, folder / "torques.csv");
       },
       [](const std::filesystem::path& folder) {
-        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}};
+        return CalibrationStage{ReadCalibrationFile(folder / "calibration.json"), {}, {}, {}};
       });
   run.Finish();
   stage.record.mesh = reference.quality;

@@ -14,7 +14,8 @@ namespace lacuna {
 
 // Runs the stages mesh and calibration, or reads back those that are up to date. They write
 // calibration.json, misfit.csv (the measured place and the difference of each marker or patch in
-// each frame) and, where forces are measured, reactions.csv. Throws InputError and Interrupted.
+// each frame) and, where forces or torques are measured, reactions.csv or torques.csv. Throws
+// InputError and Interrupted.
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress);
 
 // The record of a finished run. Throws InputError where there is none.

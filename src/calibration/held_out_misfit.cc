@@ -48,7 +48,8 @@ std::optional<Misfit> KnownMisfit(const RecordingModel& model, size_t recording,
       found->reactions.push_back({part.layout.series,
                                   known->residual.segment(part.first_row, part.layout.Rows()),
                                   {},
-                                  part.layout.count});
+                                  part.layout.count,
+                                  part.sign});
       continue;
     }
     const Eigen::Index components = model.observer().Components();

@@ -89,7 +89,7 @@ Eigen::Index ObservedRows(const LinearisedMisfit& misfit) {
   Eigen::Index observed = 0;
   for (const LinearisedMisfit::Part& part : misfit.parts)
     observed += std::count_if(part.layout.count.begin(), part.layout.count.end(),
-                              [](int count) { return count > 0; });
+                              [](double count) { return count > 0; });
   return observed;
 }
 

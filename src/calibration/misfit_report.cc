@@ -59,7 +59,7 @@ FittedScan DescribeScan(const RecordingMisfit& misfit, const Eigen::Matrix3Xd& p
     offered += observed.offered;
     used += observed.used;
   }
-  for (const int count : misfit.misfit.count) {
+  for (const double count : misfit.misfit.count) {
     if (count == 0) continue;
     variances += noise * noise / count;
     ++seen;

@@ -38,10 +38,12 @@ FittedReaction MeasureReaction(const MeasuredReaction& reading, const ReactionMi
   FittedReaction reaction;
   reaction.name = reading.name;
   reaction.labels = reading.labels;
+  reaction.is_torque = reading.is_torque;
+  reaction.is_opposite = misfit.sign < 0;
   reaction.deviation = reading.deviation;
   reaction.deviation_is_estimated = reading.deviation_is_estimated;
   reaction.tare_deviation = reading.tare_deviation;
-  reaction.largest_reading = reading.forces.cwiseAbs().maxCoeff();
+  reaction.largest_reading = reading.values.cwiseAbs().maxCoeff();
   const Eigen::VectorXd tare = TareOf(misfit, reading, tells_tare);
   reaction.tare.assign(tare.begin(), tare.end());
   const Eigen::VectorXd residual =

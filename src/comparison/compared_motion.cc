@@ -33,7 +33,7 @@ bool MatchesFit(const RecordedResiduals& residuals, const ReplayedMotion& motion
     return false;
   const Eigen::MatrixXd shown = motion.predicted - residuals.measured - residuals.difference;
   const int markers = residuals.PointCount();
-  std::vector<int> seen;
+  std::vector<double> seen;
   for (Eigen::Index f = 0; f < shown.cols(); ++f)
     for (int m = 0; m < markers; ++m) seen.push_back(shown.col(f).segment<3>(3 * m).allFinite());
   const Eigen::MatrixXd places =

@@ -64,10 +64,14 @@ void ForceLinearisation::ForEachObserved(const Visit& visit) const {
 }
 
 Eigen::MatrixXd ForceLinearisation::Whiten(const Eigen::MatrixXd& rows) const {
-  std::vector<int> observed;
+  const PredictedRecording& item = recording_.item();
+  const std::vector<Eigen::VectorXd>& weights = item.recording.markers.weights;
+  std::vector<double> observed;
   for (const int frame : frames_)
-    for (int m = 0; m < recording_.PointCount(); ++m)
-      observed.push_back(Measured(frame).col(m).allFinite());
+    for (int m = 0; m < recording_.PointCount(); ++m) {
+      const double weight = weights.empty() ? 1 : weights[item.frames[frame]][m];
+      observed.push_back(Measured(frame).col(m).allFinite() ? weight : 0);
+    }
   return Whitened(rows, observed, recording_.PointCount(), errors_, deformation_);
 }
 
@@ -128,7 +132,9 @@ LinearisedForce ForceLinearisation::Linearise(const ReplayedMotion& motion,
     for (Eigen::Index k = 0; k < nuisances; ++k) {
       const MisfitDirection& direction = recording_.nuisances()[static_cast<size_t>(k)].direction;
       auto column = jacobian.col(forces + k).segment<3>(row);
-      if (direction.kind == MisfitDirection::Kind::kModel) continue;
+      if (direction.kind == MisfitDirection::Kind::kModel ||
+          direction.kind == MisfitDirection::Kind::kCellDelay)
+        continue;  // not of the markers
       if (direction.kind != MisfitDirection::Kind::kClock)
         column = recording_.ByRegistration(direction, motion.registration,
                                            motion.predicted.col(frame).segment<3>(3 * m));

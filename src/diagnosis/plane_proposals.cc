@@ -22,7 +22,7 @@ Eigen::Matrix3Xd Displacements(const LinearisedMisfit& misfit, const LinearisedM
   const Eigen::Index frames = static_cast<Eigen::Index>(part.observed.size());
   const Eigen::Index points = part.observed.front().count.size();
   const Eigen::Index components = part.layout.series / points;
-  std::vector<int> count;
+  std::vector<double> count;
   for (const Observed& seen : part.observed)
     count.insert(count.end(), seen.count.begin(), seen.count.end());
   const Eigen::VectorXd residual = misfit.residual.segment(part.first_row, part.layout.Rows());

@@ -1,5 +1,6 @@
 #include "experiment/observer.h"
 
+#include "experiment/subset_rows.h"
 #include "geometry/embedding.h"
 
 namespace lacuna {
@@ -15,6 +16,11 @@ Eigen::MatrixXd ObservationMatrix::operator*(const Eigen::Ref<const Eigen::Matri
 
 MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
     : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.markers.places)) {
+  if (recording.instrument.subset > 0) {
+    rows_ = std::make_shared<const ObservationMatrix>(
+        SubsetRows(mesh, recording.markers.places, recording.instrument));
+    return;
+  }
   ObservationMatrix rows;
   for (Eigen::Index m = 0; m < places_.tet.size(); ++m) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -44,9 +50,13 @@ Observed MarkerObserver::ObserveWithin(double /*reach_factor*/, int frame,
   observed.measured = recording_.markers.positions[frame];
   observed.target = observed.measured.reshaped();
   observed.count.resize(observed.measured.cols());
-  for (Eigen::Index m = 0; m < observed.count.size(); ++m)
-    observed.count[m] = observed.measured.col(m).allFinite() ? 1 : 0;
-  observed.offered = observed.used = observed.count.sum();
+  const std::vector<Eigen::VectorXd>& weights = recording_.markers.weights;
+  for (Eigen::Index m = 0; m < observed.count.size(); ++m) {
+    const bool is_seen = observed.measured.col(m).allFinite();
+    observed.count[m] = is_seen ? (weights.empty() ? 1 : weights[frame][m]) : 0;
+    observed.used += is_seen;
+  }
+  observed.offered = observed.used;
   return observed;
 }
 

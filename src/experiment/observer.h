@@ -29,7 +29,9 @@ struct ObservationMatrix {
 struct Observed {
   std::shared_ptr<const ObservationMatrix> rows;
   Eigen::VectorXd target;
-  Eigen::VectorXi count;      // for each point: number of measurements averaged; 0: not seen
+  // For each point: the number of measurements of which it is the mean, or for a marker its weight,
+  // (σ/σ_i)² for the noise σ of the recording and σ_i of the marker; 0: not seen.
+  Eigen::VectorXd count;
   Eigen::Matrix3Xd measured;  // 3 × points, m, the measured places; NaN where not seen
   // For points of three components, the deformation gradient F = ∂x/∂X of the model at each point,
   // by which an error of the point's place on the object is multiplied. If it is empty, the error
@@ -63,7 +65,8 @@ class Observer {
                                  const Eigen::VectorXd& position) const = 0;
 };
 
-// Compares markers, which are embedded in the mesh at their places.
+// Compares markers, which are embedded in the mesh at their places, or averaged over the subset of
+// the recording's instrument (subset_rows.h).
 class MarkerObserver : public Observer {
  public:
   // Both arguments must outlive the observer.

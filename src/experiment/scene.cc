@@ -4,7 +4,6 @@
 #include <glog/logging.h>
 
 #include <Eigen/Geometry>
-#include <numeric>
 #include <utility>
 
 #include "core/interrupt.h"
@@ -58,9 +57,9 @@ SceneGrip ReadGrip(const Config& config, int index) {
   grip.profile = ReadProfile(config);
   if (const auto cell = config.OptionalChild("measured_force")) {
     grip.force_deviation = cell->Quantity("deviation", kForce, kPositive);
-    if (grip.angle != 0)
-      config.Fail("measured_force", "is implemented for grips that do not rotate");
   }
+  if (const auto cell = config.OptionalChild("measured_torque"))
+    grip.torque_deviation = cell->Quantity("deviation", kTorque, kPositive);
   return grip;
 }
 
@@ -163,9 +162,14 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
         [&load](double time) -> Eigen::Vector3d { return load.profile.At(time) * load.force; }));
   }
 
-  std::vector<size_t> grips(model.grips.size());
-  std::iota(grips.begin(), grips.end(), 0);
-  motion.reactions.resize(3 * static_cast<Eigen::Index>(grips.size()), scene.frames);
+  std::vector<Reaction> forces, torques;
+  for (size_t k = 0; k < model.grips.size(); ++k) {
+    forces.push_back({k, std::nullopt});
+    torques.push_back(
+        {k, body->mesh.nodes(Eigen::all, model.grips[k].nodes).rowwise().mean().eval()});
+  }
+  motion.reactions.resize(3 * static_cast<Eigen::Index>(forces.size()), scene.frames);
+  motion.torques.resizeLike(motion.reactions);
 
   MotionHistory history = RestHistory(model), before = history;
   history.velocity = scene.bar.velocity.replicate(body->NodeCount(), 1);
@@ -186,7 +190,9 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
     const StepEquation equation = frame == 0
                                       ? StepEquation(model, before, TimeScheme::kQuasiStatic, 0)
                                       : StepEquation(model, before, scene.step.scheme, time_step);
-    motion.reactions.col(frame) = GripReactions(model, grips, equation, history.position, {});
+    const Eigen::VectorXd nodal = NodalReactions(equation, history.position, {});
+    motion.reactions.col(frame) = SumReactions(model, forces, history.position, nodal);
+    motion.torques.col(frame) = SumReactions(model, torques, history.position, nodal);
     Eigen::Vector3d load = Eigen::Vector3d::Zero();
     for (const SceneLoad& each : scene.loads) load += each.profile.At(history.time) * each.force;
     motion.times.push_back(frame / scene.frame_rate);
@@ -212,27 +218,34 @@ RecordedGrip DrivenGrip(const Scene& scene, const SceneGrip& grip) {
   driven.displacements.resize(3, steps + 1);
   for (Eigen::Index k = 0; k <= steps; ++k)
     driven.displacements.col(k) = grip.profile.At(driven.times[k]) * grip.translation;
+  if (grip.angle == 0) return driven;
+  driven.pivot = grip.centre;
+  driven.rotations.resize(3, steps + 1);
+  for (Eigen::Index k = 0; k <= steps; ++k)
+    driven.rotations.col(k) = grip.profile.At(driven.times[k]) * grip.angle * grip.axis;
   return driven;
 }
 
-// What the load cell of grip `number` of the scene reads in each frame.
+// What the load cell of grip `number` of the scene reads in each frame: its force or its torque.
 MeasuredReaction LoadCellReading(const Scene& scene, const SceneMotion& motion, size_t number,
-                                 size_t held) {
-  constexpr uint64_t kStream = 80;
+                                 size_t held, bool is_torque) {
+  const uint64_t stream = is_torque ? 81 : 80;
   const SceneGrip& grip = scene.grips[number];
   MeasuredReaction reading;
   reading.name = grip.region.name;
   reading.held = held;
   reading.labels = {"x", "y", "z"};
   reading.directions = Eigen::Matrix3d::Identity();
-  reading.deviation = *grip.force_deviation;
+  reading.is_torque = is_torque;
+  reading.deviation = is_torque ? *grip.torque_deviation : *grip.force_deviation;
   reading.times = Eigen::Map<const Eigen::VectorXd>(motion.times.data(),
                                                     static_cast<Eigen::Index>(motion.times.size()));
-  reading.forces = motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(number));
-  for (Eigen::Index k = 0; k < reading.forces.size(); ++k)
-    reading.forces.reshaped()[k] +=
-        reading.deviation * Normal(RandomBits({scene.scanner->options.seed, kStream, number,
-                                               static_cast<uint64_t>(k)}));
+  reading.values = (is_torque ? motion.torques : motion.reactions)
+                       .middleRows<3>(3 * static_cast<Eigen::Index>(number));
+  for (Eigen::Index k = 0; k < reading.values.size(); ++k)
+    reading.values.reshaped()[k] +=
+        reading.deviation *
+        Normal(RandomBits({scene.scanner->options.seed, stream, number, static_cast<uint64_t>(k)}));
   return reading;
 }
 
@@ -242,16 +255,21 @@ void AddGrips(const Scene& scene, const SceneMotion& motion, RecordedObject* obj
   for (const bool driven : {false, true}) {
     for (size_t k = 0; k < scene.grips.size(); ++k) {
       const SceneGrip& grip = scene.grips[k];
-      if (IsHeld(grip) == driven || (driven && !grip.force_deviation)) continue;
-      if (grip.force_deviation) cells.emplace_back(k, object->fixed.size() + object->grips.size());
+      const bool is_measured = grip.force_deviation || grip.torque_deviation;
+      if (IsHeld(grip) == driven || (driven && !is_measured)) continue;
+      if (is_measured) cells.emplace_back(k, object->fixed.size() + object->grips.size());
       if (driven)
         object->grips.push_back(DrivenGrip(scene, grip));
       else
         object->fixed.push_back(grip.region);
     }
   }
-  for (const auto& [grip, held] : cells)
-    object->reactions.push_back(LoadCellReading(scene, motion, grip, held));
+  for (const auto& [grip, held] : cells) {
+    if (scene.grips[grip].force_deviation)
+      object->reactions.push_back(LoadCellReading(scene, motion, grip, held, false));
+    if (scene.grips[grip].torque_deviation)
+      object->reactions.push_back(LoadCellReading(scene, motion, grip, held, true));
+  }
 }
 
 }  // namespace

@@ -47,8 +47,9 @@ struct SceneGrip {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
   double angle = 0;                                  // rad
   Profile profile;
-  // N, noise of a component of the load cell that measures its reaction; absent: there is none.
-  std::optional<double> force_deviation;
+  // N and N m, noise of a component of the load cells that measure its force and its torque about
+  // the mean of its undeformed nodes; absent: there is none.
+  std::optional<double> force_deviation, torque_deviation;
 };
 
 struct Scene {
@@ -83,7 +84,9 @@ struct SceneMotion {
   std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, one per frame
   std::vector<Eigen::Matrix3Xd> velocities;  // m/s
   std::vector<Eigen::Vector3d> load;         // N, total of the loads, one per frame
-  Eigen::MatrixXd reactions;  // 3·grips × frames, N, force of each grip on the body
+  // 3·grips × frames, N and N m: the force of each grip on the body, and its torque about the mean
+  // of the grip's undeformed nodes.
+  Eigen::MatrixXd reactions, torques;
   bool IsUsable() const { return status == Status::kFinished; }
 };
 

@@ -91,7 +91,7 @@ Observed SurfaceObserver::ObserveWithin(double reach_factor, int frame,
   observed.offered = static_cast<int>(matches.size());
   observed.distance = found.distance;
   observed.target = Eigen::VectorXd::Zero(patches);
-  observed.count = Eigen::VectorXi::Zero(patches);
+  observed.count = Eigen::VectorXd::Zero(patches);
   observed.normal = patches_.normal;
   observed.measured =
       Eigen::Matrix3Xd::Constant(3, patches, std::numeric_limits<double>::quiet_NaN());

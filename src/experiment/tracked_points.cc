@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -33,10 +34,45 @@ std::vector<int> EvenlySpread(const Eigen::Matrix3Xd& points, const std::vector<
   return chosen;
 }
 
+// The entries of `values` by row, NaN for rows that the frame does not have.
+Eigen::VectorXd ByRow(const Frame& frame, const Eigen::VectorXd& values) {
+  Eigen::VectorXd by_row =
+      Eigen::VectorXd::Constant(frame.row_count, std::numeric_limits<double>::quiet_NaN());
+  if (values.size() > 0) by_row(frame.source_row) = values;
+  return by_row;
+}
+
+// The weights of markers from the standard deviations (one vector per frame, NaN or 0 where none is
+// given) that a program of image correlation expects. The programs count the noise of the images
+// alone, not the errors of shape functions, lenses and calibration, so that one below a quarter of
+// the median over all points and frames counts as that quarter. Larger: a few points dominate less;
+// smaller: they are trusted more than any correlation deserves.
+std::vector<Eigen::VectorXd> WeightsOf(const std::vector<Eigen::VectorXd>& sigma) {
+  constexpr double kLeast = 0.25;
+  std::vector<double> all;
+  for (const Eigen::VectorXd& frame : sigma)
+    for (const double value : frame)
+      if (value > 0) all.push_back(value);
+  if (all.empty()) return {};
+  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
+  const double typical = all[all.size() / 2];
+  std::vector<Eigen::VectorXd> weights;
+  for (const Eigen::VectorXd& frame : sigma) {
+    weights.emplace_back(Eigen::VectorXd::Ones(frame.size()));
+    // The reference image, correlated with itself, has no error at all.
+    if (!(frame.array() > 0).any()) continue;
+    for (Eigen::Index m = 0; m < frame.size(); ++m)
+      if (frame[m] >= 0)
+        weights.back()[m] = std::pow(typical / std::max(frame[m], kLeast * typical), 2);
+  }
+  return weights;
+}
+
 }  // namespace
 
 void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording) {
-  const Eigen::Matrix3Xd places = PointsByRow(LoadFrame(*recording, frames.front()));
+  const Frame first = LoadFrame(*recording, frames.front());
+  const Eigen::Matrix3Xd places = PointsByRow(first);
   std::vector<int> seen;
   for (int row = 0; row < places.cols(); ++row)
     if (places.col(row).allFinite()) seen.push_back(row);
@@ -72,11 +108,13 @@ void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* re
       recording->times.size(),
       Eigen::Matrix3Xd::Constant(3, static_cast<Eigen::Index>(rows.size()),
                                  std::numeric_limits<double>::quiet_NaN()));
-  for (const int frame : frames)
-    recording->markers.positions[frame] =
-        frame == frames.front()
-            ? recording->markers.places
-            : Eigen::Matrix3Xd(PointsByRow(LoadFrame(*recording, frame))(Eigen::all, rows));
+  std::vector<Eigen::VectorXd> sigma(recording->times.size());
+  for (const int frame : frames) {
+    const Frame shown = frame == frames.front() ? first : LoadFrame(*recording, frame);
+    recording->markers.positions[frame] = PointsByRow(shown)(Eigen::all, rows);
+    sigma[frame] = ByRow(shown, shown.sigma)(rows);
+  }
+  recording->markers.weights = WeightsOf(sigma);
 }
 
 }  // namespace lacuna

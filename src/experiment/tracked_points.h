@@ -11,9 +11,11 @@ namespace lacuna {
 
 // Fills in the recording's markers ("p0", "p1", … by row) and their places, which are their
 // positions in the first of `frames`, where the object must be undeformed. Points that this frame
-// does not show are left out; of more than some hundred points an evenly spread subset is used. A
-// grip that follows the scan then follows the points in its region. Throws InputError, which names
-// the file, where a region contains no visible point, and whatever LoadFrame throws.
+// does not show are left out; where the program of image correlation gives the standard deviation
+// of each point, it becomes the marker's weight. Of more than some hundred points an evenly spread
+// subset is used. A grip that follows the scan then follows the points in its region. Throws
+// InputError, which names the file, where a region contains no visible point, and whatever
+// LoadFrame throws.
 void ConvertTrackedPointsToMarkers(const std::vector<int>& frames, Recording* recording);
 
 }  // namespace lacuna

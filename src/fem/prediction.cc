@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/interrupt.h"
-#include "fem/grip_reaction.h"
 #include "geometry/hermite.h"
 
 namespace lacuna {
@@ -48,12 +47,15 @@ EndState EndOf(const MotionHistory& history, const TangentLinear& linear) {
 }
 
 // The reactions at the end of the step of `equation`.
-void AddReactions(const Model& model, const std::vector<size_t>& grips,
+void AddReactions(const Model& model, const std::vector<Reaction>& reactions,
                   const StepEquation& equation, const Eigen::VectorXd& external_force,
                   const TangentLinear& linear, EndState* end) {
-  if (grips.empty()) return;
-  end->reaction = GripReactions(model, grips, equation, end->state.position, external_force);
-  end->reaction_jacobian = SumOverGrips(model, grips, linear.reaction());
+  if (reactions.empty()) return;
+  const Eigen::VectorXd& position = end->state.position;
+  const Eigen::VectorXd forces = NodalReactions(equation, position, external_force);
+  end->reaction = SumReactions(model, reactions, position, forces);
+  end->reaction_jacobian =
+      SumReactionChanges(model, reactions, position, forces, linear.position(), linear.reaction());
 }
 
 // The requested times, which are visited in their order.

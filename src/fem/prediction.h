@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/grip_reaction.h"
 #include "fem/simulate.h"
 #include "fem/tangent_linear.h"
 
@@ -38,9 +39,8 @@ struct PredictionOptions {
   Eigen::VectorXd held_guess = {};
   double time_step = 0.005;  // s, upper limit; a smaller one is slower and more accurate (OrderOf)
   StepOptions step = {.scheme = TimeScheme::kTwoStep};
-  double sensitivity_tolerance = 1e-7;  // TangentLinearOptions::tolerance
-  // The grips whose reactions are wanted (grip_reaction.h), by their indices in Model::grips.
-  std::vector<size_t> reactions = {};
+  double sensitivity_tolerance = 1e-7;   // TangentLinearOptions::tolerance
+  std::vector<Reaction> reactions = {};  // the forces and torques of grips that are wanted
 };
 
 // The motion at a requested time. The Jacobians with respect to the perturbations are 3n ×
@@ -51,8 +51,8 @@ struct PredictedState {
   const Eigen::VectorXd& velocity;
   const Eigen::MatrixXd& position_jacobian;
   const Eigen::MatrixXd& velocity_jacobian;
-  // The force that each grip of PredictionOptions::reactions exerts on the body (three rows per
-  // grip, N), its rate (N/s) and its Jacobian (N per unit).
+  // Each of PredictionOptions::reactions (three rows each, N or N m), its rate (per s) and its
+  // Jacobian (per unit).
   const Eigen::VectorXd& reaction;
   const Eigen::VectorXd& reaction_rate;
   const Eigen::MatrixXd& reaction_jacobian;

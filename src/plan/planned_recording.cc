@@ -111,12 +111,15 @@ Markers PlannedMarkers(const PredictedRecording& item, const std::vector<double>
                        const FixtureMotion& fixture) {
   Markers markers = item.recording.markers;
   markers.positions.clear();
+  markers.weights.clear();
   for (size_t k = 0; k < times.size(); ++k) {
     const int frame = item.frames[std::min(k, item.frames.size() - 1)];
     Eigen::Matrix3Xd positions = item.recording.markers.positions[frame];
     for (Eigen::Index m = 0; m < positions.cols(); ++m)
       if (!positions.col(m).allFinite()) positions.col(m) = markers.places.col(m);
     markers.positions.push_back(fixture.At(times[k]) * positions);
+    if (!item.recording.markers.weights.empty())
+      markers.weights.push_back(item.recording.markers.weights[frame]);
   }
   return markers;
 }
@@ -155,6 +158,10 @@ void AddMarkers(int count, const TetMesh& mesh, const std::vector<RecordedGrip>&
   for (Eigen::Matrix3Xd& positions : markers->positions) {
     positions.conservativeResize(Eigen::NoChange, before + count);
     positions.rightCols(count) = markers->places.rightCols(count);
+  }
+  for (Eigen::VectorXd& weights : markers->weights) {
+    weights.conservativeResize(before + count);
+    weights.tail(count).setOnes();
   }
 }
 
@@ -269,7 +276,7 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   for (MeasuredReaction& reaction : object.reactions) {
     reaction.times =
         Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Eigen::Index>(times.size()));
-    reaction.forces = Eigen::MatrixXd::Zero(reaction.Components(), reaction.times.size());
+    reaction.values = Eigen::MatrixXd::Zero(reaction.Components(), reaction.times.size());
   }
   RequireClampAbovePlanes(grips, study, mesh, times);
 

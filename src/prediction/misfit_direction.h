@@ -9,10 +9,11 @@ namespace lacuna {
 // The variable by which one column of a Misfit's Jacobian is the derivative.
 struct MisfitDirection {
   // A parameter of the model, or a nuisance parameter of the recording: the delay, s, of its clock,
-  // or the translation, m, or rotation, rad, of its coordinate system along or about an axis.
-  enum class Kind { kModel, kClock, kShift, kTurn };
+  // the translation, m, or rotation, rad, of its coordinate system along or about an axis, or the
+  // delay, s, of one of its load cells behind the frames.
+  enum class Kind { kModel, kClock, kShift, kTurn, kCellDelay };
   Kind kind = Kind::kModel;
-  int axis = 0;
+  int axis = 0;                    // kCellDelay: the number of the reading
   Perturbation perturbation = {};  // for kModel
 };
 

@@ -95,6 +95,21 @@ void Turn(const Eigen::Matrix3d& turn, Stacked* stacked) {
   *stacked = turned.reshaped(stacked->rows(), stacked->cols());
 }
 
+// Gives the misfit of a reading the rows of exactly `frames` frames. Where a prediction stops
+// early, a load cell with a delay may have reached more or fewer of them; the latter count as not
+// read.
+void Truncate(size_t frames, const MeasuredReaction& reading, ReactionMisfit* misfit) {
+  misfit->components = reading.Components();
+  const Eigen::Index before = misfit->residual.size();
+  const Eigen::Index rows = misfit->components * static_cast<Eigen::Index>(frames);
+  misfit->residual.conservativeResize(rows);
+  misfit->jacobian.conservativeResize(rows, misfit->jacobian.cols());
+  misfit->count.resize(static_cast<size_t>(rows), 0);
+  if (rows <= before) return;
+  misfit->residual.tail(rows - before).setZero();
+  misfit->jacobian.bottomRows(rows - before).setZero();
+}
+
 // The motion of the nodes in one frame (3n, node-major).
 struct NodalMotion {
   Eigen::VectorXd position, velocity;
@@ -172,6 +187,12 @@ RecordingModel::RecordingModel(const PredictionStudy& study, const PredictedReco
     model_.effects.push_back(load);
   if (item_.hold) AddHold(mesh);
   if (item_.clock_deviation > 0) AddNuisance("clock", "s", item_.clock_deviation, {Kind::kClock});
+  for (size_t k = 0; k < Reactions().size(); ++k) {
+    const MeasuredReaction& reading = Reactions()[k];
+    if (reading.delay_deviation > 0)
+      AddNuisance(fmt::format("{}.{}_delay", reading.name, reading.Quantity()), "s",
+                  reading.delay_deviation, {Kind::kCellDelay, static_cast<int>(k)});
+  }
   for (const bool turns : {false, true}) {
     const double deviation = turns ? item_.turn_deviation : item_.shift_deviation;
     for (int axis = 0; deviation > 0 && axis < 3; ++axis)
@@ -267,6 +288,15 @@ double RecordingModel::Delay(const Eigen::VectorXd& nuisance) const {
   return late;
 }
 
+double RecordingModel::CellDelay(size_t reading, const Eigen::VectorXd& nuisance) const {
+  for (size_t k = 0; k < nuisances_.size(); ++k) {
+    const MisfitDirection& direction = nuisances_[k].direction;
+    if (direction.kind == Kind::kCellDelay && direction.axis == static_cast<int>(reading))
+      return nuisance[static_cast<Eigen::Index>(k)];
+  }
+  return 0;
+}
+
 Eigen::Isometry3d RecordingModel::Registration(const Eigen::VectorXd& nuisance) const {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero(), turn = Eigen::Vector3d::Zero();
   for (size_t k = 0; k < nuisances_.size(); ++k) {
@@ -300,15 +330,39 @@ RecordingModel RecordingModel::With(const EffectList& effects) const {
   return with;
 }
 
+std::vector<RecordingModel::Visit> RecordingModel::VisitsOf(const std::vector<double>& frame_times,
+                                                            double late,
+                                                            const Eigen::VectorXd& nuisance) const {
+  std::vector<Visit> visits;
+  for (size_t f = 0; f < frame_times.size(); ++f)
+    visits.push_back({frame_times[f] - late, f, true, {}});
+  for (size_t k = 0; k < Reactions().size(); ++k) {
+    const bool has_delay = Reactions()[k].delay_deviation > 0;
+    const double delay = CellDelay(k, nuisance);
+    for (size_t f = 0; f < frame_times.size(); ++f) {
+      if (has_delay)
+        visits.push_back({frame_times[f] - late - delay, f, false, {k}});
+      else
+        visits[f].readings.push_back(k);
+    }
+  }
+  std::stable_sort(visits.begin(), visits.end(),
+                   [](const Visit& a, const Visit& b) { return a.time < b.time; });
+  return visits;
+}
+
 Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::VectorXd& nuisance,
                                const std::vector<MisfitDirection>& directions,
                                const PredictionHints& hints) const {
   PredictionOptions options = Options(nuisance);
-  options.reactions = MeasuredGrips(Reactions());
+  options.reactions = MeasuredReactions(Reactions(), model_);
   if (hints.near_equilibrium != nullptr) options.held_guess = *hints.near_equilibrium;
   const double late = Delay(nuisance);
+  std::vector<double> of_frames;
+  for (const int frame : frames) of_frames.push_back(item_.recording.times[frame]);
+  const std::vector<Visit> visits = VisitsOf(of_frames, late, nuisance);
   std::vector<double> times;
-  for (const int frame : frames) times.push_back(item_.recording.times[frame] - late);
+  for (const Visit& visit : visits) times.push_back(visit.time);
 
   // The derivatives by clock and registration follow from velocity and position, without a tangent.
   std::vector<Perturbation> perturbations;
@@ -322,19 +376,26 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
 
   Misfit misfit;
   misfit.points = PointCount();
+  misfit.reactions.resize(Reactions().size());
   const Eigen::Index components = observer_->Components();
   const Eigen::Index rows_of_frame = components * misfit.points;
   misfit.residual.resize(rows_of_frame * static_cast<Eigen::Index>(frames.size()));
   misfit.jacobian.setZero(misfit.residual.size(), static_cast<Eigen::Index>(directions.size()));
   misfit.summary = lacuna::Predict(
-      model_, options, times, perturbations, [&](int index, const PredictedState& state) {
+      model_, options, times, perturbations, [&](int number, const PredictedState& state) {
+        const Visit& visit = visits[static_cast<size_t>(number)];
+        const Eigen::Index index = static_cast<Eigen::Index>(visit.frame);
+        for (const size_t k : visit.readings)
+          AppendReaction(Reactions(), k, of_frames[visit.frame], state, options.start_time,
+                         directions, &misfit.reactions[k]);
+        if (!visit.with_points) return;
         NodalMotion nodal{state.position, state.velocity, {}};
         if (!perturbations.empty()) nodal.jacobian = state.position_jacobian;
         if (is_registered) nodal.Register(registration);
         Observed seen =
             hints.observed != nullptr
-                ? (*hints.observed)[index]
-                : observer_->ObserveWithin(hints.reach_factor, frames[index], nodal.position);
+                ? (*hints.observed)[visit.frame]
+                : observer_->ObserveWithin(hints.reach_factor, frames[visit.frame], nodal.position);
         const bool moves = state.time > options.start_time;
         const auto derivative = [&](size_t k) -> Eigen::VectorXd {
           switch (directions[k].kind) {
@@ -342,6 +403,8 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
               return nodal.jacobian.col(column[k]);
             case Kind::kClock:
               return (moves ? -1.0 : 0.0) * nodal.velocity;
+            case Kind::kCellDelay:
+              return Eigen::VectorXd::Zero(nodal.position.size());
             case Kind::kShift:
             case Kind::kTurn:
               break;
@@ -353,8 +416,6 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
           return rigid.reshaped();
         };
         const Eigen::Index begin = rows_of_frame * index;
-        AppendReactions(Reactions(), item_.recording.times[frames[index]], state,
-                        options.start_time, directions, &misfit.reactions);
         misfit.residual.segment(begin, rows_of_frame) = *seen.rows * nodal.position - seen.target;
         for (size_t k = 0; k < directions.size(); ++k)
           misfit.jacobian.col(static_cast<Eigen::Index>(k)).segment(begin, rows_of_frame) =
@@ -367,12 +428,17 @@ Misfit RecordingModel::Predict(const std::vector<int>& frames, const Eigen::Vect
         }
         for (const Eigen::Matrix3d& F : seen.deformation)
           misfit.deformation.emplace_back(registration.linear() * F);
-        misfit.frames.push_back(frames[index]);
+        misfit.frames.push_back(frames[visit.frame]);
         misfit.observed.push_back(std::move(seen));
       });
   const Eigen::Index reached = rows_of_frame * static_cast<Eigen::Index>(misfit.frames.size());
   misfit.residual.conservativeResize(reached);
   misfit.jacobian.conservativeResize(reached, Eigen::NoChange);
+  of_frames.resize(misfit.frames.size());
+  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
+    Truncate(misfit.frames.size(), Reactions()[k], &misfit.reactions[k]);
+    ChooseSign(Reactions()[k], of_frames, &misfit.reactions[k]);
+  }
   return misfit;
 }
 

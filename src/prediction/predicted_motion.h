@@ -25,7 +25,9 @@ struct Misfit {
   int points = 0;            // number of points in each frame
   Eigen::VectorXd residual;  // components·points·frames
   Eigen::MatrixXd jacobian;  // ∂residual/∂(direction), one column per direction
-  std::vector<int> count;    // points × frames: number of measurements averaged; 0: not seen
+  // points × frames: the number of measurements of which each is the mean, or the weight that a
+  // point has instead (Observed::count); 0: not seen.
+  std::vector<double> count;
   // points × frames: the deformation gradient F (Observed), rotated into the recording's
   // coordinates; empty for scans.
   std::vector<Eigen::Matrix3d> deformation;
@@ -80,7 +82,7 @@ class RecordingModel {
     return dynamic_cast<const MarkerObserver*>(observer_.get());
   }
   // A nuisance parameter of the recording: a component of the force that holds the body, the clock,
-  // or a component of the registration. It starts at 0.
+  // the delay of a load cell, or a component of the registration. It starts at 0.
   struct Nuisance {
     CalibratedParameter prior;
     MisfitDirection direction;
@@ -106,6 +108,8 @@ class RecordingModel {
   // recording's clock.
   PredictionOptions Options(const Eigen::VectorXd& nuisance) const;
   double Delay(const Eigen::VectorXd& nuisance) const;
+  // The delay, s, of a load cell behind the recording's clock.
+  double CellDelay(size_t reading, const Eigen::VectorXd& nuisance) const;
   // The transform from the fixture's coordinate system, which is the model's, to the recording's: a
   // rotation about the mean of the markers' places, then a translation.
   Eigen::Isometry3d Registration(const Eigen::VectorXd& nuisance) const;
@@ -125,6 +129,17 @@ class RecordingModel {
   const PredictionStudy& study_;
   const PredictedRecording& item_;
   Model model_;
+  // A time of the model at which a frame is compared: its points, readings of load cells, or both.
+  struct Visit {
+    double time = 0;   // s
+    size_t frame = 0;  // among those that are predicted
+    bool with_points = false;
+    std::vector<size_t> readings;
+  };
+  // Those of frames at these times (s, the recording's, whose clock is `late`), ascending. A load
+  // cell with a delay of its own is compared at other times than the points.
+  std::vector<Visit> VisitsOf(const std::vector<double>& frame_times, double late,
+                              const Eigen::VectorXd& nuisance) const;
   void AddHold(const TetMesh& mesh);
   void AddNuisance(const std::string& name, const std::string& unit, double deviation,
                    MisfitDirection direction);

@@ -128,13 +128,13 @@ void CheckReactions(const Config& config, PredictedRecording* item) {
                                            reaction.file.string(), reaction.times[0],
                                            reaction.times[reaction.times.size() - 1]));
     if (reaction.deviation > 0) continue;
-    reaction.deviation = WhiteNoise(reaction.forces);
+    reaction.deviation = WhiteNoise(reaction.values);
     reaction.deviation_is_estimated = true;
     if (!(reaction.deviation > 0))
       config.Fail("recording",
-                  fmt::format("measured_force of {}: deviation: cannot be estimated from {} (few "
+                  fmt::format("measured_{} of {}: deviation: cannot be estimated from {} (few "
                               "values, or the same in most rows); give it",
-                              reaction.name, reaction.file.string()));
+                              reaction.Quantity(), reaction.name, reaction.file.string()));
   }
 }
 

@@ -1,9 +1,11 @@
 // Predicted minus measured reactions of the grips of one recording (scan/measured_reaction.h).
 //
 // The reaction is compared in the coordinate system of the fixture, which is the model's, at the
-// times of the frames. The load cell shares the recording's clock; the registration of markers does
-// not concern it. Its offset (tare) is a nuisance with a Gaussian prior of mean 0, which the
-// measurement errors contain (analysis/measurement_errors.h): the same error in all frames.
+// times of the frames. The load cell shares the recording's clock, unless it has a delay d of its
+// own: a value that is stamped t is then that of t − d. The registration of markers does not
+// concern it. Its offset (tare) is a nuisance with a Gaussian prior of mean 0, which the
+// measurement errors contain (analysis/measurement_errors.h): the same error in all frames. An
+// unknown sign is the one with the smaller misfit.
 #ifndef LACUNA_PREDICTION_REACTION_MISFIT_H_
 #define LACUNA_PREDICTION_REACTION_MISFIT_H_
 
@@ -21,20 +23,27 @@ namespace lacuna {
 // reading does not cover.
 struct ReactionMisfit {
   int components = 0;
-  Eigen::VectorXd residual;  // components·frames, N
-  Eigen::MatrixXd jacobian;  // ∂residual/∂(direction), N per unit
-  std::vector<int> count;    // components·frames: 1, or 0 where there is no reading
+  Eigen::VectorXd residual;   // components·frames, N or N m: predicted − sign·measured
+  Eigen::MatrixXd jacobian;   // ∂residual/∂(direction), per unit
+  std::vector<double> count;  // components·frames: 1, or 0 where there is no reading
+  double sign = 1;
 };
 
-// The indices of the grips that are measured, in Model::grips of a RecordingModel, one per reading.
-std::vector<size_t> MeasuredGrips(const std::vector<MeasuredReaction>& readings);
+// The reactions that are measured, one per reading, for the model of a RecordingModel.
+std::vector<Reaction> MeasuredReactions(const std::vector<MeasuredReaction>& readings,
+                                        const Model& model);
 
-// Appends a frame at `time` (s, the recording's) to the misfit of each reading. `state` has the
-// reactions of MeasuredGrips(). Before `start_time`, s, a delay of the clock changes nothing.
-void AppendReactions(const std::vector<MeasuredReaction>& readings, double time,
-                     const PredictedState& state, double start_time,
-                     const std::vector<MisfitDirection>& directions,
-                     std::vector<ReactionMisfit>* misfits);
+// Appends a frame at `time` (s, the recording's) to the misfit of reading `k`, with the sign +1.
+// `state` has the reactions of MeasuredReactions(), at the time of the reading. Before
+// `start_time`, s, a delay changes nothing.
+void AppendReaction(const std::vector<MeasuredReaction>& readings, size_t k, double time,
+                    const PredictedState& state, double start_time,
+                    const std::vector<MisfitDirection>& directions, ReactionMisfit* misfit);
+
+// Completes a misfit whose reading may have either sign: takes the one with the smaller misfit.
+// `times` (s) are those of the frames.
+void ChooseSign(const MeasuredReaction& reading, const std::vector<double>& times,
+                ReactionMisfit* misfit);
 
 // The errors of a reading, N in place of m.
 MeasurementErrors ReadingErrors(const MeasuredReaction& reading);

@@ -15,6 +15,17 @@ namespace {
 constexpr double kRestThreshold = 2.5;
 constexpr int kFewestAtRest = 8;
 
+// Multiplies the rows of each marker (three of them) by the root of its mean weight in `frames`, so
+// that all have the noise of a marker of weight 1.
+void ScaleByWeights(const Markers& markers, const std::vector<int>& frames, Eigen::MatrixXd* rows) {
+  if (markers.weights.empty() || frames.empty()) return;
+  for (Eigen::Index m = 0; m < markers.places.cols(); ++m) {
+    double sum = 0;
+    for (const int frame : frames) sum += markers.weights[frame][m];
+    rows->middleRows<3>(3 * m) *= std::sqrt(sum / static_cast<double>(frames.size()));
+  }
+}
+
 }  // namespace
 
 double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<int>& frames) {
@@ -23,6 +34,7 @@ double EstimateRecordingNoise(const PredictedRecording& item, const std::vector<
                        static_cast<Eigen::Index>(frames.size()));
   for (size_t k = 0; k < frames.size(); ++k)
     rows.col(static_cast<Eigen::Index>(k)) = item.recording.markers.positions[frames[k]].reshaped();
+  ScaleByWeights(item.recording.markers, frames, &rows);
   const double white = WhiteNoise(rows);
   if (!(white > 0)) return 0;
   Eigen::VectorXd times(static_cast<Eigen::Index>(frames.size()));

@@ -13,6 +13,23 @@ constexpr double kNuisanceHorizon = 0.1;
 // For scans, the number of times that correspondences are searched for.
 constexpr int kRounds = 3;
 
+// Appends the whitened rows of the load cells.
+void AppendReadings(const RecordingModel& model, const Misfit& misfit, Prediction* prediction) {
+  for (size_t k = 0; k < misfit.reactions.size(); ++k) {
+    const ReactionMisfit& reaction = misfit.reactions[k];
+    const auto whitened = [&](const Eigen::MatrixXd& rows) {
+      return Whitened(rows, reaction.count, reaction.components,
+                      ReadingErrors(model.Reactions()[k]));
+    };
+    const Eigen::Index before = prediction->residual.size(), more = reaction.residual.size();
+    prediction->residual.conservativeResize(before + more);
+    prediction->residual.tail(more) = whitened(reaction.residual);
+    if (prediction->jacobian.cols() == 0) continue;
+    prediction->jacobian.conservativeResize(before + more, Eigen::NoChange);
+    prediction->jacobian.bottomRows(more) = whitened(reaction.jacobian);
+  }
+}
+
 }  // namespace
 
 Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementErrors errors,
@@ -49,6 +66,7 @@ Eigen::VectorXd FitRecordingNuisances(const RecordingModel& model, MeasurementEr
           whitened(place_offset ? misfit.ResidualWithout(*place_offset) : misfit.residual);
       if (kept.empty()) kept = std::move(misfit.observed);
       if (with_jacobian) prediction.jacobian = whitened(misfit.jacobian);
+      AppendReadings(model, misfit, &prediction);
       return prediction;
     });
     values = fitted.parameters;

@@ -7,44 +7,56 @@ namespace {
 
 using nlohmann::json;
 
-json MeasureToJson(const ReactionMeasure& measure) {
+// The keys of forces end with "_N", those of torques with "_N_m".
+std::string Key(const char* name, bool is_torque) {
+  return std::string(name) + (is_torque ? "_N_m" : "_N");
+}
+
+json MeasureToJson(const ReactionMeasure& measure, bool is_torque) {
   return {{"frames", measure.frames},
           {"values", measure.values},
-          {"rms_N", measure.rms},
-          {"largest_N", measure.largest},
+          {Key("rms", is_torque), measure.rms},
+          {Key("largest", is_torque), measure.largest},
           {"rms_over_sigma", measure.rms_over_sigma}};
 }
 
-ReactionMeasure MeasureFromJson(const json& value) {
-  return {value.at("frames"), value.at("values"), value.at("rms_N"), value.at("largest_N"),
-          value.at("rms_over_sigma")};
+ReactionMeasure MeasureFromJson(const json& value, bool is_torque) {
+  return {value.at("frames"), value.at("values"), value.at(Key("rms", is_torque)),
+          value.at(Key("largest", is_torque)), value.at("rms_over_sigma")};
 }
 
 }  // namespace
 
 json ReactionToJson(const FittedReaction& reaction) {
+  const bool is_torque = reaction.is_torque;
   return {{"name", reaction.name},
+          {"quantity", reaction.Quantity()},
           {"components", reaction.labels},
-          {"noise_N", reaction.deviation},
+          {"is_opposite", reaction.is_opposite},
+          {Key("noise", is_torque), reaction.deviation},
           {"noise_is_estimated", reaction.deviation_is_estimated},
-          {"tare_deviation_N", reaction.tare_deviation},
-          {"tare_N", reaction.tare},
-          {"largest_reading_N", reaction.largest_reading},
-          {"in_fit", MeasureToJson(reaction.in_fit)},
-          {"held_out", MeasureToJson(reaction.held_out)}};
+          {Key("tare_deviation", is_torque), reaction.tare_deviation},
+          {Key("tare", is_torque), reaction.tare},
+          {Key("largest_reading", is_torque), reaction.largest_reading},
+          {"in_fit", MeasureToJson(reaction.in_fit, is_torque)},
+          {"held_out", MeasureToJson(reaction.held_out, is_torque)}};
 }
 
 FittedReaction ReactionFromJson(const json& value) {
   FittedReaction reaction;
   reaction.name = value.at("name");
+  // Absent in older records.
+  const bool is_torque = value.value("quantity", "force") == "torque";
+  reaction.is_torque = is_torque;
+  reaction.is_opposite = value.value("is_opposite", false);
   value.at("components").get_to(reaction.labels);
-  reaction.deviation = value.at("noise_N");
+  reaction.deviation = value.at(Key("noise", is_torque));
   reaction.deviation_is_estimated = value.at("noise_is_estimated");
-  reaction.tare_deviation = value.at("tare_deviation_N");
-  value.at("tare_N").get_to(reaction.tare);
-  reaction.largest_reading = value.at("largest_reading_N");
-  reaction.in_fit = MeasureFromJson(value.at("in_fit"));
-  reaction.held_out = MeasureFromJson(value.at("held_out"));
+  reaction.tare_deviation = value.at(Key("tare_deviation", is_torque));
+  value.at(Key("tare", is_torque)).get_to(reaction.tare);
+  reaction.largest_reading = value.at(Key("largest_reading", is_torque));
+  reaction.in_fit = MeasureFromJson(value.at("in_fit"), is_torque);
+  reaction.held_out = MeasureFromJson(value.at("held_out"), is_torque);
   return reaction;
 }
 

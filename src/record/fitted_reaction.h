@@ -1,6 +1,7 @@
 // The fit of a model to the measured reaction of one grip, as plain data.
 //
-// The reaction is the force that the grip exerts on the object, N. σ is the standard deviation of
+// The reaction is the force that the grip exerts on the object, N, or a torque, N m, which has the
+// latter unit wherever the former is mentioned. σ is the standard deviation of
 // the noise of one reading of one component. The tare is the offset of a component that is the same
 // at all times, predicted minus measured; the errors do not contain it.
 #ifndef LACUNA_RECORD_FITTED_REACTION_H_
@@ -22,7 +23,9 @@ struct ReactionMeasure {
 };
 
 struct FittedReaction {
-  std::string name;                 // of the grip
+  std::string name;  // of the grip
+  bool is_torque = false;
+  bool is_opposite = false;         // the reading was found to be that of the opposite force
   std::vector<std::string> labels;  // of the components: "x", "y", "z", or "along"
   double deviation = 0;             // N, σ
   bool deviation_is_estimated = false;
@@ -30,6 +33,9 @@ struct FittedReaction {
   std::vector<double> tare;    // N, for each component
   double largest_reading = 0;  // N
   ReactionMeasure in_fit, held_out;
+
+  const char* Unit() const { return is_torque ? "N m" : "N"; }
+  const char* Quantity() const { return is_torque ? "torque" : "force"; }
 };
 
 nlohmann::json ReactionToJson(const FittedReaction& reaction);

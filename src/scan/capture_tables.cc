@@ -127,6 +127,7 @@ CaptureTable CaptureTableOf(const std::filesystem::path& file) {
   const std::string content = ReadFilledText(file);
   if (BeginsWith(content, "NO_OF_FRAMES\t") || BeginsWith(content, "FILE_VERSION\t"))
     return CaptureTable::kQualisys;
+  if (BeginsWith(content, "scorer,")) return CaptureTable::kDeepLabCut;
   return BeginsWith(content, "Format Version,") ? CaptureTable::kMotive : CaptureTable::kNone;
 }
 
@@ -230,6 +231,52 @@ MarkerTracks ReadMotiveCsv(const std::filesystem::path& file, FileTimes use) {
   const auto rate = pairs.find("Export Frame Rate");
   SetTimes(file, times, rate == pairs.end() ? 0 : ParseNumber(rate->second).value_or(0), use,
            &tracks);
+  return tracks;
+}
+
+MarkerTracks ReadDeepLabCutCsv(const std::filesystem::path& file) {
+  const std::string content = ReadFilledText(file);
+  const std::vector<std::string_view> lines = SplitLines(content);
+  // The rows of names, by their first entry.
+  std::map<std::string, std::vector<std::string_view>> above;
+  size_t row = 0;
+  for (; row < lines.size() && above.count("coords") == 0; ++row) {
+    std::vector<std::string_view> fields = SplitFields(lines[row], ',');
+    std::string name(fields[0]);
+    above[name] = std::move(fields);
+  }
+  if (above.count("coords") == 0 || above.count("bodyparts") == 0)
+    throw InputError({file.string()}, "has no rows bodyparts and coords above its numbers");
+  const std::vector<std::string_view>&axes = above["coords"], &parts = above["bodyparts"];
+  const std::vector<std::string_view>& individuals = above["individuals"];
+  const size_t width = std::min(axes.size(), parts.size());
+  std::vector<MarkerColumnTriple> markers;
+  bool is_flat = false;
+  for (size_t k = 1; k + 1 < width; ++k) {
+    if (axes[k] != "x" || axes[k + 1] != "y") continue;
+    if (k + 2 >= width || axes[k + 2] != "z") {
+      is_flat = true;
+      continue;
+    }
+    const std::string individual = k < individuals.size() ? std::string(individuals[k]) + " " : "";
+    markers.push_back({individual + std::string(parts[k]), k});
+  }
+  if (markers.empty())
+    throw InputError(
+        {file.string()},
+        is_flat ? "gives x and y only, which are pixels of one camera; triangulate the views of "
+                  "several (DeepLabCut's triangulate, Anipose) to get points in space"
+                : "has no columns x, y, z in its row coords");
+  MarkerTracks tracks;
+  for (const MarkerColumnTriple& marker : markers) tracks.names.push_back(marker.name);
+  for (; row < lines.size(); ++row) {
+    const std::vector<std::string_view> fields = SplitFields(lines[row], ',');
+    if (IsBlank(fields)) continue;
+    if (fields.size() > axes.size())
+      FailAt(file, row, fmt::format("has {} entries; expected {}", fields.size(), axes.size()));
+    AddRow(file, lines[row], row, fields, markers, /*zero_is_unseen=*/false, &tracks);
+  }
+  if (tracks.positions.empty()) throw InputError({file.string()}, "holds no frame");
   return tracks;
 }
 

@@ -7,12 +7,20 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace lacuna {
 
 struct DataLocation {
   std::filesystem::path folder;  // file names in recording.yaml are relative to it
   std::string length_unit;       // unit of the lengths in the files, e.g. "mm"; see LengthOf()
+};
+
+// What the frames say about other measurements of a recording.
+struct FrameData {
+  std::vector<double> times;                   // s, of all frames in the files
+  std::vector<std::filesystem::path> headers;  // one file per frame whose header (table_header.h)
+                                               // may have values; empty for other files
 };
 
 }  // namespace lacuna

@@ -59,6 +59,16 @@ char FindDelimiter(std::string_view line) {
   return has('\t') ? '\t' : ' ';
 }
 
+// Whether `line` is a title above the names of the columns, which `rest` begins with.
+bool IsTitle(std::string_view line, std::string_view rest) {
+  constexpr std::string_view kDelimiters = ";,\t";
+  if (line.find_first_of(kDelimiters) != std::string_view::npos) return false;
+  const std::string_view next = Trim(rest.substr(0, rest.find('\n')));
+  if (next.find_first_of(kDelimiters) == std::string_view::npos || next.front() == '#')
+    return false;
+  return !AreNumbers(SplitFields(next, FindDelimiter(next)));
+}
+
 // Notes a header in which most entries are numbers with decimals: its line may be a row of data of
 // which one entry cannot be read. Whole numbers are common names of channels.
 void DoubtHeader(DelimitedTable* table, int line) {
@@ -173,17 +183,28 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
     ++line_number;
     if (Trim(line).empty()) continue;
     if (Trim(line).front() == '#') {
-      if (width == 0) comment = Trim(line);
+      if (width > 0) continue;
+      comment = Trim(line);
+      comment.remove_prefix(std::min(comment.find_first_not_of('#'), comment.size()));
+      comment = Trim(comment);
+      table.comments.emplace_back(comment);
+      continue;
+    }
+    if (width == 0 && Trim(line) == kStageHeader) {
+      at = std::min(content.find('\n', at), content.size() - 1) + 1;  // and the line below
+      ++line_number;
       continue;
     }
     if (width == 0 && Trim(line).substr(0, 3) == "***") continue;
+    if (delimiter == 0 &&
+        IsTitle(Trim(line), std::string_view(content).substr(std::min(at, content.size()))))
+      continue;
     if (delimiter == 0) delimiter = FindDelimiter(Trim(line));
     const std::vector<std::string_view> fields = SplitFields(line, delimiter);
     if (width == 0) {
       width = fields.size();
       if (!comment.empty()) {
-        comment.remove_prefix(std::min(comment.find_first_not_of('#'), comment.size()));
-        const std::vector<std::string_view> names = SplitFields(Trim(comment), delimiter);
+        const std::vector<std::string_view> names = SplitFields(comment, delimiter);
         if (names.size() == width) table.commented_header.assign(names.begin(), names.end());
       }
       if (!AreNumbers(fields)) {

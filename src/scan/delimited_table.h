@@ -11,11 +11,15 @@
 
 namespace lacuna {
 
-// Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped.
-// The first line is the header when one of its entries is neither a number nor empty. The delimiter
-// is the first of ';', ',' and tab that occurs in the first line, and otherwise any run of blanks.
-// Where the delimiter is not ',', and in quotes, numbers may have a decimal comma. A byte order
-// mark is not part of the first entry (ReadTextFile).
+// Lines starting with '#', empty lines and, above the table, lines starting with "***" are skipped,
+// and the stage of GOM software, a table of its own (kStageHeader).
+// A first line that is a title is skipped, too: one without delimiter above a line of names with
+// delimiters. The first line is the header when one of its entries is neither a number nor empty.
+// The delimiter is the first of ';', ',' and tab that occurs in the first line, and otherwise any
+// run of blanks. Where the delimiter is not ',', and in quotes, numbers may have a decimal comma. A
+// byte order mark is not part of the first entry (ReadTextFile).
+inline constexpr std::string_view kStageHeader = "stage;index;relative_time;date";
+
 struct DelimitedTable {
   std::filesystem::path file;
   std::vector<std::string> header;  // names of the columns; empty if the file has none
@@ -23,8 +27,9 @@ struct DelimitedTable {
   std::vector<int> line;            // line of the file of each row, from 1
   // Entries of the last comment above the first row, if it has as many as a row; empty if not.
   std::vector<std::string> commented_header;
-  std::vector<std::string> notes;  // doubts about the first line, each of which begins with the
-                                   // name of the file
+  std::vector<std::string> comments;  // above the first row, without their marks
+  std::vector<std::string> notes;     // doubts about the first line, each of which begins with the
+                                      // name of the file
 };
 
 // Throws InputError at file:line:column when the file is absent or empty, an entry is not a number

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <utility>
 
 #include "core/error.h"
 
@@ -24,10 +23,18 @@ constexpr KnownNames kKnown[] = {
     {{"model_coordinates_x", "model_coordinates_y", "model_coordinates_z"},
      {"model_displacement_x", "model_displacement_y", "model_displacement_z"}},
     {{"x_undef", "y_undef", "z_undef"}, {"u", "v", "w"}},
+    {{"x_undf", "y_undf", "z_undf"}, {"ux", "uy", "uz"}},
+    {{"coor.X", "coor.Y", "coor.Z"},
+     {"disp.Horizontal Displacement U", "disp.Vertical Displacement V", "disp.Out-Of-Plane: W"}},
     {{"X", "Y", "Z"}, {"U", "V", "W"}},
-    {{"x", "y", "z"}, {"u", "v", "w"}}};
-// Names that a table of displacements in the plane has.
-constexpr std::pair<const char*, const char*> kInPlane[] = {{"displacement_x", "displacement_y"}};
+    {{"x", "y", "z"}, {"u", "v", "w"}},
+    {{"x", "y", "z"}, {"displacement_x", "displacement_y", "displacement_z"}}};
+// The displacements beside which places are those of the deformed state.
+constexpr const char* kBesideDeformed = "displacement_x";
+// Names that a table of displacements in the plane has, and of the component that it lacks.
+constexpr Names kInPlane[] = {
+    {"displacement_x", "displacement_y", "displacement_z"},
+    {"disp.Horizontal Displacement U", "disp.Vertical Displacement V", "disp.Out-Of-Plane: W"}};
 // The status flags of DICe of a correlation that has succeeded.
 const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
 
@@ -85,6 +92,14 @@ std::string UnitOf(const DelimitedTable& table, const DisplacementColumns& colum
                                    "must have one unit",
                                    table.header[static_cast<size_t>(k)], unit));
     }
+  if (!unit.empty()) return unit;
+  // GOM: "Units: length:mm angle:deg time:s".
+  for (const std::string& comment : table.comments) {
+    const size_t at = comment.rfind("Units:", 0) == 0 ? comment.find("length:") : std::string::npos;
+    if (at == std::string::npos) continue;
+    const size_t from = at + std::string("length:").size();
+    return comment.substr(from, comment.find(' ', from) - from);
+  }
   return unit;
 }
 
@@ -101,13 +116,15 @@ std::optional<DisplacementColumns> FindIn(const DelimitedTable& table,
     columns.status = Find(header, "status_flag");
     columns.id = Find(header, "subset_id");
     // ARAMIS writes "ID", and older exports "ID,ID".
-    for (const char* name : {"id", "id,id"})
+    for (const char* name : {"id", "id,id", "index"})
       if (!columns.id) columns.id = Find(header, name);
-    columns.has_common_names = InLowerCase(known.place[0]) == "x" && !columns.sigma;
+    columns.has_common_names = InLowerCase(known.displacement[0]) == "u" &&
+                               InLowerCase(known.place[0]) == "x" && !columns.sigma;
+    columns.places_are_deformed = std::string(known.displacement[0]) == kBesideDeformed;
     return columns;
   }
-  for (const auto& [x, y] : kInPlane)
-    if (Find(header, x) && Find(header, y))
+  for (const auto& [x, y, z] : kInPlane)
+    if (Find(header, x) && Find(header, y) && !Find(header, z))
       throw InputError(
           {table.file.string()},
           fmt::format("gives displacements in the image plane only (\"{}\" and \"{}\"); a "
@@ -129,18 +146,22 @@ std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table
   return columns;
 }
 
+Eigen::Matrix3Xd PointsOf(const DelimitedTable& table, const std::array<Eigen::Index, 3>& columns) {
+  Eigen::Matrix3Xd points(3, table.values.rows());
+  for (int axis = 0; axis < 3; ++axis)
+    points.row(axis) = table.values.col(columns[static_cast<size_t>(axis)]).transpose();
+  return points;
+}
+
 Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColumns& columns) {
   const Eigen::MatrixXd& values = table.values;
   const Eigen::Index rows = values.rows();
-  Eigen::Matrix3Xd places(3, rows), displacements(3, rows);
-  for (int axis = 0; axis < 3; ++axis) {
-    places.row(axis) = values.col(columns.place[static_cast<size_t>(axis)]).transpose();
-    displacements.row(axis) =
-        values.col(columns.displacement[static_cast<size_t>(axis)]).transpose();
-  }
+  const Eigen::Matrix3Xd places = PointsOf(table, columns.place);
+  const Eigen::Matrix3Xd displacements = PointsOf(table, columns.displacement);
   const auto is_zero = (places.array() == 0 && displacements.array() == 0).colwise().all().eval();
   const bool forgets_zeros = is_zero.count() > 1;
-  Eigen::Matrix3Xd points = places + displacements;
+  Eigen::Matrix3Xd points = places;
+  if (!columns.places_are_deformed) points += displacements;
   for (Eigen::Index i = 0; i < rows; ++i) {
     const bool has_failed = (columns.sigma && !(values(i, *columns.sigma) >= 0)) ||
                             (columns.status && kSucceeded.count(values(i, *columns.status)) == 0) ||
@@ -148,6 +169,10 @@ Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColu
     if (has_failed) points.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   }
   return points;
+}
+
+Eigen::VectorXd SigmaOf(const DelimitedTable& table, const DisplacementColumns& columns) {
+  return columns.sigma ? Eigen::VectorXd(table.values.col(*columns.sigma)) : Eigen::VectorXd();
 }
 
 }  // namespace lacuna

@@ -1,10 +1,15 @@
 // Tables of image correlation: the place of each point in the reference state, its displacement
-// since, and a measure of its quality. A point of the frame lies at place + displacement.
+// since, and a measure of its quality. A point of the frame lies at place + displacement. Some
+// programs give its place in the deformed state instead.
 //
 // Recognised by the names of their columns, in any case and with or without a unit in brackets:
 //   VIC-3D CSV             X, Y, Z, U, V, W, sigma
 //   DICe, stereo           MODEL_COORDINATES_X …, MODEL_DISPLACEMENT_X …, SIGMA, STATUS_FLAG
-//   ARAMIS nodemaps        x_undef [mm] …, u [mm], v [mm], w [mm], behind # above the rows
+//   ARAMIS nodemaps        x_undef [mm] …, u [mm], v [mm], w [mm], behind # above the rows; or
+//                          x_undf …, ux, uy, uz
+//   GOM and ZEISS CSV      x, y, z, displacement_x …; x, y and z are places in the deformed state
+//   MatchID CSV            coor.X [mm] …, disp.Horizontal Displacement U [mm],
+//                          disp.Vertical Displacement V [mm], disp.Out-Of-Plane: W [mm]
 // Of places in pixels beside metric ones (x beside X) the exact name counts.
 #ifndef LACUNA_SCAN_DISPLACEMENT_TABLE_H_
 #define LACUNA_SCAN_DISPLACEMENT_TABLE_H_
@@ -22,7 +27,10 @@ namespace lacuna {
 // Indices of columns, from 0.
 struct DisplacementColumns {
   std::array<Eigen::Index, 3> place{}, displacement{};
-  std::optional<Eigen::Index> sigma;   // negative or NaN: the correlation failed
+  bool places_are_deformed = false;  // the places include the displacements already
+  // Standard deviation that the program expects of the point, in any unit, e.g. pixels; negative or
+  // NaN: the correlation failed.
+  std::optional<Eigen::Index> sigma;
   std::optional<Eigen::Index> status;  // the status flag of DICe
   std::optional<Eigen::Index> id;      // identifies a point in all frames
   std::string length_unit;             // as the header gives it, e.g. "mm"; empty: not given
@@ -37,10 +45,16 @@ struct DisplacementColumns {
 // and displacements have different units.
 std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table);
 
+// Columns as points: 3 × rows.
+Eigen::Matrix3Xd PointsOf(const DelimitedTable& table, const std::array<Eigen::Index, 3>& columns);
+
 // 3 × rows: place + displacement, in the table's unit; NaN where a point failed: where one of its
 // numbers is missing, sigma is negative or missing, the status is one of failure, or places and
 // displacements are zero in several rows.
 Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColumns& columns);
+
+// The column sigma, one entry for each row; empty where the table has none.
+Eigen::VectorXd SigmaOf(const DelimitedTable& table, const DisplacementColumns& columns);
 
 }  // namespace lacuna
 

@@ -39,6 +39,9 @@ inline size_t CountFrames(const FileFrames& source) { return source.files.size()
 // The times that the frame files themselves contain, s, one per frame; empty when they have none.
 inline std::vector<double> TimesInFiles(const FileFrames&) { return {}; }
 
+// One file per frame whose header (table_header.h) may have values; empty for other files.
+inline std::vector<std::filesystem::path> FilesWithHeaders(const FileFrames&) { return {}; }
+
 // Keeps only the frames `chosen` (numbers in the files, ascending), which are 0, 1, … from then on.
 void KeepFrames(const std::vector<int>& chosen, FileFrames* source);
 

@@ -24,6 +24,9 @@ struct Frame {
   PointCloud cloud;            // n usable points
   Eigen::VectorXi source_row;  // n, the row (vertex, marker) of each point in its file, from 0;
                                // empty for depth images, which have no rows
+  // n, the standard deviation that the program of image correlation expects of each point, in any
+  // unit: only ratios count; empty if it gives none.
+  Eigen::VectorXd sigma;
   Eigen::Matrix3Xi triangles;  // 3 × m, points of `cloud`; 3 × 0 without connectivity
   Sensors sensors;
   Eigen::Index row_count = 0;       // points in the files

@@ -16,6 +16,7 @@
 //   LoadPoints          fills the points, triangles, sensors and counts of a Frame whose `index` is
 //                       set, in SI and in the world frame; throws InputError when it cannot
 //   CountFrames, TimesInFiles, KeepFrames       the frames before and after some are chosen
+//   FilesWithHeaders                            the files whose headers have values for each frame
 //   FilesOfFrame, AllFiles                      the files behind one frame and behind all of them
 //   IsTracked, ShowsSurface, NamedMarkers       what the frames can be used for
 //   RefineByFirstFrame                          improves the source once the first frame is known

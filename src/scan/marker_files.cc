@@ -78,6 +78,8 @@ MarkerTracks ReadMarkerTracks(const std::filesystem::path& file, const MarkerCol
       return ReadQualisysTsv(file, times);
     case CaptureTable::kMotive:
       return ReadMotiveCsv(file, times);
+    case CaptureTable::kDeepLabCut:
+      return ReadDeepLabCutCsv(file);
     case CaptureTable::kNone:
       break;
   }

@@ -50,6 +50,7 @@ inline std::vector<std::filesystem::path> FilesOfFrame(const MarkerFrames& sourc
 inline std::vector<std::filesystem::path> AllFiles(const MarkerFrames& source) {
   return {source.file};
 }
+inline std::vector<std::filesystem::path> FilesWithHeaders(const MarkerFrames&) { return {}; }
 inline bool IsTracked(const MarkerFrames&) { return false; }
 inline bool ShowsSurface(const MarkerFrames&) { return false; }
 inline std::vector<std::string> DoubtsOfFirstFrame(const Frame&, const MarkerFrames&) { return {}; }

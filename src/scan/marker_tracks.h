@@ -24,6 +24,9 @@ struct Markers {
   std::vector<std::string> names;           // m
   Eigen::Matrix3Xd places;                  // 3 × m, m, on the undeformed object; NaN if unknown
   std::vector<Eigen::Matrix3Xd> positions;  // one 3 × m per frame, m, world frame; NaN: not seen
+  // One m per frame: the weight of each marker, inversely proportional to the variance of its
+  // noise, 1 for a typical one. Empty: all are 1.
+  std::vector<Eigen::VectorXd> weights = {};
 };
 
 // Whether the times of a file are used, so that they have to ascend, or are replaced by others.

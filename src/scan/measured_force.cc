@@ -11,7 +11,7 @@ Eigen::Vector3d ForceAt(const MeasuredForce& force, double time) {
 }
 
 std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& data,
-                                      const std::vector<double>& frame_times, double first_time) {
+                                      const FrameData& frames, double first_time) {
   std::vector<MeasuredForce> forces;
   for (const Config& item : config.Items("forces")) {
     MeasuredForce force;
@@ -25,7 +25,7 @@ std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& 
       force.times = Eigen::VectorXd::Constant(1, first_time);
     } else {
       const double unit = ReadUnit(item, "unit", kForce, "N");
-      const TimeSeries series = ReadTimeSeries(item, data, frame_times, unit);
+      const TimeSeries series = ReadTimeSeries(item, data, frames, unit);
       force.file = series.table.file;
       force.times = series.times;
       force.forces = series.values;

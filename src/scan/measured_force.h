@@ -27,11 +27,11 @@ struct MeasuredForce {
 Eigen::Vector3d ForceAt(const MeasuredForce& force, double time);
 
 // Reads the items of `forces`: each either `constant: [..]` or `file` with the columns and units of
-// time_series.h, and optionally `name` and `region`. `frame_times` (s) are those of all frames in
+// time_series.h, and optionally `name` and `region`. `frames` are all frames in
 // the files; a constant force gets `first_time` (s) as its only time. Throws InputError (file,
 // line, column and field).
 std::vector<MeasuredForce> ReadForces(const Config& config, const DataLocation& data,
-                                      const std::vector<double>& frame_times, double first_time);
+                                      const FrameData& frames, double first_time);
 
 // What `lacuna info` says about a force.
 std::string DescribeForce(const MeasuredForce& force);

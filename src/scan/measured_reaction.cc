@@ -40,18 +40,24 @@ std::vector<std::string> ReadComponents(const Config& item, MeasuredReaction* re
   return {item.Text("value")};
 }
 
-MeasuredReaction ReadReaction(const Config& item, const DataLocation& data,
-                              const std::vector<double>& frame_times) {
+MeasuredReaction ReadReaction(const Config& item, const DataLocation& data, const FrameData& frames,
+                              bool is_torque) {
   MeasuredReaction reaction;
+  reaction.is_torque = is_torque;
+  const Dimension& dimension = is_torque ? kTorque : kForce;
   const std::vector<std::string> columns = ReadComponents(item, &reaction);
-  const double sign = item.Choice<double>("exerted_by", {{"grip", 1.0}, {"object", -1.0}}, "grip");
-  const double unit = ReadUnit(item, "unit", kForce, "N");
-  TimeSeries series = ReadColumns(item, data, frame_times, columns, sign * unit);
+  const double sign = item.Choice<double>(
+      "exerted_by", {{"grip", 1.0}, {"object", -1.0}, {"unknown", 0.0}}, "grip");
+  reaction.sign_is_unknown = sign == 0;
+  const double unit = ReadUnit(item, "unit", dimension, reaction.Unit());
+  TimeSeries series = ReadColumns(item, data, frames, columns, sign < 0 ? -unit : unit);
   reaction.times = std::move(series.times);
-  reaction.forces = std::move(series.values);
+  reaction.values = std::move(series.values);
   reaction.file = series.table.file;
-  reaction.deviation = item.Quantity("deviation", kForce, kPositive, 0);
-  reaction.tare_deviation = item.Quantity("tare_deviation", kForce, kNotNegative, 0);
+  reaction.deviation = item.Quantity("deviation", dimension, kPositive, 0);
+  reaction.tare_deviation = item.Quantity("tare_deviation", dimension, kNotNegative, 0);
+  reaction.delay_deviation = item.Quantity("delay_deviation", kTime, kNotNegative, 0);
+  if (is_torque && item.Has("about")) reaction.about = item.Vector("about", kLength);
   return reaction;
 }
 
@@ -67,19 +73,21 @@ bool MeasuredReaction::Covers(double time) const {
 
 Eigen::VectorXd ReadingAt(const MeasuredReaction& reaction, double time) {
   CHECK(reaction.Covers(time));
-  return InterpolateLinearly(reaction.times, reaction.forces, time);
+  return InterpolateLinearly(reaction.times, reaction.values, time);
 }
 
 std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLocation& data,
-                                            const std::vector<double>& frame_times,
+                                            const FrameData& frames,
                                             const std::vector<std::string>& held) {
   std::vector<MeasuredReaction> reactions;
   size_t part = 0;
   for (const char* key : {"fixed", "gripped"}) {
     for (const Config& item : config.Items(key)) {
       CHECK_LT(part, held.size());
-      if (const auto child = item.OptionalChild("measured_force")) {
-        reactions.push_back(ReadReaction(*child, data, frame_times));
+      for (const bool is_torque : {false, true}) {
+        const auto child = item.OptionalChild(is_torque ? "measured_torque" : "measured_force");
+        if (!child) continue;
+        reactions.push_back(ReadReaction(*child, data, frames, is_torque));
         reactions.back().held = part;
         reactions.back().name = held[part];
       }
@@ -90,8 +98,10 @@ std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLoca
 }
 
 std::string DescribeReaction(const MeasuredReaction& reaction) {
-  return fmt::format("{}: {} values of {}, at most {:.4g} N", reaction.name, reaction.times.size(),
-                     fmt::join(reaction.labels, ", "), reaction.forces.cwiseAbs().maxCoeff());
+  return fmt::format("{}: {} values of {}{}, at most {:.4g} {}", reaction.name,
+                     reaction.times.size(), reaction.is_torque ? "the torque " : "",
+                     fmt::join(reaction.labels, ", "), reaction.values.cwiseAbs().maxCoeff(),
+                     reaction.Unit());
 }
 
 std::string WriteReaction(const std::filesystem::path& folder, const MeasuredReaction& reaction,
@@ -99,16 +109,23 @@ std::string WriteReaction(const std::filesystem::path& folder, const MeasuredRea
   const std::string file = fmt::format("reaction{}.csv", number);
   const bool is_along = reaction.labels.front() == "along";
   std::vector<std::string> columns = reaction.labels;
-  if (is_along) columns = {"force"};
-  WriteTimeSeries(folder / file, reaction.times, reaction.forces, columns);
-  std::string text = fmt::format("measured_force: {{file: {}, time: time, unit: N", file);
+  if (is_along) columns = {reaction.Quantity()};
+  WriteTimeSeries(folder / file, reaction.times, reaction.values, columns);
+  std::string text = fmt::format("measured_{}: {{file: {}, time: time, unit: {}",
+                                 reaction.Quantity(), file, reaction.Unit());
   if (is_along)
-    text += fmt::format(", along: {}, value: force", FormatVector(reaction.directions.col(0), ""));
+    text += fmt::format(", along: {}, value: {}", FormatVector(reaction.directions.col(0), ""),
+                        columns[0]);
   else
     for (const std::string& label : columns) text += fmt::format(", {0}: {0}", label);
-  if (reaction.deviation > 0) text += fmt::format(", deviation: {} N", reaction.deviation);
+  if (reaction.about) text += ", about: " + FormatVector(*reaction.about, "m");
+  if (reaction.deviation > 0)
+    text += fmt::format(", deviation: {} {}", reaction.deviation, reaction.Unit());
   if (reaction.tare_deviation > 0)
-    text += fmt::format(", tare_deviation: {} N", reaction.tare_deviation);
+    text += fmt::format(", tare_deviation: {} {}", reaction.tare_deviation, reaction.Unit());
+  if (reaction.delay_deviation > 0)
+    text += fmt::format(", delay_deviation: {} s", reaction.delay_deviation);
+  if (reaction.sign_is_unknown) text += ", exerted_by: unknown";
   return text + "}";
 }
 

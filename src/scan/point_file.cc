@@ -176,16 +176,20 @@ std::optional<DisplacementColumns> DisplacementsOf(const PointColumns& columns,
     chosen.place[axis] = RequireColumn(*table, columns.position[axis]);
     chosen.displacement[axis] = RequireColumn(*table, columns.displacement[axis]);
   }
+  chosen.places_are_deformed = columns.positions_are_deformed;
   if (!columns.sigma.empty()) chosen.sigma = RequireColumn(*table, columns.sigma);
   return chosen;
 }
 
-PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& columns,
-                     std::vector<std::string>* notes, CorrelationTable* correlation) {
-  DelimitedTable table = ReadDelimitedTable(file);
+}  // namespace
+
+PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
+                         std::vector<std::string>* notes, CorrelationTable* correlation) {
+  const std::filesystem::path file = table.file;
   PointCloud cloud;
   cloud.normals.resize(3, 0);
-  if (const auto displacements = DisplacementsOf(columns, &table)) {
+  if (auto displacements = DisplacementsOf(columns, &table)) {
+    if (!columns.id.empty()) displacements->id = RequireColumn(table, columns.id);
     cloud.points = MovedPoints(table, *displacements);
     if (displacements->has_common_names)
       table.notes.push_back(
@@ -193,7 +197,13 @@ PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& colu
                       "image correlation; `columns` can name others",
                       file.string()));
     if (correlation != nullptr) {
-      *correlation = {true, {}, displacements->length_unit};
+      *correlation = {true,
+                      {},
+                      displacements->length_unit,
+                      SigmaOf(table, *displacements),
+                      PointsOf(table, displacements->place),
+                      PointsOf(table, displacements->displacement),
+                      displacements->places_are_deformed};
       if (displacements->id) {
         const auto ids = table.values.col(*displacements->id);
         correlation->ids.assign(ids.begin(), ids.end());
@@ -224,6 +234,8 @@ PointCloud ReadTable(const std::filesystem::path& file, const PointColumns& colu
   return cloud;
 }
 
+namespace {
+
 std::string LowerCaseExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -236,7 +248,7 @@ PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& 
                          std::vector<std::string>* notes, CorrelationTable* correlation) {
   const std::string extension = LowerCaseExtension(file);
   if (extension == ".ply" || extension == ".pcd") return ReadWithPcl(file, extension == ".ply");
-  return ReadTable(file, columns, notes, correlation);
+  return PointsOfTable(ReadDelimitedTable(file), columns, notes, correlation);
 }
 
 CorrelationTable ReadCorrelationTable(const std::filesystem::path& file,
@@ -245,7 +257,7 @@ CorrelationTable ReadCorrelationTable(const std::filesystem::path& file,
   const std::string extension = LowerCaseExtension(file);
   if (extension == ".ply" || extension == ".pcd") return correlation;
   try {
-    ReadTable(file, columns, nullptr, &correlation);
+    PointsOfTable(ReadDelimitedTable(file), columns, nullptr, &correlation);
   } catch (const InputError&) {
     correlation = {};
   }

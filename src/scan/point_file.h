@@ -2,12 +2,14 @@
 #ifndef LACUNA_SCAN_POINT_FILE_H_
 #define LACUNA_SCAN_POINT_FILE_H_
 
+#include <Eigen/Core>
 #include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "geometry/point_cloud.h"
+#include "scan/delimited_table.h"
 
 namespace lacuna {
 
@@ -20,6 +22,9 @@ struct PointColumns {
   std::array<std::string, 3> normal;
   std::array<std::string, 3> displacement;  // added to the position
   std::string sigma;                        // negative or NaN: the point was not measured
+  std::string id;                           // identifies a point in all frames
+  // Whether positions that are named beside displacements are those of the deformed state.
+  bool positions_are_deformed = false;
 };
 
 // What a table of image correlation says about its points.
@@ -27,6 +32,10 @@ struct CorrelationTable {
   bool is_read = false;     // false: the file is none
   std::vector<double> ids;  // of each row; empty where the table gives none
   std::string length_unit;  // empty where the table gives none
+  Eigen::VectorXd sigma;    // of each row, in any unit; empty where the table gives none
+  // 3 × rows, as the columns have them, and whether the former include the latter.
+  Eigen::Matrix3Xd places, displacements;
+  bool places_are_deformed = false;
 };
 
 // The points of `file` in its own length unit, row by row, including rows with NaN. The extension
@@ -36,6 +45,11 @@ struct CorrelationTable {
 // What was taken for what, where a table leaves doubt, is appended to `notes`, if it is given.
 // `correlation`, if given, is filled where the file is a table of image correlation.
 PointCloud ReadPointFile(const std::filesystem::path& file, const PointColumns& columns,
+                         std::vector<std::string>* notes = nullptr,
+                         CorrelationTable* correlation = nullptr);
+
+// The points of a text table that has been read already.
+PointCloud PointsOfTable(DelimitedTable table, const PointColumns& columns,
                          std::vector<std::string>* notes = nullptr,
                          CorrelationTable* correlation = nullptr);
 

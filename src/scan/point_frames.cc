@@ -4,13 +4,18 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "core/error.h"
 #include "core/npy.h"
 #include "scan/delimited_table.h"
 #include "scan/frame_list.h"
 #include "scan/frame_points.h"
+#include "scan/table_header.h"
+#include "scan/time_series.h"
 #include "scan/yaml_format.h"
 
 namespace lacuna {
@@ -19,11 +24,17 @@ namespace {
 PointColumns ReadPointColumns(const Config& frames) {
   PointColumns columns;
   if (const auto map = frames.OptionalChild("columns")) {
+    columns.id = map->Text("id", "");
+    // One file with all frames may name the columns of its steps alone.
+    if (!map->Has("x") && (map->Has("step") || map->Has("time"))) return columns;
     columns.position = {map->Text("x"), map->Text("y"), map->Text("z")};
     const std::string nx = map->Text("nx", "");
     if (!nx.empty()) columns.normal = {nx, map->Text("ny"), map->Text("nz")};
     const std::string u = map->Text("u", "");
     if (!u.empty()) columns.displacement = {u, map->Text("v"), map->Text("w")};
+    if (!u.empty())
+      columns.positions_are_deformed =
+          map->Choice<bool>("places", {{"reference", false}, {"deformed", true}}, "reference");
     if (!u.empty()) columns.sigma = map->Text("sigma", "");
   }
   return columns;
@@ -47,28 +58,130 @@ Eigen::Matrix3Xi ReadConnectivity(const std::filesystem::path& file) {
 
 std::string IdText(double id) { return fmt::format("{}", id); }
 
-// The columns of `points` in the order of `wanted`; NaN for points that the file does not have.
-Eigen::Matrix3Xd InOrderOf(const std::vector<double>& wanted, const std::vector<double>& ids,
-                           const Eigen::Matrix3Xd& points, const std::filesystem::path& file) {
+// The rows of a file whose points have the numbers `ids` in the order of `wanted`; −1 for points
+// that the file does not have.
+std::vector<Eigen::Index> RowsOf(const std::vector<double>& wanted, const std::vector<double>& ids,
+                                 const std::filesystem::path& file) {
   std::unordered_map<double, Eigen::Index> row;
   for (size_t i = 0; i < ids.size(); ++i) {
     if (!row.emplace(ids[i], static_cast<Eigen::Index>(i)).second)
       throw InputError({file.string()}, fmt::format("lists the point {} twice", IdText(ids[i])));
   }
-  Eigen::Matrix3Xd ordered = Eigen::Matrix3Xd::Constant(3, static_cast<Eigen::Index>(wanted.size()),
-                                                        std::numeric_limits<double>::quiet_NaN());
-  size_t found = 0;
-  for (size_t i = 0; i < wanted.size(); ++i) {
-    const auto at = row.find(wanted[i]);
-    if (at == row.end()) continue;
-    ordered.col(static_cast<Eigen::Index>(i)) = points.col(at->second);
-    ++found;
+  std::vector<Eigen::Index> rows;
+  bool is_found = false;
+  for (const double id : wanted) {
+    const auto at = row.find(id);
+    rows.push_back(at == row.end() ? -1 : at->second);
+    is_found = is_found || rows.back() >= 0;
   }
-  if (found == 0)
+  if (!is_found)
     throw InputError({file.string()},
                      "has none of the points of the first file; their numbers "
                      "differ");
+  return rows;
+}
+
+// The columns of `values` in that order; NaN where there are none.
+Eigen::MatrixXd InOrder(const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& values) {
+  Eigen::MatrixXd ordered =
+      Eigen::MatrixXd::Constant(values.rows(), static_cast<Eigen::Index>(rows.size()),
+                                std::numeric_limits<double>::quiet_NaN());
+  for (size_t i = 0; i < rows.size(); ++i)
+    if (rows[i] >= 0) ordered.col(static_cast<Eigen::Index>(i)) = values.col(rows[i]);
   return ordered;
+}
+
+// One file of which each step is a frame.
+void ReadSteps(const Config& frames, const DataLocation& data, PointFrames* source) {
+  const std::optional<Config> columns = frames.OptionalChild("columns");
+  const std::string time = columns ? columns->Text("time", "") : "";
+  const std::string step = columns ? columns->Text("step", time) : "";
+  if (step.empty())
+    frames.Fail("file",
+                "one file holds all frames where `columns: {step: …}` or `{time: …}` names the "
+                "column that tells them apart; a file for each frame belongs into `files`");
+  const std::filesystem::path file = data.folder / frames.Text("file");
+  if (!std::filesystem::is_regular_file(file))
+    frames.Fail("file", "there is no file " + file.string());
+  auto steps =
+      std::make_shared<SteppedTable>(DivideIntoSteps(ReadDelimitedTable(file), step, time));
+  const double unit = ReadUnit(frames, "time_unit", kTime, "s");
+  for (double& at : steps->times) at *= unit;
+  source->files.assign(steps->rows.size(), {file});
+  source->step.resize(steps->rows.size());
+  std::iota(source->step.begin(), source->step.end(), 0);
+  source->steps = std::move(steps);
+}
+
+// The times in the headers of the files: those of the value that `header: {time: …}` names, or else
+// of "time" or "relative_time", where all files have it.
+std::vector<double> ReadHeaderTimes(const Config& frames, const PointFrames& source) {
+  const std::vector<std::filesystem::path> files = FilesWithHeaders(source);
+  if (const auto header = frames.OptionalChild("header")) {
+    const std::string name = header->Text("time");
+    const double unit = ReadUnit(*header, "time_unit", kTime, "s");
+    return HeaderValuesOf(files, name, unit, header->Text("time_unit", "s"));
+  }
+  if (files.size() < 2) return {};
+  std::vector<double> times;
+  for (const std::filesystem::path& file : files) {
+    const auto values = ReadHeaderValues(file);
+    auto found = values.find("time");
+    if (found == values.end()) found = values.find("relative_time");
+    if (found == values.end() || !(found->second.unit.empty() || found->second.unit == "s"))
+      return {};
+    times.push_back(found->second.value);
+  }
+  return times;
+}
+
+PointCloud PointsOfFrame(const PointFrames& source, int frame, std::vector<std::string>* notes,
+                         CorrelationTable* correlation) {
+  const size_t i = static_cast<size_t>(frame);
+  if (!source.steps) return ReadPointFile(source.files[i][0], source.columns, notes, correlation);
+  return PointsOfTable(TableOfStep(*source.steps, source.step[i]), source.columns, notes,
+                       correlation);
+}
+
+// A doubt whether the places of a table of image correlation are those of the reference state or of
+// the deformed one, from two frames of it: the former are the same in both, the latter differ by
+// the change of the displacement. Empty where there is none.
+std::string DoubtOfPlaces(const CorrelationTable& first, const CorrelationTable& last,
+                          const std::filesystem::path& file) {
+  std::vector<Eigen::Index> rows;
+  try {
+    if (!first.ids.empty() && !last.ids.empty()) rows = RowsOf(first.ids, last.ids, file);
+  } catch (const InputError&) {
+    return "";  // LoadPoints reports it
+  }
+  if (rows.empty())
+    for (Eigen::Index i = 0; i < std::min(first.places.cols(), last.places.cols()); ++i)
+      rows.push_back(i);
+  double moved = 0, displaced = 0, apart = 0;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] < 0) continue;
+    const Eigen::Index row = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d move = last.places.col(rows[i]) - first.places.col(row);
+    const Eigen::Vector3d change = last.displacements.col(rows[i]) - first.displacements.col(row);
+    if (!move.allFinite() || !change.allFinite()) continue;
+    moved += move.squaredNorm();
+    displaced += change.squaredNorm();
+    apart += (move - change).squaredNorm();
+  }
+  // Either is exact but for rounding, so that a quarter of the squares decides.
+  constexpr double kShare = 0.25;
+  if (!first.places_are_deformed && moved > kShare * displaced && apart < kShare * moved)
+    return fmt::format(
+        "{}: the places change from frame to frame as the displacements do, so that they are those "
+        "of the deformed state; they are taken for those of the reference state unless `columns` "
+        "says `places: deformed`",
+        file.string());
+  if (first.places_are_deformed && displaced > 0 && moved < kShare * displaced)
+    return fmt::format(
+        "{}: the places are the same in all frames, so that they are those of the reference state; "
+        "they are taken for those of the deformed state unless `columns` names them",
+        file.string());
+  return "";
 }
 
 }  // namespace
@@ -76,10 +189,33 @@ Eigen::Matrix3Xd InOrderOf(const std::vector<double>& wanted, const std::vector<
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
                 std::vector<std::string>* warnings) {
   source->world_from_file = ReadWorldFromFile(frames, LengthOf(data.length_unit));
-  source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
-  ReadObjectChoice(frames, data, source);
   source->columns = ReadPointColumns(frames);
-  const CorrelationTable correlation = ReadCorrelationTable(source->files[0][0], source->columns);
+  if (frames.Has("file"))
+    ReadSteps(frames, data, source);
+  else
+    source->files = OneFilePerFrame(ReadFrameFiles(frames, data.folder));
+  ReadObjectChoice(frames, data, source);
+  const bool has_times = frames.Has("rate") || frames.Has("times") || frames.Has("times_file");
+  if (has_times && frames.Has("header"))
+    frames.Fail("header",
+                "the times are given more than once: keep one of header, rate, times, "
+                "times_file");
+  if (!has_times) source->header_times = ReadHeaderTimes(frames, *source);
+  CorrelationTable correlation;
+  if (source->steps)
+    PointsOfFrame(*source, 0, nullptr, &correlation);
+  else
+    correlation = ReadCorrelationTable(source->files[0][0], source->columns);
+  if (correlation.is_read && source->files.size() > 1) {
+    CorrelationTable last;
+    if (source->steps)
+      PointsOfFrame(*source, static_cast<int>(source->files.size()) - 1, nullptr, &last);
+    else
+      last = ReadCorrelationTable(source->files.back()[0], source->columns);
+    const std::string doubt =
+        last.is_read ? DoubtOfPlaces(correlation, last, source->files.back()[0]) : "";
+    if (!doubt.empty()) warnings->push_back(doubt);
+  }
   source->tracked = frames.Flag("tracked", correlation.is_read);
   if (source->tracked) source->ids = correlation.ids;
   const std::string& unit = correlation.length_unit;
@@ -103,19 +239,40 @@ void ReadSource(const Config& frames, const DataLocation& data, PointFrames* sou
 void LoadPoints(const PointFrames& source, Frame* frame) {
   const std::filesystem::path& file = source.files[frame->index][0];
   CorrelationTable correlation;
-  PointCloud raw = ReadPointFile(file, source.columns, &frame->notes, &correlation);
+  PointCloud raw = PointsOfFrame(source, frame->index, &frame->notes, &correlation);
   if (!source.ids.empty()) {
     if (correlation.ids.empty())
       throw InputError({file.string()}, "does not number its points, as the first file does");
-    raw.points = InOrderOf(source.ids, correlation.ids, raw.points, file);
+    const std::vector<Eigen::Index> rows = RowsOf(source.ids, correlation.ids, file);
+    raw.points = InOrder(rows, raw.points);
+    if (correlation.sigma.size() > 0)
+      correlation.sigma = InOrder(rows, correlation.sigma.transpose()).transpose();
   }
   frame->repeated_count = ForgetRepeatedPoints(source.tracked, &raw.points);
   raw.points = source.world_from_file * raw.points;
   ForgetOtherObjects(source, source.connectivity, &raw.points, frame);
   KeepUsablePoints(raw, source.connectivity, frame);
   frame->cloud.normals = UnitNormals(frame->cloud.normals, source.world_from_file.rotation);
+  if (correlation.sigma.size() > 0) frame->sigma = correlation.sigma(frame->source_row);
   frame->sensors.positions = source.sensors;
   RequirePoints(*frame, kFewestScannedPoints, "is finite");
+}
+
+std::vector<double> TimesInFiles(const PointFrames& source) {
+  return source.steps ? source.steps->times : source.header_times;
+}
+
+void KeepFrames(const std::vector<int>& chosen, PointFrames* source) {
+  KeepFrames(chosen, static_cast<FileFrames*>(source));
+  if (!source->steps) return;
+  std::vector<size_t> kept;
+  for (const int i : chosen) kept.push_back(source->step[static_cast<size_t>(i)]);
+  source->step = std::move(kept);
+}
+
+std::vector<std::filesystem::path> FilesWithHeaders(const PointFrames& source) {
+  if (source.steps) return {};
+  return AllFiles(static_cast<const FileFrames&>(source));
 }
 
 std::vector<std::filesystem::path> AllFiles(const PointFrames& source) {

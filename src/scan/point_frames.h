@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "scan/file_frames.h"
 #include "scan/point_file.h"
 #include "scan/similarity.h"
+#include "scan/stepped_table.h"
 #include "scan/virtual_scanner.h"
 
 namespace lacuna {
@@ -23,13 +25,16 @@ struct PointFrames : FileFrames {
   static constexpr const char* kKind = "points";
   static constexpr const char* kTitle = "point clouds";
 
-  Similarity world_from_file;               // its length unit included
-  PointColumns columns;                     // columns of text tables
-  std::vector<double> ids;                  // of the rows of all frames, where a table of image
-                                            // correlation gives them; empty: rows are in order
-  bool tracked = false;                     // row i is the same material point in every frame
-  Eigen::Matrix3Xi connectivity;            // 3 × m, rows of each frame, from 0; 3 × 0 without
-  std::filesystem::path connectivity_file;  // empty without
+  Similarity world_from_file;                 // its length unit included
+  PointColumns columns;                       // columns of text tables
+  std::vector<double> ids;                    // of the rows of all frames, where a table of image
+                                              // correlation gives them; empty: rows are in order
+  std::shared_ptr<const SteppedTable> steps;  // of one file with all frames; null: a file each
+  std::vector<size_t> step;                   // of each frame, in `steps`
+  std::vector<double> header_times;           // s, of each file, from the headers; may be empty
+  bool tracked = false;                       // row i is the same material point in every frame
+  Eigen::Matrix3Xi connectivity;              // 3 × m, rows of each frame, from 0; 3 × 0 without
+  std::filesystem::path connectivity_file;    // empty without
   Eigen::Matrix3Xd sensors;  // 3 × c, m, where the points were seen from; 3 × 0: unknown
 };
 
@@ -39,6 +44,9 @@ struct PointFrames : FileFrames {
 void ReadSource(const Config& frames, const DataLocation& data, PointFrames* source,
                 std::vector<std::string>* warnings);
 void LoadPoints(const PointFrames& source, Frame* frame);
+std::vector<double> TimesInFiles(const PointFrames& source);
+void KeepFrames(const std::vector<int>& chosen, PointFrames* source);
+std::vector<std::filesystem::path> FilesWithHeaders(const PointFrames& source);
 std::vector<std::filesystem::path> AllFiles(const PointFrames& source);
 inline bool IsTracked(const PointFrames& source) { return source.tracked; }
 

@@ -8,6 +8,7 @@
 
 #include "geometry/rotation.h"
 #include "scan/time_series.h"
+#include "scan/yaml_format.h"
 
 namespace lacuna {
 namespace {
@@ -25,10 +26,10 @@ void CheckMarkers(const Config& item, const std::vector<std::string>& chosen,
   }
 }
 
-void ReadPath(const Config& path, const DataLocation& data, const std::vector<double>& frame_times,
+void ReadPath(const Config& path, const DataLocation& data, const FrameData& frames,
               RecordedGrip* grip) {
   const double unit = ReadUnit(path, "length_unit", kLength, data.length_unit);
-  const TimeSeries series = ReadTimeSeries(path, data, frame_times, unit);
+  const TimeSeries series = ReadTimeSeries(path, data, frames, unit);
   grip->motion = GripMotion::kGiven;
   grip->file = series.table.file;
   grip->times = series.times;
@@ -58,7 +59,7 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time) {
 }
 
 std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,
-                                    const std::vector<double>& frame_times,
+                                    const FrameData& frames,
                                     const std::vector<std::string>& marker_names) {
   std::vector<RecordedGrip> grips;
   for (const Config& item : config.Items("gripped")) {
@@ -71,7 +72,7 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
       CheckMarkers(item, grip.markers, marker_names);
       grip.motion = GripMotion::kFollowsMarkers;
     } else if (path) {
-      ReadPath(*path, data, frame_times, &grip);
+      ReadPath(*path, data, frames, &grip);
     } else {
       item.Choice<int>("follows", {{"scan", 0}}, "scan");
     }
@@ -96,11 +97,18 @@ std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& g
   CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
   std::string item = FormatRegion(grip.region);
   if (grip.motion == GripMotion::kFollowsScan) return item;
-  CHECK_EQ(grip.rotations.cols(), 0) << "rotations of a grip are not written";
   const std::string name = fmt::format("grip{}.csv", number);
-  WriteTimeSeries(folder / name, grip.times, grip.displacements);
   item.pop_back();
-  return item + fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z}}}}", name);
+  item += fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z", name);
+  if (grip.rotations.cols() == 0) {
+    WriteTimeSeries(folder / name, grip.times, grip.displacements);
+    return item + "}}";
+  }
+  Eigen::MatrixXd motion(6, grip.times.size());
+  motion << grip.displacements, grip.rotations;
+  WriteTimeSeries(folder / name, grip.times, motion, {"x", "y", "z", "rx", "ry", "rz"});
+  return item + fmt::format(", turn: {{x: rx, y: ry, z: rz, unit: rad, about: {}}}}}}}",
+                            FormatVector(grip.pivot, "m"));
 }
 
 }  // namespace lacuna

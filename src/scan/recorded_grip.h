@@ -45,18 +45,18 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 //   path: {file, time, x, y, z, time_unit, length_unit, turn: {x, y, z, unit, about}}
 // A path has one row per time, the first of which belongs to the undeformed place; `turn` names
 // three more columns of the same file with a rotation vector about the point `about`. `deforms:
-// true` lets a grip that follows something deform with it. `frame_times` (s) are those of all
+// true` lets a grip that follows something deform with it. `frames` are all
 // frames in the files, `marker_names` is empty when the frames have no markers. Throws InputError
 // (file, line, column and field).
 std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,
-                                    const std::vector<double>& frame_times,
+                                    const FrameData& frames,
                                     const std::vector<std::string>& marker_names);
 
 // What `lacuna info` says about a grip.
 std::string DescribeGrip(const RecordedGrip& grip);
 
 // The grip as an item of `gripped` in recording.yaml. A given path goes into the file
-// grip`number`.csv of `folder`. The grip may not follow markers, nor rotate.
+// grip`number`.csv of `folder`. The grip may not follow markers.
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip, size_t number);
 
 }  // namespace lacuna

@@ -54,7 +54,8 @@ std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double fir
     check("the force " + force.name, force.file, force.times, force.forces);
   }
   for (const MeasuredReaction& reaction : object.reactions) {
-    check("the force on " + reaction.name, reaction.file, reaction.times, reaction.forces);
+    check(fmt::format("the {} on {}", reaction.Quantity(), reaction.name), reaction.file,
+          reaction.times, reaction.values);
   }
   return doubts;
 }

@@ -21,7 +21,7 @@ struct RecordedObject {
   std::vector<Region> fixed;               // parts that do not move
   std::vector<RecordedGrip> grips;         // parts that are moved from outside
   std::vector<MeasuredForce> forces;
-  std::vector<MeasuredReaction> reactions;  // forces that the grips exert
+  std::vector<MeasuredReaction> reactions;  // forces and torques that the grips exert
 };
 
 // The regions that the object has: of the parts that are held, and where forces act.

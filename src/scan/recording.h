@@ -12,6 +12,7 @@
 
 #include "scan/frame.h"
 #include "scan/frame_source.h"
+#include "scan/instrument.h"
 #include "scan/marker_tracks.h"
 #include "scan/recorded_object.h"
 #include "scan/reference_shape.h"
@@ -31,6 +32,7 @@ struct Recording {
   // points that a prediction is compared with. Empty for scans.
   Markers markers;
 
+  Instrument instrument;
   RecordedObject object;
   ReferenceShape reference;
 

@@ -15,25 +15,26 @@ namespace {
 
 constexpr int kSchemaVersion = 1;
 
-// Returns the times of all frames in the files, s, also of those that are not chosen.
-std::vector<double> ReadFrames(const Config& config, Recording* recording) {
+// Returns what all frames in the files say, also those that are not chosen.
+FrameData ReadFrames(const Config& config, Recording* recording) {
   const Config frames = config.Child("frames");
   recording->frames = ReadFrameSource(frames, recording->data, &recording->warnings);
   return std::visit(
       [&](auto& source) {
         const FrameTimes times =
             ReadFrameTimes(frames, CountFrames(source), TimesInFiles(source), recording->data);
+        const std::vector<std::filesystem::path> headers = FilesWithHeaders(source);
         KeepFrames(times.chosen, &source);
         recording->times = times.OfChosen();
         recording->times_file = times.file;
         recording->markers = NamedMarkers(source);
-        return times.in_files;
+        return FrameData{times.in_files, headers};
       },
       recording->frames);
 }
 
 RecordedObject ReadObject(const Config& config, const Recording& recording,
-                          const std::vector<double>& frame_times) {
+                          const FrameData& frames) {
   constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
   RecordedObject object;
   const double density = config.Quantity("density", kDensity, kPositive, kAbsent);
@@ -45,9 +46,9 @@ RecordedObject ReadObject(const Config& config, const Recording& recording,
     object.fixed.push_back(
         ReadRegion(item, recording.data.folder, fmt::format("fixed {}", object.fixed.size() + 1)));
   }
-  object.grips = ReadGrips(config, recording.data, frame_times, recording.markers.names);
-  object.forces = ReadForces(config, recording.data, frame_times, recording.times.front());
-  object.reactions = ReadReactions(config, recording.data, frame_times, HeldParts(object));
+  object.grips = ReadGrips(config, recording.data, frames, recording.markers.names);
+  object.forces = ReadForces(config, recording.data, frames, recording.times.front());
+  object.reactions = ReadReactions(config, recording.data, frames, HeldParts(object));
   return object;
 }
 
@@ -136,10 +137,18 @@ Recording LoadRecording(const std::filesystem::path& path) {
                 fmt::format("there is no folder {}", recording.data.folder.string()));
   }
   recording.data.length_unit = ReadLengthUnit(config, "");
-  const std::vector<double> frame_times = ReadFrames(config, &recording);
-  recording.object = ReadObject(config, recording, frame_times);
+  const FrameData frames = ReadFrames(config, &recording);
+  if (const auto instrument = config.OptionalChild("instrument")) {
+    recording.instrument.subset = instrument->Quantity("subset", kLength, kPositive);
+    recording.instrument.is_volume =
+        instrument->Choice<bool>("shape", {{"surface", false}, {"volume", true}}, "surface");
+    if (!HasTrackedPoints(recording) && recording.markers.names.empty())
+      config.Fail("instrument",
+                  "averages tracked points and markers, which the frames do not have");
+  }
+  recording.object = ReadObject(config, recording, frames);
   for (const std::string& doubt :
-       DoubtsOfObject(recording.object, frame_times.front(), frame_times.back())) {
+       DoubtsOfObject(recording.object, frames.times.front(), frames.times.back())) {
     recording.warnings.push_back(doubt);
   }
   const bool shows_surface =

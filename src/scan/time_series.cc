@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/npy.h"
 #include "geometry/hermite.h"
+#include "scan/table_header.h"
 
 namespace lacuna {
 namespace {
@@ -37,6 +38,28 @@ Interval FindInterval(const Eigen::VectorXd& times, double time) {
   return {right - 1, right, (time - times[right - 1]) / (times[right] - times[right - 1])};
 }
 
+Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+// The values `names` in the headers of the frame files.
+TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
+                           const std::vector<std::string>& names, double unit) {
+  config.Choice<int>("from", {{"headers", 0}});
+  if (config.Has("file")) config.Fail("file", "the values come `from: headers` already");
+  if (frames.headers.empty())
+    config.Fail("from", "the files of these frames have no headers with values");
+  TimeSeries series;
+  series.table.file = frames.headers.front();
+  series.times = AsVector(frames.times);
+  series.values.resize(static_cast<Eigen::Index>(names.size()), series.times.size());
+  for (size_t k = 0; k < names.size(); ++k)
+    series.values.row(static_cast<Eigen::Index>(k)) =
+        AsVector(HeaderValuesOf(frames.headers, names[k], unit, config.Text("unit", "N")))
+            .transpose();
+  return series;
+}
+
 }  // namespace
 
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,
@@ -58,15 +81,15 @@ Eigen::MatrixXd ColumnsOf(const DelimitedTable& table, const std::vector<std::st
   return columns;
 }
 
-TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
-                          const std::vector<double>& frame_times, double unit) {
-  return ReadColumns(config, data, frame_times,
+TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
+                          double unit) {
+  return ReadColumns(config, data, frames,
                      {config.Text("x", "1"), config.Text("y", "2"), config.Text("z", "3")}, unit);
 }
 
-TimeSeries ReadColumns(const Config& config, const DataLocation& data,
-                       const std::vector<double>& frame_times,
+TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
                        const std::vector<std::string>& names, double unit) {
+  if (config.Has("from")) return ReadFromHeaders(config, frames, names, unit);
   const std::filesystem::path file = data.folder / config.Text("file");
   if (!std::filesystem::exists(file)) config.Fail("file", "there is no file " + file.string());
   TimeSeries series;
@@ -77,11 +100,11 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data,
   if (!time.empty()) {
     series.times =
         ReadUnit(config, "time_unit", kTime, "s") * table.values.col(RequireColumn(table, time));
-  } else if (table.values.rows() == static_cast<Eigen::Index>(frame_times.size())) {
-    series.times = Eigen::Map<const Eigen::VectorXd>(frame_times.data(), frame_times.size());
+  } else if (table.values.rows() == static_cast<Eigen::Index>(frames.times.size())) {
+    series.times = AsVector(frames.times);
   } else {
     config.Fail("file", fmt::format("{} has {} rows for {} frames; name its column `time`",
-                                    file.string(), table.values.rows(), frame_times.size()));
+                                    file.string(), table.values.rows(), frames.times.size()));
   }
   for (Eigen::Index i = 0; i < series.times.size(); ++i) {
     const bool ascends = i == 0 || series.times[i] > series.times[i - 1];

@@ -20,15 +20,15 @@ struct TimeSeries {
 
 // Reads `file` (.npy or text): the columns `names` (names, or numbers from 1) in multiples of
 // `unit` (SI), and the column `time` in `time_unit` (default s). Without `time` the file must have
-// one row for each of `frame_times`, the times of all frames in the files (s). Throws InputError
-// naming file and row when a value is not finite or the times do not ascend.
-TimeSeries ReadColumns(const Config& config, const DataLocation& data,
-                       const std::vector<double>& frame_times,
+// one row for each of `frames`. With `from: headers` in place of `file` the values are those of
+// these names in the headers of the frame files (table_header.h). Throws InputError naming file and
+// row when a value is not finite or the times do not ascend.
+TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
                        const std::vector<std::string>& names, double unit);
 
 // The same for the components of a vector, the columns named by `x`, `y`, `z` (default 1, 2, 3).
-TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data,
-                          const std::vector<double>& frame_times, double unit);
+TimeSeries ReadTimeSeries(const Config& config, const DataLocation& data, const FrameData& frames,
+                          double unit);
 
 // The SI value of one of the unit at `key`, e.g. 1e-3 for "mm".
 double ReadUnit(const Config& config, const std::string& key, const Dimension& dimension,

@@ -39,7 +39,7 @@ struct Sample {
   }
 
   int components = 0;
-  std::vector<int> count;
+  std::vector<double> count;
   Eigen::MatrixXd rows;
 };
 

@@ -88,9 +88,71 @@ TEST(MeasuredForce, WithoutItTheModulusScalesOut) {
   EXPECT_TRUE(SharesOfForces(problem, fit.parameters).empty());
 }
 
+// The torque of a jaw that twists and pulls determines the modulus as its force does.
+TEST(MeasuredTorque, DeterminesTheModulusOfABarThatIsTwisted) {
+  const TemporaryFolder folder;
+  PulledBarTruth truth;
+  truth.twist = 0.02;
+  WritePulledBar(folder.Path(), truth, "",
+                 "{file: force.csv, time: t, along: [1, 0, 0], value: mx, about: [0 m, 0 m, 0 m], "
+                 "deviation: 0.01 N mm}");
+  const PredictionStudy study = StudyOf(folder);
+  const CalibrationProblem problem(study, PulledBarMesh());
+  const Calibration fit = FitOf(problem);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  const ParameterEstimate& modulus = fit.estimates.at(0);
+  EXPECT_EQ(modulus.verdict, ParameterEstimate::Verdict::kPinnedDown);
+  EXPECT_LT(modulus.low, truth.young_modulus);
+  EXPECT_GT(modulus.high, truth.young_modulus);
+  EXPECT_LT(modulus.high - modulus.low, 0.05 * truth.young_modulus);
+  const std::vector<RecordingMisfit> misfits = MisfitsOf(problem, fit.parameters);
+  const FittedReaction& jaw = misfits.at(0).reactions.at(0);
+  EXPECT_TRUE(jaw.is_torque);
+  EXPECT_LT(jaw.in_fit.rms_over_sigma, 1.5);
+  EXPECT_GT(SharesOfForces(problem, fit.parameters).at(0), 0.99);
+  EXPECT_TRUE(ReactionTable(problem, misfits, /*torques=*/false).empty());
+  const CsvTable curve = ReactionTable(problem, misfits, /*torques=*/true);
+  EXPECT_EQ(curve.at(6).name, "rotation_rad");
+  EXPECT_NEAR(curve[6].values[10], 10 * truth.twist, 1e-12);
+}
+
+// A load cell that is late and of which the sign is not known.
+TEST(MeasuredForce, MayBeLateAndOfUnknownSign) {
+  const TemporaryFolder folder;
+  PulledBarTruth truth;
+  truth.tare = 0;
+  truth.delay = 0.7;
+  truth.sign = -1;
+  WritePulledBar(folder.Path(), truth,
+                 "{file: force.csv, time: t, x: fx, deviation: 10 mN, exerted_by: unknown, "
+                 "delay_deviation: 1 s}");
+  const PredictionStudy study = StudyOf(folder);
+  const CalibrationProblem problem(study, PulledBarMesh());
+  const Calibration fit = FitOf(problem);
+  ASSERT_TRUE(fit.usable) << fit.message;
+  ASSERT_EQ(fit.estimates.size(), 2u);
+  EXPECT_LT(fit.estimates[0].low, truth.young_modulus);
+  EXPECT_GT(fit.estimates[0].high, truth.young_modulus);
+  const ParameterEstimate& delay = fit.estimates[1];
+  EXPECT_NE(delay.name.find("jaw.force_delay"), std::string::npos) << delay.name;
+  EXPECT_LT(delay.low, truth.delay);
+  EXPECT_GT(delay.high, truth.delay);
+  // The force grows by 0.23 N/s, so that 11 readings of 10 mN give the delay to about 30 ms.
+  EXPECT_LT(delay.high - delay.low, 0.3);
+  EXPECT_LT(fit.rms, 1.2);
+  const FittedReaction jaw = MisfitsOf(problem, fit.parameters).at(0).reactions.at(0);
+  EXPECT_TRUE(jaw.is_opposite);
+  EXPECT_LT(jaw.held_out.rms_over_sigma, 3);
+  const LinearisedMisfit known = problem.Linearise(fit.parameters, false);
+  EXPECT_TRUE(MisfitsOf(problem, fit.parameters, &known).at(0).reactions.at(0).is_opposite);
+}
+
 TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
   const TemporaryFolder folder;
-  WritePulledBar(folder.Path(), {});
+  PulledBarTruth truth;
+  truth.twist = 0.02;
+  WritePulledBar(folder.Path(), truth, kLoadCell,
+                 "{file: force.csv, time: t, x: mx, deviation: 0.01 N mm, delay_deviation: 0.1 s}");
   const PredictionStudy study =
       StudyOf(folder, {{"{name: young_modulus}", "{name: young_modulus}, {name: poisson_ratio}"},
                        {"    fit_until: 11.5 s\n",
@@ -98,16 +160,17 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
                         "turn_deviation: 1 deg}\n"}});
   const CalibrationProblem problem(study, PulledBarMesh());
   Eigen::VectorXd at = problem.Start();
-  ASSERT_EQ(at.size(), 9);
-  at.tail(7) << 0.05, 1e-3, -2e-3, 1e-3, 5e-4, -3e-4, 2e-4;
+  ASSERT_EQ(at.size(), 10);
+  at.tail(8) << 0.05, -0.3, 1e-3, -2e-3, 1e-3, 5e-4, -3e-4, 2e-4;
   const Eigen::VectorXd steps =
-      (Eigen::VectorXd(9) << 200, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
+      (Eigen::VectorXd(10) << 200, 1e-3, 1e-3, 1e-3, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4).finished();
   // An effect that the model lacks, which a diagnosis would try.
   const std::shared_ptr<const Effect> gravity = MakeEffect("gravity", {{"acceleration_x", 0.0}});
   const LinearisedMisfit here =
       problem.Linearise(at, true, {{.perturbation = {.effect = gravity, .parameter = 0}}});
   ASSERT_TRUE(here.usable) << here.message;
-  ASSERT_EQ(here.parts.size(), 2u);
+  ASSERT_EQ(here.parts.size(), 3u);
+  const LinearisedMisfit::Part& torque = here.parts[2];
   EXPECT_TRUE(here.parts[0].IsOfPoints());
   const LinearisedMisfit::Part& force = here.parts[1];
   ASSERT_EQ(force.reaction, std::optional<size_t>(0));
@@ -119,18 +182,22 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
     const Eigen::VectorXd difference = (problem.Linearise(at + shift, false, {}, &here).residual -
                                         problem.Linearise(at - shift, false, {}, &here).residual) /
                                        (2 * steps[k]);
-    const auto rows = [&](const Eigen::VectorXd& all) {
-      return all.segment(force.first_row, force.layout.Rows());
-    };
-    // Equilibria are known to 1e-6 of the forces. The rate, for the clock, is the mean over a step
-    // between two frames, in which the curve bends by 1 %.
-    const double tolerance = k == 2 ? 1e-2 : 1e-3;
-    EXPECT_LT((rows(here.jacobian.col(k)) - rows(difference)).norm(),
-              tolerance * rows(difference).norm() + 1e-9)
-        << k;
-    // The registration of the markers does not concern the load cell.
-    if (k >= 3) {
-      EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;
+    for (const LinearisedMisfit::Part* part : {&force, &torque}) {
+      const auto rows = [&](const Eigen::VectorXd& all) {
+        return all.segment(part->first_row, part->layout.Rows());
+      };
+      // Equilibria are known to 1e-6 of the forces. The rate, for the delays, is the mean over a
+      // step between two frames, in which the curve bends by 1 %.
+      const double tolerance = k == 2 || k == 3 ? 1e-2 : 1e-3;
+      const double least = part == &force ? 1e-9 : 1e-12;
+      EXPECT_LT((rows(here.jacobian.col(k)) - rows(difference)).norm(),
+                tolerance * rows(difference).norm() + least)
+          << k;
+      // The registration of the markers does not concern the load cells, and the delay of one of
+      // them not the other.
+      if (k >= 4 || (k == 3 && part == &force)) {
+        EXPECT_EQ(rows(here.jacobian.col(k)).norm(), 0) << k;
+      }
     }
   }
   // The weight of the bar is carried by both ends; a column of a candidate has the row of the jaw.

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "exchange/cantilever.h"
 #include "exchange/inp_writer.h"
@@ -113,6 +114,76 @@ TEST(Calculix, FollowsGripsAndLoads) {
   bar.options.time_step = 0.5;
   bar.frames = {1, 2, 3};
   EXPECT_LT(Difference(bar).largest, 0.01);
+}
+
+// The forces of the last table "forces (fx,fy,fz) for set … and time …" in a .dat file: 3 × nodes,
+// N.
+Eigen::Matrix3Xd LastForces(const std::filesystem::path& file, Eigen::Index nodes) {
+  std::ifstream stream(file);
+  Eigen::Matrix3Xd forces(3, 0);
+  std::string line;
+  while (std::getline(stream, line)) {
+    if (line.find("forces (fx,fy,fz)") == std::string::npos) continue;
+    std::getline(stream, line);  // empty
+    forces.setZero(3, nodes);
+    for (Eigen::Index k = 0; k < nodes && std::getline(stream, line); ++k) {
+      std::istringstream fields(line);
+      int node = 0;
+      double x = 0, y = 0, z = 0;
+      fields >> node >> x >> y >> z;
+      EXPECT_FALSE(fields.fail()) << line;
+      forces.col(node - 1) << x, y, z;
+    }
+  }
+  return forces;
+}
+
+// The forces and torques of both ends of a bar that is stretched by 6 %, bent and twisted by 17°.
+TEST(Calculix, HasTheReactionsOfLacuna) {
+  SKIP_WITHOUT_CALCULIX();
+  Cantilever bar("st_venant_kirchhoff", {6, 2, 2}, 2);
+  bar.model.effects.pop_back();  // gravity
+  const Eigen::VectorXi tip = bar.Tip();
+  const Eigen::Matrix3Xd rest = bar.mesh.nodes(Eigen::all, tip);
+  bar.model.grips.push_back(
+      {tip, [rest](double time) -> Eigen::Matrix3Xd {
+         const Eigen::Vector3d centre(0.08, 0.01, 0.01);
+         const Eigen::Matrix3d turn =
+             Eigen::AngleAxisd(0.3 * time, Eigen::Vector3d::UnitX()).toRotationMatrix();
+         return (turn * (rest.colwise() - centre)).colwise() +
+                (centre + time * Eigen::Vector3d(0.005, 0, 0.004));
+       }});
+  bar.names.grips = {"clamp", "jaw"};
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  bar.options.time_step = 0.25;
+  bar.frames = {1};
+
+  const Eigen::Vector3d about(0.02, -0.01, 0.03);
+  bar.options.reactions = {{0, {}}, {0, about}, {1, {}}, {1, about}};
+  Eigen::VectorXd expected, position;
+  ASSERT_TRUE(Predict(bar.model, bar.options, {1}, {}, [&](int, const PredictedState& state) {
+                expected = state.reaction;
+                position = state.position;
+              }).IsUsable());
+
+  TemporaryFolder folder;
+  const PortableModel model = bar.Describe();
+  std::string text = InpText(model, InpDialect::kCalculix);
+  for (size_t at = 0; (at = text.find("*NODE PRINT", at)) != std::string::npos; ++at)
+    text.insert(text.find("\nU\n", at) + 2, ", RF");
+  std::ofstream(folder / "model.inp") << text;
+  const CalculixResult result =
+      RunCalculix(folder / "model.inp", folder / "calculix", model.mesh.NodeCount(), model.frames);
+  ASSERT_TRUE(result.IsUsable()) << result.message;
+  const Eigen::Matrix3Xd forces = LastForces(folder / "calculix/model.dat", model.mesh.NodeCount());
+  ASSERT_EQ(forces.cols(), model.mesh.NodeCount());
+  const Eigen::VectorXd found =
+      SumReactions(bar.model, bar.options.reactions, position, forces.reshaped());
+  std::cout << "Lacuna " << expected.transpose() << "\nCalculiX " << found.transpose() << "\n";
+  EXPECT_GT(expected.segment<3>(6).norm(), 1);  // N
+  for (const int row : {0, 3, 6, 9})
+    EXPECT_LT((found - expected).segment<3>(row).norm(), 1e-3 * expected.segment<3>(row).norm())
+        << row;
 }
 
 TEST(Calculix, SaysWhyItStopped) {

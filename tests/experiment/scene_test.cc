@@ -166,15 +166,36 @@ TEST(TwistScene, ItsLoadCellsReadTheForcesOfTheGrips) {
     EXPECT_EQ(reading.held, k);
     EXPECT_EQ(reading.name, scene.grips[k].region.name);
     const Eigen::MatrixXd noise =
-        reading.forces - motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(k));
+        reading.values - motion.reactions.middleRows<3>(3 * static_cast<Eigen::Index>(k));
     squares += noise.squaredNorm();
     count += static_cast<double>(noise.size());
   }
   EXPECT_NEAR(std::sqrt(squares / count), 0.02, 0.004);  // 96 draws
-  Edits turning = kCoarserHeldBar;
-  turning.push_back(
-      {"    angle: 90 deg\n", "    angle: 90 deg\n    measured_force: {deviation: 20 mN}\n"});
-  EXPECT_THROW(ReadEdited("twist.yaml", turning), InputError);
+}
+
+TEST(Scene, RecordsTheTorqueOfAGripThatTurns) {
+  const TemporaryFolder folder;
+  Edits edits = kCoarserHeldBar;
+  edits.push_back(
+      {"    angle: 90 deg\n", "    angle: 30 deg\n    measured_torque: {deviation: 0.1 N mm}\n"});
+  const Scene scene = ReadEdited("twist.yaml", edits);
+  const SceneMotion motion = Simulate(scene);
+  ASSERT_TRUE(motion.IsUsable()) << motion.message;
+  ASSERT_EQ(motion.torques.rows(), 6);
+  // The driven grip turns the bar about its axis, the other one holds it.
+  const Eigen::VectorXd last = motion.torques.rightCols<1>();
+  EXPECT_GT(last[3], 0);
+  EXPECT_NEAR(last[0], -last[3], 0.05 * last[3]);
+  WriteSceneRecording(scene, motion, folder.Path());
+  const Recording recording = LoadRecording(folder.Path());
+  ASSERT_EQ(recording.object.reactions.size(), 1u);
+  const MeasuredReaction& reading = recording.object.reactions[0];
+  EXPECT_TRUE(reading.is_torque);
+  EXPECT_EQ(reading.deviation, 1e-4);
+  EXPECT_NEAR(reading.values(0, reading.values.cols() - 1), last[3], 5e-4);
+  const RecordedGrip& grip = recording.object.grips.at(0);
+  const Eigen::AngleAxisd turn(MotionAt(grip, recording.times.back()).linear());
+  EXPECT_NEAR(turn.angle(), M_PI / 6, 1e-9);
 }
 
 // What a body that falls has, J.

@@ -127,5 +127,61 @@ TEST(MotiveCsv, RefusesWhatItCannotUse) {
   EXPECT_THAT(message(kMotive + "0,0,9,9,9,1,2,3,4,5,6,7\n"), HasSubstr("has 12 entries"));
 }
 
+TEST(DeepLabCutCsv, GivesPointsInSpaceByBodyPart) {
+  const TestFolder folder;
+  const MarkerTracks tracks =
+      ReadMarkerTracks(folder.Write("a.csv",
+                                    "scorer,DLC,DLC,DLC,DLC,DLC,DLC,DLC\n"
+                                    "bodyparts,tip,tip,tip,tip,base,base,base\n"
+                                    "coords,x,y,z,likelihood,x,y,z\n"
+                                    "0,1,2,3,0.9,4,5,6\n1,1.5,2,3,0.9,,,\n"),
+                       {});
+  EXPECT_THAT(tracks.names, ElementsAre("tip", "base"));
+  EXPECT_EQ(tracks.times.size(), 0);
+  ASSERT_EQ(tracks.positions.size(), 2u);
+  EXPECT_EQ(tracks.positions[0].col(1), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(tracks.positions[1].col(0), Eigen::Vector3d(1.5, 2, 3));
+  EXPECT_TRUE(tracks.positions[1].col(1).array().isNaN().all());
+  const MarkerTracks two = ReadMarkerTracks(
+      folder.Write("b.csv",
+                   "scorer,DLC,DLC,DLC,DLC,DLC,DLC\nindividuals,left,left,left,right,right,"
+                   "right\nbodyparts,tip,tip,tip,tip,tip,tip\ncoords,x,y,z,x,y,z\n"
+                   "0,1,2,3,4,5,6\n"),
+      {});
+  EXPECT_THAT(two.names, ElementsAre("left tip", "right tip"));
+}
+
+TEST(DeepLabCutCsv, OfOneCameraIsRefusedWithItsReason) {
+  const TestFolder folder;
+  const auto message = [&](const std::string& content) {
+    return ErrorOf([&] { ReadMarkerTracks(folder.Write("a.csv", content), {}); });
+  };
+  EXPECT_THAT(
+      message("scorer,DLC,DLC,DLC\nbodyparts,tip,tip,tip\ncoords,x,y,likelihood\n0,1,2,1\n"),
+      HasSubstr("x and y only, which are pixels of one camera; triangulate"));
+  EXPECT_THAT(message("scorer,DLC,DLC,DLC\nbodyparts,tip,tip,tip\n0,1,2,1\n"),
+              HasSubstr("has no rows bodyparts and coords"));
+  EXPECT_THAT(message("scorer,DLC,DLC,DLC\nbodyparts,tip,tip,tip\ncoords,x,y,z\n0,1,2,b\n"),
+              HasSubstr("a.csv:4:7: got \"b\"; expected a number"));
+  EXPECT_THAT(message("scorer,DLC,DLC,DLC\nbodyparts,tip,tip,tip\ncoords,x,y,z\n"),
+              HasSubstr("holds no frame"));
+}
+
+// Anipose writes a CSV whose columns are named like those of other programs.
+TEST(AniposeCsv, IsReadWithoutNamingItsColumns) {
+  const TestFolder folder;
+  const MarkerTracks tracks = ReadMarkerTracks(
+      folder.Write("a.csv",
+                   "l-base_x,l-base_y,l-base_z,l-base_error,l-base_ncams,l-base_score,"
+                   "tip_x,tip_y,tip_z,tip_error,tip_ncams,tip_score,M_00,M_01,center_0,fnum\n"
+                   "1,2,3,0.5,2,0.9,4,5,6,0.5,3,0.9,1,0,0,0\n"
+                   "1,2,3,0.5,2,0.9,,,,,,,1,0,0,1\n"),
+      {});
+  EXPECT_THAT(tracks.names, ElementsAre("l-base", "tip"));
+  ASSERT_EQ(tracks.positions.size(), 2u);
+  EXPECT_EQ(tracks.positions[0].col(1), Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(tracks.positions[1].col(1).array().isNaN().all());
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -57,7 +57,7 @@ TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesIts
                 "exerted_by: object}"));
   const MeasuredReaction& reaction = recording.object.reactions.at(0);
   EXPECT_EQ(reaction.directions, Eigen::Vector3d::UnitZ());
-  EXPECT_EQ(reaction.forces(0, 1), -30);
+  EXPECT_EQ(reaction.values(0, 1), -30);
 }
 
 TEST_F(MeasuredReactionTest, AFixedPartMayHaveALoadCellToo) {
@@ -103,7 +103,7 @@ TEST_F(MeasuredReactionTest, WhatIsWrittenIsReadAgain) {
   const Recording again = Load(WithForce(entry));
   const MeasuredReaction& read = again.object.reactions.at(0);
   EXPECT_EQ(read.labels, reaction.labels);
-  EXPECT_EQ(read.forces, reaction.forces);
+  EXPECT_EQ(read.values, reaction.values);
   EXPECT_EQ(read.times, reaction.times);
   EXPECT_EQ(read.deviation, reaction.deviation);
 }

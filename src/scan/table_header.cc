@@ -1,0 +1,124 @@
+#include "scan/table_header.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "core/error.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view Trim(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+// What follows the mark of a comment; nothing if the line is none.
+std::optional<std::string_view> CommentIn(std::string_view line) {
+  line = Trim(line);
+  if (line.empty()) return line;
+  if (line.front() == '#') {
+    line.remove_prefix(std::min(line.find_first_not_of('#'), line.size()));
+    return Trim(line);
+  }
+  if (line.substr(0, 3) != "***") return std::nullopt;
+  line.remove_prefix(std::min(line.find_first_not_of('*'), line.size()));
+  return Trim(line);
+}
+
+// The position of a separator of name and value, which a blank or the end of the line follows: the
+// colons of times of day separate nothing.
+size_t FindSeparator(std::string_view line, size_t from) {
+  for (size_t at = from; at < line.size(); ++at)
+    if ((line[at] == ':' || line[at] == '=') &&
+        (at + 1 == line.size() || kBlanks.find(line[at + 1]) != std::string_view::npos))
+      return at;
+  return std::string_view::npos;
+}
+
+std::optional<HeaderValue> ParseValue(std::string_view text) {
+  const size_t end = std::min(text.find_first_of(" \t["), text.size());
+  const std::optional<double> number = ParseNumber(text.substr(0, end));
+  if (end == 0 || !number) return std::nullopt;
+  std::string_view unit = Trim(text.substr(end));
+  if (unit.size() >= 2 && unit.front() == '[' && unit.back() == ']')
+    unit = Trim(unit.substr(1, unit.size() - 2));
+  // Several words are a remark or a date.
+  if (unit.find_first_of(kBlanks) != std::string_view::npos) return std::nullopt;
+  if (!unit.empty() && ParseNumber(unit.substr(0, 1))) return std::nullopt;
+  return HeaderValue{*number, std::string(unit)};
+}
+
+}  // namespace
+
+std::map<std::string, HeaderValue> HeaderValuesIn(std::string_view content) {
+  std::map<std::string, HeaderValue> values;
+  const std::vector<std::string_view> lines = SplitLines(content);
+  for (size_t row = 0; row < lines.size(); ++row) {
+    const std::optional<std::string_view> comment = CommentIn(lines[row]);
+    if (!comment && Trim(lines[row]) == kStageHeader && row + 1 < lines.size()) {
+      const auto names = SplitFields(lines[row], ';'), fields = SplitFields(lines[++row], ';');
+      for (size_t k = 0; k < std::min(names.size(), fields.size()); ++k)
+        if (const auto value = ParseValue(fields[k])) values.emplace(std::string(names[k]), *value);
+      continue;
+    }
+    if (!comment) break;
+    const size_t first = FindSeparator(*comment, 0);
+    if (first == std::string_view::npos || first == 0) continue;
+    size_t last = first;
+    for (size_t at = first; at != std::string_view::npos; at = FindSeparator(*comment, at + 1))
+      last = at;
+    if (const auto value = ParseValue(Trim(comment->substr(last + 1))))
+      values.emplace(std::string(Trim(comment->substr(0, first))), *value);
+  }
+  return values;
+}
+
+std::map<std::string, HeaderValue> ReadHeaderValues(const std::filesystem::path& file) {
+  // Headers are far shorter. The rows below, of which there may be millions, are not read.
+  constexpr size_t kMost = 1 << 18;
+  std::ifstream stream(file, std::ios::binary);
+  std::string content(kMost, '\0');
+  stream.read(content.data(), static_cast<std::streamsize>(kMost));
+  if (stream.bad() || (!stream.is_open())) throw InputError({file.string()}, "cannot be read");
+  content.resize(static_cast<size_t>(stream.gcount()));
+  if (content.substr(0, 3) == "\xEF\xBB\xBF") content.erase(0, 3);
+  return HeaderValuesIn(content);
+}
+
+std::vector<double> HeaderValuesOf(const std::vector<std::filesystem::path>& files,
+                                   const std::string& name, double unit,
+                                   const std::string& unit_name) {
+  std::vector<double> all;
+  for (const std::filesystem::path& file : files) {
+    const std::map<std::string, HeaderValue> values = ReadHeaderValues(file);
+    const auto found = values.find(name);
+    if (found == values.end()) {
+      std::vector<std::string> names;
+      for (const auto& [other, value] : values) names.push_back(other);
+      throw InputError(
+          {file.string()},
+          fmt::format("has no value \"{}\" in its header, which has {}", name,
+                      names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+    const HeaderValue& value = found->second;
+    if (!value.unit.empty() && value.unit != unit_name)
+      throw InputError({file.string()}, fmt::format("gives \"{}\" in {}; recording.yaml says {}",
+                                                    name, value.unit, unit_name));
+    if (!std::isfinite(value.value))
+      throw InputError({file.string()}, fmt::format("gives no finite \"{}\"", name));
+    all.push_back(unit * value.value);
+  }
+  return all;
+}
+
+}  // namespace lacuna
