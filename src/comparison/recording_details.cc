@@ -19,7 +19,8 @@ namespace {
 // has no grip.
 Eigen::VectorXd GripDistances(const Recording& recording, const Eigen::Matrix3Xd& places,
                               const Eigen::Matrix3Xd& nodes) {
-  std::vector<Region> regions = recording.object.fixed;
+  std::vector<Region> regions;
+  for (const RecordedSupport& support : recording.object.fixed) regions.push_back(support.region);
   for (const RecordedGrip& grip : recording.object.grips) regions.push_back(grip.region);
   Eigen::VectorXd distances =
       Eigen::VectorXd::Constant(places.cols(), std::numeric_limits<double>::infinity());

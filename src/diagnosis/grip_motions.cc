@@ -12,13 +12,15 @@ namespace {
 struct GripNodes {
   Eigen::VectorXi nodes;
   Eigen::Vector3d centre;
+  Eigen::Vector3d held;  // 1 along the axes along which the grip holds its nodes, else 0
 };
 
 Eigen::VectorXd RigidMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest,
                             const Eigen::Vector3d& shift, const Eigen::Vector3d& rotation) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
   for (const int node : grip.nodes)
-    motion.segment<3>(3 * node) = shift + rotation.cross(rest.col(node) - grip.centre);
+    motion.segment<3>(3 * node) =
+        grip.held.cwiseProduct(shift + rotation.cross(rest.col(node) - grip.centre));
   return motion;
 }
 
@@ -39,7 +41,7 @@ MisfitDirection YieldingMotion(const GripNodes& grip, const Eigen::Matrix3Xd& re
                                     double, const Eigen::VectorXd& reaction) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
     for (const int node : grip.nodes) {
-      const Eigen::Vector3d here = reaction.segment<3>(3 * node);
+      const Eigen::Vector3d here = grip.held.cwiseProduct(reaction.segment<3>(3 * node));
       force += here;
       moment += (rest.col(node) - grip.centre).cross(here);
     }
@@ -55,7 +57,8 @@ MisfitDirection YieldingMotion(const GripNodes& grip, const Eigen::Matrix3Xd& re
 MisfitDirection StrainMotion(const GripNodes& grip, const Eigen::Matrix3Xd& rest, int entry) {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * rest.cols());
   for (const int node : grip.nodes)
-    motion[3 * node + entry % 3] = rest(entry / 3, node) - grip.centre[entry / 3];
+    motion[3 * node + entry % 3] =
+        grip.held[entry % 3] * (rest(entry / 3, node) - grip.centre[entry / 3]);
   return ConstantMotion(std::move(motion));
 }
 
@@ -76,7 +79,8 @@ GripMotions MakeGripMotions(const CalibrationProblem& problem) {
   std::vector<MisfitDirection>& directions = motions.directions;
   const auto next = [&] { return static_cast<Eigen::Index>(directions.size()); };
   for (size_t g = 0; g < model.grips.size(); ++g) {
-    GripNodes nodes{model.grips[g].nodes, zero};
+    GripNodes nodes{model.grips[g].nodes, zero, zero};
+    for (int axis = 0; axis < 3; ++axis) nodes.held[axis] = model.grips[g].axes.Has(axis);
     if (nodes.nodes.size() == 0) continue;
     nodes.centre = rest(Eigen::all, nodes.nodes).rowwise().mean();
     GripMotions::Grip& grip = motions.grips.emplace_back();

@@ -6,7 +6,8 @@
 //   shift eᵢ, rotation eᵢ × (X − X̄)          (misplaced grip; 6 directions)
 //   −F, −M × (X − X̄)                          (compliant grip; 2 directions)
 //   (X − X̄)ⱼ eᵢ                               (deforming grip; 9 directions, i fastest)
-// where F and M are the resultant force and moment of the grip's reaction.
+// where F and M are the resultant force and moment of the grip's reaction. Components along axes
+// along which the grip does not hold are 0.
 #ifndef LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
 #define LACUNA_DIAGNOSIS_GRIP_MOTIONS_H_
 

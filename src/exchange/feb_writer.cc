@@ -162,9 +162,10 @@ class Writer {
     const std::string set = fmt::format("region{}", number + 1);
     if (grip.displacements.empty()) {
       boundary_ += fmt::format(
-          "<bc name=\"grip{}\" node_set=\"{}\" type=\"zero displacement\"><x_dof>1</x_dof>"
-          "<y_dof>1</y_dof><z_dof>1</z_dof></bc>\n",
-          number + 1, set);
+          "<bc name=\"grip{}\" node_set=\"{}\" type=\"zero displacement\"><x_dof>{}</x_dof>"
+          "<y_dof>{}</y_dof><z_dof>{}</z_dof></bc>\n",
+          number + 1, set, grip.axes.Has(0) ? 1 : 0, grip.axes.Has(1) ? 1 : 0,
+          grip.axes.Has(2) ? 1 : 0);
       return;
     }
     const bool is_translation = grip.IsTranslation();
@@ -176,11 +177,13 @@ class Writer {
         mesh_.insert(end, fmt::format("<NodeSet name=\"{}\">{}</NodeSet>\n", place,
                                       grip.part.nodes[column] + 1));
       }
-      for (int axis = 0; axis < 3; ++axis)
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!grip.axes.Has(axis)) continue;
         boundary_ += fmt::format(
             "<bc name=\"{0}_{1}\" node_set=\"{0}\" type=\"prescribed displacement\"><dof>{1}</dof>"
             "<value lc=\"{2}\">1</value><relative>0</relative></bc>\n",
             place, "xyz"[axis], MotionCurve(grip.Series(axis, static_cast<Eigen::Index>(column))));
+      }
     }
   }
 

@@ -69,13 +69,19 @@ struct Sections {
 void AddGrip(const PortableGrip& grip, const std::string& set, const PortableModel& model,
              Sections* sections) {
   if (grip.displacements.empty()) {
-    sections->fixed += fmt::format("{}, 1, 3\n", set);
+    if (grip.axes.IsAll()) {
+      sections->fixed += fmt::format("{}, 1, 3\n", set);
+      return;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (grip.axes.Has(axis)) sections->fixed += fmt::format("{0}, {1}, {1}\n", set, axis + 1);
     return;
   }
   const bool is_translation = grip.IsTranslation();
   const size_t columns = is_translation ? 1 : grip.part.nodes.size();
   for (size_t column = 0; column < columns; ++column)
     for (int axis = 0; axis < 3; ++axis) {
+      if (!grip.axes.Has(axis)) continue;
       const Eigen::VectorXd values = grip.Series(axis, static_cast<Eigen::Index>(column));
       const std::string place = is_translation ? set : std::to_string(grip.part.nodes[column] + 1);
       if (values.isZero(0)) {

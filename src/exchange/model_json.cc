@@ -26,6 +26,9 @@ Json EffectJson(const PortableEffect& effect) {
 
 Json GripJson(const PortableGrip& grip) {
   Json json{{"name", grip.part.name}, {"nodes", grip.part.nodes}};
+  if (!grip.axes.IsAll())
+    for (int axis = 0; axis < 3; ++axis)
+      if (grip.axes.Has(axis)) json["axes"].push_back(std::string(1, "xyz"[axis]));
   if (grip.displacements.empty()) return json;
   const bool is_translation = grip.IsTranslation();
   Json motion = Json::array();

@@ -37,6 +37,8 @@ Counterpart EffectCounterpart(const PortableEffect& effect, const PortableModel&
   }
 }
 
+bool IsPin(const PortableGrip& grip) { return grip.displacements.empty() && grip.axes.IsAll(); }
+
 }  // namespace
 
 Counterparts MujocoCounterparts(const PortableModel& model) {
@@ -46,9 +48,10 @@ Counterparts MujocoCounterparts(const PortableModel& model) {
     parts.push_back(EffectCounterpart(effect, model));
   parts.push_back({"masses", How::kConverted, "every node gets the same share of the mass"});
   for (const PortableGrip& grip : model.grips)
-    parts.push_back({"grip " + grip.part.name,
-                     grip.displacements.empty() ? How::kExact : How::kNone,
-                     grip.displacements.empty() ? "pin" : "it moves, and a pin does not"});
+    parts.push_back({"grip " + grip.part.name, IsPin(grip) ? How::kExact : How::kNone,
+                     IsPin(grip)                  ? "pin"
+                     : grip.displacements.empty() ? "a pin holds along all axes"
+                                                  : "it moves, and a pin does not"});
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, How::kNone, "no element describes it"});
   parts.push_back({"equilibrium at the start", How::kNone,
@@ -66,8 +69,7 @@ std::string MujocoText(const PortableModel& given) {
   const Eigen::Vector3d gravity = model.Gravity();
   std::vector<int> pins;
   for (const PortableGrip& grip : model.grips)
-    if (grip.displacements.empty())
-      pins.insert(pins.end(), grip.part.nodes.begin(), grip.part.nodes.end());
+    if (IsPin(grip)) pins.insert(pins.end(), grip.part.nodes.begin(), grip.part.nodes.end());
   return fmt::format(
       "{}<mujoco model=\"lacuna\">\n"
       "  <option timestep=\"{}\" gravity=\"{} {} {}\" integrator=\"implicitfast\"/>\n"

@@ -64,7 +64,7 @@ std::vector<int> Ascending(const Eigen::VectorXi& nodes) {
 
 PortableGrip DescribeGrip(const Grip& grip, const std::string& name, const TetMesh& mesh,
                           const PortableModel& model) {
-  PortableGrip described{{name, Ascending(grip.nodes)}, {}};
+  PortableGrip described{{name, Ascending(grip.nodes)}, {}, grip.axes};
   if (!grip.motion) return described;
   std::vector<int> order(static_cast<size_t>(grip.nodes.size()));
   for (size_t k = 0; k < order.size(); ++k) order[k] = static_cast<int>(k);

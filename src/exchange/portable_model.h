@@ -54,6 +54,7 @@ struct PortableGrip {
   // For each time of PortableModel::times, the displacements of the nodes (3 × nodes); empty where
   // the part is clamped at its rest position.
   std::vector<Eigen::Matrix3Xd> displacements;
+  AxisSet axes = AxisSet::All();  // the axes along which it is held
 
   // Whether all nodes have the same displacement at all times, up to rounding.
   bool IsTranslation() const;

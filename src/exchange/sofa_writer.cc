@@ -73,11 +73,21 @@ std::string ForceField(const PortableEffect& law) {
   }
 }
 
+bool IsWritten(const PortableGrip& grip) {
+  return grip.displacements.empty() || (grip.IsTranslation() && grip.axes.IsAll());
+}
+
 std::string GripText(const PortableGrip& grip, const PortableModel& model) {
+  if (grip.displacements.empty() && !grip.axes.IsAll())
+    return fmt::format(
+        "    body.addObject('PartialFixedProjectiveConstraint', indices=[{}],\n"
+        "                   fixedDirections=[{}, {}, {}])\n",
+        fmt::join(grip.part.nodes, ", "), grip.axes.Has(0) ? 1 : 0, grip.axes.Has(1) ? 1 : 0,
+        grip.axes.Has(2) ? 1 : 0);
+  if (!IsWritten(grip)) return "";
   if (grip.displacements.empty())
     return fmt::format("    body.addObject('FixedProjectiveConstraint', indices=[{}])\n",
                        fmt::join(grip.part.nodes, ", "));
-  if (!grip.IsTranslation()) return "";
   std::string movements;
   for (const Eigen::Matrix3Xd& at : grip.displacements)
     fmt::format_to(std::back_inserter(movements), "[{}, {}, {}], ", at(0, 0), at(1, 0), at(2, 0));
@@ -106,7 +116,11 @@ Counterparts SofaCounterparts(const PortableModel& model) {
   for (const PortableGrip& grip : model.grips) {
     const std::string part = "grip " + grip.part.name;
     if (grip.displacements.empty())
-      parts.push_back({part, How::kExact, "FixedProjectiveConstraint"});
+      parts.push_back(
+          {part, How::kExact,
+           grip.axes.IsAll() ? "FixedProjectiveConstraint" : "PartialFixedProjectiveConstraint"});
+    else if (!grip.axes.IsAll())
+      parts.push_back({part, How::kNone, "a motion along some axes only"});
     else if (grip.IsTranslation())
       parts.push_back({part, How::kExact, "LinearMovementProjectiveConstraint"});
     else

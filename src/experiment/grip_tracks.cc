@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "experiment/model_reader.h"
+#include "experiment/held_parts.h"
 #include "geometry/rigid_fit.h"
 
 namespace lacuna {
@@ -34,28 +34,20 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
 
 GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Model* model)
     : recording_(recording), model_(*model) {
-  std::map<int, std::string> holder;  // for each held node, the name of its region
-  const auto nodes_in = [&](const Region& region) {
-    return NamingWhere(recording.file.string(), [&] {
-      const Eigen::VectorXi nodes = NodesIn(region, reference.nodes);
-      for (const int node : nodes) {
-        const auto [held, is_new] = holder.emplace(node, region.name);
-        if (!is_new)
-          throw InputError(fmt::format("regions \"{}\" and \"{}\" hold the same part of the object",
-                                       held->second, region.name));
-      }
-      if (holder.size() == static_cast<size_t>(reference.nodes.cols()))
-        throw InputError(fmt::format(
-            "region \"{}\" holds the whole object: no part is free to move", region.name));
-      return nodes;
-    });
-  };
-  for (const Region& region : recording.object.fixed)
-    model->grips.push_back({nodes_in(region), {}});
+  std::vector<HeldPart> parts;
+  for (const RecordedSupport& support : recording.object.fixed)
+    parts.push_back({support.region, support.axes, /*moves=*/false});
+  for (const RecordedGrip& grip : recording.object.grips)
+    parts.push_back({grip.region, grip.axes, /*moves=*/true});
+  const std::vector<Eigen::VectorXi> held =
+      NamingWhere(recording.file.string(), [&] { return NodesOfParts(parts, reference.nodes); });
+  auto nodes = held.begin();
+  for (const RecordedSupport& support : recording.object.fixed)
+    model->grips.push_back({*nodes++, {}, support.axes});
   for (const RecordedGrip& grip : recording.object.grips) {
     auto track = std::make_shared<Track>();
     track->grip = grip;
-    track->nodes = nodes_in(grip.region);
+    track->nodes = *nodes++;
     track->rest = reference.nodes(Eigen::all, track->nodes);
     track->markers = MarkersOf(grip, recording);
     if (!track->markers.empty()) {
@@ -69,11 +61,13 @@ GripTracks::GripTracks(const Recording& recording, const TetMesh& reference, Mod
                             : "do not span a plane: three or more are needed, not on a line"));
     }
     tracks_.push_back(track);
-    model->grips.push_back({track->nodes, [track](double time) -> Eigen::Matrix3Xd {
+    model->grips.push_back({track->nodes,
+                            [track](double time) -> Eigen::Matrix3Xd {
                               if (track->grip.motion == GripMotion::kGiven)
                                 return MotionAt(track->grip, time) * track->rest;
                               return Interpolated(track->places, time);
-                            }});
+                            },
+                            grip.axes});
   }
   Begin(recording.times.front());
 }
@@ -122,7 +116,8 @@ void GripTracks::Place(double time, Eigen::VectorXd* position) const {
         grip.motion ? grip.motion(time)
                     : Eigen::Matrix3Xd(model_.body->mesh.nodes(Eigen::all, grip.nodes));
     for (Eigen::Index i = 0; i < grip.nodes.size(); ++i)
-      position->segment<3>(3 * grip.nodes[i]) = places.col(i);
+      for (int axis = 0; axis < 3; ++axis)
+        if (grip.axes.Has(axis)) (*position)[3 * grip.nodes[i] + axis] = places(axis, i);
   }
 }
 

@@ -21,7 +21,7 @@ std::vector<int> MarkersOf(const RecordedGrip& grip, const Recording& recording)
 class GripTracks {
  public:
   // Adds a grip to the model for each fixed and gripped region of the recording. Throws InputError
-  // when a region holds no node, two regions hold the same node, or all nodes are held.
+  // when their nodes contradict each other (held_parts.h).
   GripTracks(const Recording& recording, const TetMesh& reference, Model* model);
 
   // Places all grips at their rest positions at this time.

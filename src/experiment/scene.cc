@@ -8,6 +8,7 @@
 
 #include "core/interrupt.h"
 #include "effects/gravity.h"
+#include "experiment/held_parts.h"
 #include "fem/grip_reaction.h"
 #include "fem/prescribed_force.h"
 #include "geometry/rounded_box.h"
@@ -55,11 +56,19 @@ SceneGrip ReadGrip(const Config& config, int index) {
   grip.centre = config.Vector("centre", kLength, grip.centre);
   grip.angle = config.Quantity("angle", kAngle, kAnyValue, grip.angle);
   grip.profile = ReadProfile(config);
+  grip.axes = ReadDirections(config);
+  if (!grip.axes.IsAll() && grip.angle != 0)
+    config.Fail("directions", "is implemented for grips that do not rotate");
   if (const auto cell = config.OptionalChild("measured_force")) {
     grip.force_deviation = cell->Quantity("deviation", kForce, kPositive);
+    if (!grip.axes.IsAll())
+      config.Fail("measured_force", "is implemented for grips that hold along all axes");
   }
-  if (const auto cell = config.OptionalChild("measured_torque"))
+  if (const auto cell = config.OptionalChild("measured_torque")) {
     grip.torque_deviation = cell->Quantity("deviation", kTorque, kPositive);
+    if (!grip.axes.IsAll())
+      config.Fail("measured_torque", "is implemented for grips that hold along all axes");
+  }
   return grip;
 }
 
@@ -151,8 +160,13 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
   motion.body = body;
 
   Model model{body, scene.effects, {}};
-  for (const SceneGrip& grip : scene.grips) {
-    Grip held{NodesIn(grip.region, body->mesh.nodes), {}};
+  std::vector<HeldPart> parts;
+  for (const SceneGrip& grip : scene.grips)
+    parts.push_back({grip.region, grip.axes, !IsHeld(grip)});
+  auto nodes = NodesOfParts(parts, body->mesh.nodes);
+  for (size_t k = 0; k < scene.grips.size(); ++k) {
+    const SceneGrip& grip = scene.grips[k];
+    Grip held{std::move(nodes[k]), {}, grip.axes};
     if (!IsHeld(grip)) held.motion = Motion(grip, body->mesh.nodes(Eigen::all, held.nodes));
     model.grips.push_back(std::move(held));
   }
@@ -213,6 +227,7 @@ RecordedGrip DrivenGrip(const Scene& scene, const SceneGrip& grip) {
   RecordedGrip driven;
   driven.region = grip.region;
   driven.motion = GripMotion::kGiven;
+  driven.axes = grip.axes;
   const Eigen::Index steps = (scene.frames - 1) * scene.steps_per_frame;
   driven.times.setLinSpaced(steps + 1, 0, (scene.frames - 1) / scene.frame_rate);
   driven.displacements.resize(3, steps + 1);
@@ -261,7 +276,7 @@ void AddGrips(const Scene& scene, const SceneMotion& motion, RecordedObject* obj
       if (driven)
         object->grips.push_back(DrivenGrip(scene, grip));
       else
-        object->fixed.push_back(grip.region);
+        object->fixed.push_back({grip.region, grip.axes});
     }
   }
   for (const auto& [grip, held] : cells) {

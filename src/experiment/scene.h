@@ -47,6 +47,7 @@ struct SceneGrip {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // m
   double angle = 0;                                  // rad
   Profile profile;
+  AxisSet axes = AxisSet::All();  // along which it is held; all if it rotates
   // N and N m, noise of a component of the load cells that measure its force and its torque about
   // the mean of its undeformed nodes; absent: there is none.
   std::optional<double> force_deviation, torque_deviation;

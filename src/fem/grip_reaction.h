@@ -1,11 +1,13 @@
 // The forces and torques that grips exert on a body.
 //
-// At a gripped node i the equation of motion is not solved; its residual
+// For the components of a node i that are held the equation of motion is not solved; its residual
 //   r_i = m_i a_i − Σ f_i                                     (step_equation.h)
 // is the force that the grip exerts on the node, beside any external force there. A reaction of a
 // grip is the sum of these forces over its nodes, or of their moments about a point p at rest:
 //   F = Σ r_i,   M = Σ (x_i − p) × r_i,
-// with the places x_i of the nodes in the deformed state. It has three rows x, y, z, in N or N m.
+// with the places x_i of the nodes in the deformed state. It has three rows x, y, z, in N or N m. A
+// grip exerts no force along axes along which it does not hold. A component that two supports hold
+// belongs to the first.
 #ifndef LACUNA_FEM_GRIP_REACTION_H_
 #define LACUNA_FEM_GRIP_REACTION_H_
 

@@ -36,10 +36,18 @@ constexpr int kIterationsToJudge = 4;
 // Number of earlier solutions from whose combination the iteration starts.
 constexpr int kRememberedSolutions = 3;
 
+std::vector<AxisSet> AxesOfNodes(const std::vector<char>& fixed) {
+  std::vector<AxisSet> axes(fixed.size());
+  for (size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i]) axes[i] = AxisSet::All();
+  return axes;
+}
+
 }  // namespace
 
 struct LinearSolver::Implementation {
   std::shared_ptr<const BlockPattern> pattern;
+  HeldComponents held;
   LinearSolverOptions options;
   EliminationOrder order;
 
@@ -62,11 +70,12 @@ struct LinearSolver::Implementation {
   Eigen::VectorXd residual, direction, product, preconditioned;
   std::deque<Eigen::VectorXd> earlier_solutions;  // latest first
 
-  Implementation(std::shared_ptr<const BlockPattern> block_pattern, const std::vector<char>& fixed,
-                 const LinearSolverOptions& solver_options)
+  Implementation(std::shared_ptr<const BlockPattern> block_pattern,
+                 const HeldComponents& held_components, const LinearSolverOptions& solver_options)
       : pattern(std::move(block_pattern)),
+        held(held_components),
         options(solver_options),
-        order(NestedDissection(*pattern, fixed)) {
+        order(NestedDissection(*pattern, held.whole_nodes())) {
     if (options.method == LinearSolverOptions::Method::kKeptFactor) {
       single_factor.emplace(*pattern, order);
     }
@@ -76,7 +85,6 @@ struct LinearSolver::Implementation {
   bool FactoriseInDouble(const BlockMatrix& A);
   void ApplyFactor(const Eigen::VectorXd& r, Eigen::VectorXd* z);
   void MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x, Eigen::VectorXd* y) const;
-  void ZeroFixed(Eigen::VectorXd* v) const;
   void SetRotation(const std::vector<Eigen::Matrix3d>* rotations);
   void SetFactorRotations(const std::vector<Eigen::Matrix3d>* rotations);
   void CountSolve(double spent_before);
@@ -101,7 +109,8 @@ bool LinearSolver::Implementation::FactoriseInDouble(const BlockMatrix& A) {
   return kept == Kept::kDouble;
 }
 
-bool LinearSolver::Implementation::Factorise(const BlockMatrix& A) {
+bool LinearSolver::Implementation::Factorise(const BlockMatrix& coupled) {
+  const BlockMatrix& A = held.Decoupled(coupled);
   ++factorisations;
   solves = 0;
   Pivots pivots = Pivots::kInDoubt;
@@ -158,13 +167,7 @@ void LinearSolver::Implementation::ApplyFactor(const Eigen::VectorXd& r, Eigen::
 void LinearSolver::Implementation::MultiplyFree(const BlockMatrix& A, const Eigen::VectorXd& x,
                                                 Eigen::VectorXd* y) const {
   A.Multiply(x, y);
-  ZeroFixed(y);
-}
-
-void LinearSolver::Implementation::ZeroFixed(Eigen::VectorXd* v) const {
-  for (int i = 0; i < pattern->nodes; ++i) {
-    if (order.place[i] < 0) v->segment<3>(3 * i).setZero();
-  }
+  held.ClearIn(*y);
 }
 
 void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d>* rotations) {
@@ -172,7 +175,10 @@ void LinearSolver::Implementation::SetRotation(const std::vector<Eigen::Matrix3d
   if (rotations == nullptr || factor_rotations.empty()) return;
   rotation.resize(rotations->size());
   for (size_t i = 0; i < rotation.size(); ++i) {
-    rotation[i] = (*rotations)[i] * factor_rotations[i].transpose();
+    if (held.HoldsPart(static_cast<int>(i)))
+      rotation[i].setIdentity();
+    else
+      rotation[i] = (*rotations)[i] * factor_rotations[i].transpose();
   }
 }
 
@@ -271,7 +277,7 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
   LinearSolveSummary summary;
   x->setZero(b.size());
   residual = b;
-  ZeroFixed(&residual);
+  held.ClearIn(residual);
   const double b_norm = residual.norm();
   if (b_norm == 0) {
     summary.status = Status::kSolved;
@@ -305,7 +311,7 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
       break;
     case Outcome::kIndefinite:
       summary.status = Status::kNotPositiveDefinite;
-      summary.message = "the matrix is not positive definite on the free nodes";
+      summary.message = "the matrix is not positive definite on the free components";
       break;
     case Outcome::kTooManyIterations:
     case Outcome::kBrokenDown:
@@ -319,12 +325,16 @@ LinearSolveSummary LinearSolver::Implementation::Solve(
   return summary;
 }
 
-LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern,
-                           const std::vector<char>& fixed, const LinearSolverOptions& options)
-    : implementation_(std::make_unique<Implementation>(std::move(pattern), fixed, options)) {
+LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern, const HeldComponents& held,
+                           const LinearSolverOptions& options)
+    : implementation_(std::make_unique<Implementation>(std::move(pattern), held, options)) {
   // With threads of OpenBLAS, the rounding of sums would depend on their number.
   openblas_set_num_threads(1);
 }
+
+LinearSolver::LinearSolver(std::shared_ptr<const BlockPattern> pattern,
+                           const std::vector<char>& fixed, const LinearSolverOptions& options)
+    : LinearSolver(std::move(pattern), HeldComponents(AxesOfNodes(fixed)), options) {}
 
 LinearSolver::~LinearSolver() = default;
 LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;

@@ -1,6 +1,6 @@
 // Solves A x = b repeatedly for symmetric matrices on one mesh, as Newton's method needs.
 //
-// Symbolic analysis (METIS nested dissection) is performed once per mesh and set of fixed nodes.
+// Symbolic analysis (METIS nested dissection) is performed once per mesh and set of held nodes.
 // The numeric Cholesky factorisation is the most expensive part of a time step. It is therefore
 // computed in single precision and kept for the following matrices: these are solved to the
 // requested accuracy by conjugate gradients (CG) in double precision, preconditioned with the kept
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "fem/block_matrix.h"
+#include "fem/held_components.h"
 
 namespace lacuna {
 
@@ -41,7 +42,10 @@ struct LinearSolveSummary {
 // Not thread-safe: one solver per simulation.
 class LinearSolver {
  public:
-  // `fixed[i]` marks node i as prescribed: its rows and columns are left out and x is 0 there.
+  // The rows and columns of held components are left out and x is 0 there.
+  LinearSolver(std::shared_ptr<const BlockPattern> pattern, const HeldComponents& held,
+               const LinearSolverOptions& options);
+  // The same where nodes are free or held along all axes; `fixed[i]` marks node i as held.
   LinearSolver(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed,
                const LinearSolverOptions& options);
   ~LinearSolver();
@@ -49,13 +53,14 @@ class LinearSolver {
   LinearSolver& operator=(LinearSolver&&) noexcept;
 
   // Solves A x = b (vectors of length 3·nodes, node-major). If `A` is not positive definite on the
-  // free nodes, the status of the summary is kNotPositiveDefinite and x is 0. An indefinite matrix
-  // is noticed only if conjugate gradients encounter a direction of negative curvature.
+  // free components, the status of the summary is kNotPositiveDefinite and x is 0. An indefinite
+  // matrix is noticed only if conjugate gradients encounter a direction of negative curvature.
   //
   // `node_rotations` (optional, one per node) are the rotations R of the body at its nodes relative
   // to any configuration that is the same for all solves. The kept factor of A₀ is then rotated
   // with the body, A ≈ Q A₀ Qᵀ with Q = R R₀ᵀ at each node, which keeps it a good preconditioner
-  // when the matrix has changed mainly by rotation.
+  // when the matrix has changed mainly by rotation. Nodes that are held in part are not rotated,
+  // since that would mix held and free components.
   LinearSolveSummary Solve(const BlockMatrix& A, const Eigen::VectorXd& b, Eigen::VectorXd* x,
                            const std::vector<Eigen::Matrix3d>* node_rotations = nullptr);
 
@@ -65,8 +70,8 @@ class LinearSolver {
   bool HasFactor() const;     // whether there is one
   // Replaces it by a factor of A; returns false, without a factor, if A is not positive definite.
   bool Factorise(const BlockMatrix& A, const std::vector<Eigen::Matrix3d>& node_rotations);
-  // z = M⁻¹ r at the free nodes and 0 at the fixed ones, with M rotated with the nodes. CHECKs that
-  // there is a factor.
+  // z = M⁻¹ r for the free components and 0 for the held ones, with M rotated with the nodes. The
+  // held components of r must be 0. CHECKs that there is a factor.
   void ApplyFactor(const Eigen::VectorXd& r, const std::vector<Eigen::Matrix3d>& node_rotations,
                    Eigen::VectorXd* z);
   // Whether a new factor is expected to cost less than the further applications, where so many have

@@ -7,10 +7,16 @@ const Effect* ElasticityOf(const Model& model) {
 }
 
 std::vector<char> GrippedNodes(const Model& model) {
-  std::vector<char> gripped(model.body->NodeCount(), 0);
-  for (const Grip& grip : model.grips)
-    for (const int node : grip.nodes) gripped[node] = 1;
+  std::vector<char> gripped;
+  for (const AxisSet held : HeldAxes(model)) gripped.push_back(held.IsAll());
   return gripped;
+}
+
+std::vector<AxisSet> HeldAxes(const Model& model) {
+  std::vector<AxisSet> held(model.body->NodeCount());
+  for (const Grip& grip : model.grips)
+    for (const int node : grip.nodes) held[node] = held[node] | grip.axes;
+  return held;
 }
 
 }  // namespace lacuna

@@ -11,15 +11,19 @@
 
 #include "fem/body.h"
 #include "fem/effect.h"
+#include "geometry/axis_set.h"
 
 namespace lacuna {
 
-// Nodes with a prescribed motion: clamped at their places in the rest shape, or moved.
+// Nodes with a prescribed motion: clamped at their places in the rest shape, or moved. A support
+// along some axes only, such as a plane of symmetry, leaves the nodes free along the others, where
+// it exerts no force.
 struct Grip {
   Eigen::VectorXi nodes;
   // The positions of these nodes (3 × nodes.size(), m) as a function of time (s). Empty: clamped.
   // It is called from the thread of the simulation.
   std::function<Eigen::Matrix3Xd(double time)> motion;
+  AxisSet axes = AxisSet::All();  // the axes along which the motion is prescribed
 };
 
 // Effects do not change, so that models share them.
@@ -35,8 +39,11 @@ struct Model {
 // The elasticity law of the body, owned by the model; null for a model without effects.
 const Effect* ElasticityOf(const Model& model);
 
-// One flag per node: 1 where a grip prescribes the motion.
+// One flag per node: 1 where grips prescribe the motion along all axes.
 std::vector<char> GrippedNodes(const Model& model);
+
+// For each node, the axes along which grips prescribe its motion.
+std::vector<AxisSet> HeldAxes(const Model& model);
 
 }  // namespace lacuna
 

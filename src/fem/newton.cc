@@ -18,7 +18,7 @@ namespace {
 // An iterate with the quantities that have been evaluated at it.
 struct Iterate {
   Eigen::VectorXd position;
-  Eigen::VectorXd residual;         // r − applied force, 0 at fixed nodes
+  Eigen::VectorXd residual;         // r − applied force; held components are 0
   double force_scale = 0;           // N
   std::optional<double> potential;  // J; NaN if there is none; evaluated on demand
 };
@@ -76,7 +76,7 @@ class Newton {
       return Finish(at);
     }
     at = Evaluate(*position);
-    if (MoveFixedNodes(target, &at)) {
+    if (MoveHeld(target, &at)) {
       while (!IsConverged(at)) {
         if (summary_.iterations >= problem_.max_iterations) {
           Fail(NewtonSummary::Status::kNoConvergence,
@@ -98,7 +98,7 @@ class Newton {
     problem_.equation.Residual(position, &at.residual, &at.force_scale);
     at.residual -= problem_.applied_force;
     at.force_scale += problem_.applied_force.norm();
-    ClearFixed(&at.residual);
+    problem_.held.ClearIn(at.residual);
     return at;
   }
 
@@ -108,12 +108,6 @@ class Newton {
           problem_.equation.Potential(at->position) - problem_.applied_force.dot(at->position);
     }
     return *at->potential;
-  }
-
-  void ClearFixed(Eigen::VectorXd* vector) const {
-    for (size_t i = 0; i < problem_.fixed.size(); ++i) {
-      if (problem_.fixed[i]) vector->segment<3>(3 * i).setZero();
-    }
   }
 
   bool IsConverged(const Iterate& at) const {
@@ -136,9 +130,8 @@ class Newton {
                                         std::sqrt(static_cast<double>(at.position.size())));
   }
 
-  Eigen::VectorXd WithFixedAt(const Eigen::VectorXd& target, Eigen::VectorXd position) const {
-    for (size_t i = 0; i < problem_.fixed.size(); ++i)
-      if (problem_.fixed[i]) position.segment<3>(3 * i) = target.segment<3>(3 * i);
+  Eigen::VectorXd WithHeldAt(const Eigen::VectorXd& target, Eigen::VectorXd position) const {
+    problem_.held.Copy(target, &position);
     return position;
   }
 
@@ -152,7 +145,7 @@ class Newton {
     // The largest ratio of a new residual to the old one, with an old factor and with a new one.
     constexpr double kSufficientRatio = 0.5, kTolerableRatio = 0.9;
     if (!problem_.equation.has_inertia() || !solver_.KeepsFactors()) return false;
-    *at = Evaluate(WithFixedAt(target, start));
+    *at = Evaluate(WithHeldAt(target, start));
     if (!at->residual.allFinite()) return false;
     if (solver_.HasFactor()) rotations_ = NodeRotations(problem_.equation.body(), at->position);
     ChordSteps steps;
@@ -237,29 +230,23 @@ class Newton {
         at, [&] { return Eigen::VectorXd(-at.residual); }, step);
   }
 
-  bool MoveFixedNodes(const Eigen::VectorXd& target, Iterate* at) {
+  bool MoveHeld(const Eigen::VectorXd& target, Iterate* at) {
     Eigen::VectorXd motion = Eigen::VectorXd::Zero(target.size());
-    bool all_fixed = true;
-    for (size_t i = 0; i < problem_.fixed.size(); ++i) {
-      all_fixed = all_fixed && problem_.fixed[i];
-      if (problem_.fixed[i]) {
-        motion.segment<3>(3 * i) = target.segment<3>(3 * i) - at->position.segment<3>(3 * i);
-      }
-    }
+    problem_.held.Copy(target - at->position, &motion);
     if (motion.isZero(0)) return true;
     Eigen::VectorXd step = Eigen::VectorXd::Zero(target.size());
-    if (!all_fixed) {
+    if (!problem_.held.HoldsAll()) {
       ++summary_.iterations;
       const auto right = [&] {
         Eigen::VectorXd b;
         tangent_.Multiply(motion, &b);
         b = -(b + at->residual);
-        ClearFixed(&b);
+        problem_.held.ClearIn(b);
         return b;
       };
       if (!SolveLinearised(*at, right, &step)) return false;
     }
-    *at = Evaluate(WithFixedAt(target, at->position + step + motion));
+    *at = Evaluate(WithHeldAt(target, at->position + step + motion));
     convexify_ = false;
     return true;
   }

@@ -1,11 +1,11 @@
 // Newton's method for the positions at the end of a time step.
 //
-// Solves r(x) = applied force at the free nodes, where r is the residual of the equation of motion
-// (step_equation.h). Steps with inertia are first tried with the kept factor of an earlier tangent
-// and Anderson's mixing, for which the present tangent is not assembled; most steps of a smooth
-// motion end there. Otherwise the tangent is exact, or a positive definite approximation where the
-// exact one is indefinite, and steps are globalised by a line search on the potential of r, or on
-// the work of r along the step if r has no potential.
+// Solves r(x) = applied force for the free components, where r is the residual of the equation of
+// motion (step_equation.h). Steps with inertia are first tried with the kept factor of an earlier
+// tangent and Anderson's mixing, for which the present tangent is not assembled; most steps of a
+// smooth motion end there. Otherwise the tangent is exact, or a positive definite approximation
+// where the exact one is indefinite, and steps are globalised by a line search on the potential of
+// r, or on the work of r along the step if r has no potential.
 #ifndef LACUNA_FEM_NEWTON_H_
 #define LACUNA_FEM_NEWTON_H_
 
@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/held_components.h"
 #include "fem/linear_solver.h"
 #include "fem/step_equation.h"
 
@@ -22,7 +23,7 @@ namespace lacuna {
 struct NewtonProblem {
   const StepEquation& equation;
   const Eigen::VectorXd& applied_force;  // 3n, N
-  const std::vector<char>& fixed;        // n flags
+  const HeldComponents& held;
   double relative_tolerance = 0;  // bound on ‖r − applied‖ relative to the acting forces
   int max_iterations = 0;
 };
@@ -32,12 +33,12 @@ struct NewtonSummary {
   Status status = Status::kNotRun;
   std::string message;
   int iterations = 0;   // of both kinds
-  double residual = 0;  // ‖r − applied‖∞ over the free nodes, N
+  double residual = 0;  // ‖r − applied‖∞ over the free components, N
   bool IsUsable() const { return status == Status::kConverged; }
 };
 
-// Starts at `*position` (3n, m). The fixed nodes are moved to their places in `target` (3n, m); a
-// linearised iteration lets their neighbours follow. `tangent` is used as working memory.
+// Starts at `*position` (3n, m). The held components are set to those of `target` (3n, m); a
+// linearised iteration lets the others follow. `tangent` is used as working memory.
 // On failure the summary says why, and `*position` is the last iterate.
 NewtonSummary SolveByNewton(const NewtonProblem& problem, const Eigen::VectorXd& target,
                             LinearSolver* solver, BlockMatrix* tangent, Eigen::VectorXd* position);

@@ -8,6 +8,7 @@
 
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
+#include "fem/held_components.h"
 #include "fem/prediction.h"
 #include "geometry/hermite.h"
 
@@ -32,7 +33,8 @@ class TangentsAlong {
   TangentsAlong(const Model& model, double time_step)
       : model_(model),
         time_step_(time_step),
-        order_(NestedDissection(*model.body->pattern, GrippedNodes(model))),
+        held_(HeldAxes(model)),
+        order_(NestedDissection(*model.body->pattern, held_.whole_nodes())),
         factor_(*model.body->pattern, order_),
         matrix_(model.body->pattern) {}
 
@@ -50,7 +52,7 @@ class TangentsAlong {
     bool factorised = false;
     for (const bool convexify : {false, true}) {
       Assemble(state, {.position = 1}, convexify);
-      if ((factorised = factor_.Factorise(matrix_))) break;
+      if ((factorised = factor_.Factorise(held_.Decoupled(matrix_)))) break;
     }
     if (!factorised) return std::nullopt;
     const Eigen::MatrixXd first = SolveFree(right);
@@ -79,11 +81,13 @@ class TangentsAlong {
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(right.rows(), right.cols());
     for (int i = 0; i < order_.FreeNodes(); ++i)
       all.middleRows<3>(3 * order_.node[i]) = solution.middleRows<3>(3 * i);
+    held_.ClearIn(all);
     return all;
   }
 
   const Model& model_;
   double time_step_;
+  HeldComponents held_;
   EliminationOrder order_;
   CholmodFactor factor_;
   BlockMatrix matrix_;

@@ -4,28 +4,34 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.h"
+#include "fem/held_components.h"
 #include "fem/inverted_element.h"
 #include "fem/newton.h"
 
 namespace lacuna {
 namespace {
 
-std::vector<char> FixedNodes(const Model& model) {
+HeldComponents CheckedHeldComponents(const Model& model) {
   const int nodes = model.body->NodeCount();
-  std::vector<char> fixed(nodes, 0);
+  std::vector<AxisSet> held(nodes), at_rest(nodes);  // at_rest: by supports along some axes only
   for (const Grip& grip : model.grips) {
+    const bool may_share = !grip.motion && grip.axes.IsPartial();
     for (const int node : grip.nodes) {
       if (node < 0 || node >= nodes) {
         throw InputError(
             fmt::format("a grip holds node {}; the mesh has nodes 0 to {}", node, nodes - 1));
       }
-      if (fixed[node]) throw InputError(fmt::format("node {} belongs to more than one grip", node));
-      fixed[node] = 1;
+      const AxisSet shared = grip.axes & held[node];
+      if (!shared.IsEmpty() && !(may_share && shared == (shared & at_rest[node])))
+        throw InputError(fmt::format("node {} belongs to more than one grip", node));
+      held[node] = held[node] | grip.axes;
+      if (may_share) at_rest[node] = at_rest[node] | grip.axes;
     }
   }
-  return fixed;
+  return HeldComponents(std::move(held));
 }
 
 // Returns `position` with the gripped nodes at the positions that their grips prescribe at `time`.
@@ -40,9 +46,9 @@ Eigen::VectorXd Gripped(const Model& model, double time, Eigen::VectorXd positio
         places.col(k) = model.body->mesh.nodes.col(grip.nodes[k]);
       }
     }
-    for (Eigen::Index k = 0; k < grip.nodes.size(); ++k) {
-      position.segment<3>(3 * grip.nodes[k]) = places.col(k);
-    }
+    for (Eigen::Index k = 0; k < grip.nodes.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis)
+        if (grip.axes.Has(axis)) position[3 * grip.nodes[k] + axis] = places(axis, k);
   }
   return position;
 }
@@ -67,13 +73,13 @@ struct Stepper::Implementation {
   Implementation(const Model& the_model, const StepOptions& the_options)
       : model(the_model),
         options(the_options),
-        fixed(FixedNodes(model)),
-        solver(model.body->pattern, fixed, options.linear),
+        held(CheckedHeldComponents(model)),
+        solver(model.body->pattern, held, options.linear),
         tangent(model.body->pattern) {}
 
   NewtonSummary Solve(const StepEquation& equation, const Eigen::VectorXd& force,
                       const Eigen::VectorXd& target, double tolerance, Eigen::VectorXd* position) {
-    const NewtonProblem problem{equation, force, fixed, tolerance, options.max_iterations};
+    const NewtonProblem problem{equation, force, held, tolerance, options.max_iterations};
     return SolveByNewton(problem, target, &solver, &tangent, position);
   }
 
@@ -175,7 +181,7 @@ struct Stepper::Implementation {
 
   const Model model;
   const StepOptions options;
-  const std::vector<char> fixed;
+  const HeldComponents held;
   LinearSolver solver;
   BlockMatrix tangent;
 };

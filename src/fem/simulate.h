@@ -45,7 +45,8 @@ struct StepSummary {
 // simulation.
 class Stepper {
  public:
-  // Throws InputError if a node belongs to two grips or does not exist in the mesh.
+  // Throws InputError if a node does not exist in the mesh, or belongs to two grips that hold it
+  // along the same axis. Supports at rest, each along some axes only, may share nodes.
   Stepper(const Model& model, const StepOptions& options);
   ~Stepper();
   Stepper(Stepper&&) noexcept;

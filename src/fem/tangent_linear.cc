@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "fem/cholmod_factor.h"
 #include "fem/elimination_order.h"
+#include "fem/held_components.h"
 
 namespace lacuna {
 namespace {
@@ -60,7 +61,7 @@ bool IsZero(const BlockMatrix& matrix) {
 struct TangentLinear::Implementation {
   Model model;
   std::vector<Perturbation> perturbations;
-  std::vector<char> fixed;
+  HeldComponents held;
   EliminationOrder order;
   CholmodFactor factor;
   // The tangent of a step, its skew part, and the parts by velocity, times the rate, and by
@@ -82,8 +83,8 @@ struct TangentLinear::Implementation {
                  const TangentLinearOptions& the_options)
       : model(the_model),
         perturbations(std::move(the_perturbations)),
-        fixed(GrippedNodes(model)),
-        order(NestedDissection(*model.body->pattern, fixed)),
+        held(HeldAxes(model)),
+        order(NestedDissection(*model.body->pattern, held.whole_nodes())),
         factor(*model.body->pattern, order),
         tangent(model.body->pattern),
         skew(model.body->pattern),
@@ -256,7 +257,7 @@ struct TangentLinear::Implementation {
     if (has_velocity) sum -= by_velocity * Eigen::MatrixXd(at);
   }
 
-  // The sensitivities of the gripped nodes; 0 elsewhere.
+  // The sensitivities of the held components; 0 elsewhere.
   void PlaceGrips(const StepEquation& equation, const Eigen::VectorXd& at) {
     moved.setZero();
     Eigen::VectorXd force;
@@ -264,8 +265,9 @@ struct TangentLinear::Implementation {
       if (!perturbations[k].grip) continue;
       if (force.size() == 0) equation.Residual(at, &force);
       const Eigen::VectorXd change = perturbations[k].grip(equation.end_time(), force);
-      for (size_t i = 0; i < fixed.size(); ++i)
-        if (fixed[i]) moved.col(k).segment<3>(3 * i) = change.segment<3>(3 * i);
+      Eigen::VectorXd own = Eigen::VectorXd::Zero(change.size());
+      held.Copy(change, &own);
+      moved.col(k) = own;
     }
   }
 
@@ -276,7 +278,8 @@ struct TangentLinear::Implementation {
     if (has_skew) group.Of(right) -= skew * gripped;
   }
 
-  // Solves tangent · s = right at the free nodes with the current factor; s is 0 at fixed nodes.
+  // Solves tangent · s = right for the free components with the current factor; those that are
+  // held are 0.
   Eigen::MatrixXd SolveFree(const Eigen::MatrixXd& of_all) {
     Eigen::MatrixXd reduced(3 * order.FreeNodes(), of_all.cols()), solution;
     for (int i = 0; i < order.FreeNodes(); ++i)
@@ -285,19 +288,15 @@ struct TangentLinear::Implementation {
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(of_all.rows(), of_all.cols());
     for (int i = 0; i < order.FreeNodes(); ++i)
       all.middleRows<3>(3 * order.node[i]) = solution.middleRows<3>(3 * i);
+    held.ClearIn(all);
     return all;
-  }
-
-  void ClearFixed(Eigen::MatrixXd* columns) const {
-    for (size_t i = 0; i < fixed.size(); ++i)
-      if (fixed[i]) columns->middleRows<3>(3 * static_cast<Eigen::Index>(i)).setZero();
   }
 
   // Solves (tangent + skew) · s = right at the free nodes with the factor of the tangent.
   std::optional<Eigen::MatrixXd> SolveByTangent(const Group& group) {
     Eigen::MatrixXd wanted = group.Of(right);
     if (!has_skew) return SolveFree(wanted);
-    ClearFixed(&wanted);
+    held.ClearIn(wanted);
     // The contribution of the skew part changes little from one step to the next.
     Eigen::MatrixXd expected = 2 * group.Of(position) - group.Of(previous_position);
     return Iterate(wanted, wanted - skew * expected,
@@ -310,7 +309,7 @@ struct TangentLinear::Implementation {
   // The same with the factor of the convexified approximation.
   std::optional<Eigen::MatrixXd> SolveByStandIn(const Group& group) {
     Eigen::MatrixXd wanted = group.Of(right);
-    ClearFixed(&wanted);
+    held.ClearIn(wanted);
     return Iterate(wanted, wanted, [&](const Eigen::MatrixXd& step, Eigen::MatrixXd* residual) {
       *residual -= tangent * step;
       if (has_skew) *residual -= skew * step;
@@ -325,13 +324,13 @@ struct TangentLinear::Implementation {
     constexpr int kMaxIterations = 60;
     const Eigen::RowVectorXd small = options.tolerance * wanted.colwise().norm();
     Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(wanted.rows(), wanted.cols());
-    ClearFixed(&residual);
+    held.ClearIn(residual);
     double last = residual.norm();
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
       const Eigen::MatrixXd step = SolveFree(residual);
       solution += step;
       update(step, &residual);
-      ClearFixed(&residual);
+      held.ClearIn(residual);
       if ((residual.colwise().norm().array() <= small.array()).all()) return solution;
       if (!(residual.norm() < 2 * last)) break;
       last = residual.norm();
@@ -349,13 +348,13 @@ struct TangentLinear::Implementation {
       group.Of(moved) += *solution;
       solved[static_cast<size_t>(group.first / kGroup)] = 1;
     };
-    if (factor.Factorise(tangent))
+    if (factor.Factorise(held.Decoupled(tangent)))
       ForEachGroup([&](const Group& group) { add(group, SolveByTangent(group)); });
     const auto is_solved = [&] { return std::count(solved.begin(), solved.end(), 0) == 0; };
     if (is_solved()) return true;
     BlockMatrix stand_in(model.body->pattern);
     equation.Tangent(at, /*convexify=*/true, &stand_in);
-    if (!factor.Factorise(stand_in)) return false;
+    if (!factor.Factorise(held.Decoupled(stand_in))) return false;
     ForEachGroup([&](const Group& group) {
       if (!solved[static_cast<size_t>(group.first / kGroup)]) add(group, SolveByStandIn(group));
     });

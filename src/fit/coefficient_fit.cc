@@ -34,9 +34,9 @@ class BalancedMotion : public ceres::EvaluationCallback {
         force_model_(force_model),
         equation_(equation),
         coefficients_(coefficients),
-        fixed_(GrippedNodes(model)),
+        held_(HeldAxes(model)),
         gripped_place_(position),
-        newton_solver_(model.body->pattern, fixed_, WithTolerance(kSolverTolerance)),
+        newton_solver_(model.body->pattern, held_, WithTolerance(kSolverTolerance)),
         tangent_(model.body->pattern),
         differentiated_position_(position),
         position_(position) {}
@@ -75,7 +75,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
       for (int part = 1; part <= parts && solved; ++part) {
         const double share = static_cast<double>(part) / parts;
         const Eigen::VectorXd force = force_model_.basis * (from + share * (*coefficients_ - from));
-        const NewtonProblem problem{equation_, force, fixed_, kBalanceTolerance, kNewtonIterations};
+        const NewtonProblem problem{equation_, force, held_, kBalanceTolerance, kNewtonIterations};
         solved = SolveByNewton(problem, gripped_place_, &newton_solver_, &tangent_, &position_)
                      .IsUsable();
       }
@@ -98,7 +98,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
   const ForceModel& force_model_;
   const StepEquation& equation_;
   const Eigen::VectorXd* coefficients_;
-  std::vector<char> fixed_;
+  HeldComponents held_;
   Eigen::VectorXd gripped_place_;
   LinearSolver newton_solver_;
   int response_factorisations_ = 0;

@@ -22,7 +22,7 @@ ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
   equation.Tangent(position, /*convexify=*/false, &tangent);
   LinearSolverOptions options;
   options.relative_tolerance = kTolerance;
-  LinearSolver solver(model.body->pattern, GrippedNodes(model), options);
+  LinearSolver solver(model.body->pattern, HeldComponents(HeldAxes(model)), options);
   ForceResponse response;
   response.sensitivity.resize(position.size(), loads.cols());
   Eigen::VectorXd column;

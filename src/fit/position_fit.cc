@@ -76,15 +76,20 @@ class ObservationCost : public ceres::CostFunction {
 };
 
 // The balance (r_i(x) − g_i − B_i c)/s_i of node i as a function of the positions of its neighbours
-// and of the coefficients.
+// and of the coefficients. Rows of axes along which the node is held are 0.
 class BalanceCost : public ceres::CostFunction {
  public:
   using Row = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   using DenseRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
 
-  BalanceCost(const AssembledStep& step, int node, const Eigen::Vector3d& expected_force,
-              const DenseRows& basis, double scale)
-      : step_(step), node_(node), expected_(expected_force), basis_(basis), scale_(scale) {
+  BalanceCost(const AssembledStep& step, int node, AxisSet held,
+              const Eigen::Vector3d& expected_force, const DenseRows& basis, double scale)
+      : step_(step),
+        node_(node),
+        held_(held),
+        expected_(expected_force),
+        basis_(basis),
+        scale_(scale) {
     const BlockPattern& pattern = step.tangent().pattern();
     set_num_residuals(3);
     mutable_parameter_block_sizes()->assign(pattern.row_begin[node + 1] - pattern.row_begin[node],
@@ -104,21 +109,32 @@ class BalanceCost : public ceres::CostFunction {
     }
     Eigen::Map<Eigen::Vector3d> balance(residuals);
     balance = force / scale_;
+    ClearHeld(&balance);
     if (jacobians == nullptr) return true;
     for (int k = 0; k < neighbours; ++k) {
       if (jacobians[k] == nullptr) continue;
       Eigen::Map<Row> jacobian(jacobians[k]);
       jacobian = step_.tangent().Block(pattern.row_begin[node_] + k) / scale_;
+      ClearHeld(&jacobian);
     }
     if (basis_.cols() > 0 && jacobians[neighbours] != nullptr) {
-      Eigen::Map<DenseRows>(jacobians[neighbours], 3, basis_.cols()) = -basis_ / scale_;
+      Eigen::Map<DenseRows> jacobian(jacobians[neighbours], 3, basis_.cols());
+      jacobian = -basis_ / scale_;
+      ClearHeld(&jacobian);
     }
     return true;
   }
 
  private:
+  template <typename Rows>
+  void ClearHeld(Rows* rows) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (held_.Has(axis)) rows->row(axis).setZero();
+  }
+
   const AssembledStep& step_;
   int node_;
+  AxisSet held_;
   Eigen::Vector3d expected_;
   DenseRows basis_;
   double scale_;
@@ -148,7 +164,7 @@ struct PositionFitInput {
   const PositionFitStart& start;
   const ForceFitPrior& prior;
   const ForceFitOptions& options;
-  std::vector<char> gripped;  // n flags
+  std::vector<AxisSet> held;  // n
   Eigen::VectorXd stiffness;  // n, N/m
 };
 
@@ -157,7 +173,15 @@ double* NodeAt(ForceFit* fit, int node) { return fit->position.data() + 3 * node
 void AddPositions(const PositionFitInput& input, ForceFit* fit, ceres::Problem* problem) {
   for (int i = 0; i < input.model.body->NodeCount(); ++i) {
     problem->AddParameterBlock(NodeAt(fit, i), 3);
-    if (input.gripped[i]) problem->SetParameterBlockConstant(NodeAt(fit, i));
+    const AxisSet held = input.held[i];
+    if (held.IsAll()) {
+      problem->SetParameterBlockConstant(NodeAt(fit, i));
+    } else if (held.IsPartial()) {
+      std::vector<int> constant;
+      for (int axis = 0; axis < 3; ++axis)
+        if (held.Has(axis)) constant.push_back(axis);
+      problem->SetManifold(NodeAt(fit, i), new ceres::SubsetManifold(3, constant));
+    }
   }
 }
 
@@ -182,7 +206,7 @@ void AddBalance(const PositionFitInput& input, const AssembledStep& assembled, F
   const BlockPattern& pattern = *input.model.body->pattern;
   const ForceModel& force_model = input.force_model;
   for (int i = 0; i < pattern.nodes; ++i) {
-    if (input.gripped[i]) continue;
+    if (input.held[i].IsAll()) continue;
     std::vector<double*> blocks;
     for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k)
       blocks.push_back(NodeAt(fit, pattern.column[k]));
@@ -201,8 +225,8 @@ void AddBalance(const PositionFitInput& input, const AssembledStep& assembled, F
     const double length =
         force_model.free[i] ? input.options.free_force_scale : input.options.balance_tolerance;
     problem->AddResidualBlock(
-        new BalanceCost(assembled, i, expected, basis, input.stiffness[i] * length), nullptr,
-        blocks);
+        new BalanceCost(assembled, i, input.held[i], expected, basis, input.stiffness[i] * length),
+        nullptr, blocks);
   }
 }
 
@@ -238,10 +262,14 @@ void SetForces(const PositionFitInput& input, const StepEquation& equation, Forc
   const Eigen::VectorXd spanned_force = input.force_model.basis * fit->coefficients;
   double squared_imbalance = 0;
   for (int i = 0; i < nodes; ++i) {
-    if (input.gripped[i]) continue;
+    if (input.held[i].IsAll()) continue;
     const Eigen::VectorXd& source = input.force_model.free[i] ? external : spanned_force;
     fit->force.segment<3>(3 * i) = source.segment<3>(3 * i);
-    const Eigen::Vector3d imbalance = (external - fit->force).segment<3>(3 * i);
+    Eigen::Vector3d imbalance = (external - fit->force).segment<3>(3 * i);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!input.held[i].Has(axis)) continue;
+      fit->force[3 * i + axis] = imbalance[axis] = 0;
+    }
     fit->multiplier.segment<3>(3 * i) += imbalance;
     squared_imbalance += (imbalance / input.stiffness[i]).squaredNorm() / nodes;
   }
@@ -274,7 +302,7 @@ ForceFit FitPositions(const Model& model, const StepEquation& equation,
                                start,
                                prior,
                                options,
-                               GrippedNodes(model),
+                               HeldAxes(model),
                                NodeStiffness(equation, *model.body, start.position)};
   AssembledStep assembled(model, equation, &fit.position);
   ceres::Problem::Options problem_options;

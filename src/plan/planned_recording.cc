@@ -33,9 +33,10 @@ std::vector<int> NodesOf(const Region& region, const TetMesh& mesh) {
 // rests, so that it can be turned and shaken like any other.
 std::vector<RecordedGrip> AsGrips(const RecordedObject& object, double first, double last) {
   std::vector<RecordedGrip> grips;
-  for (const Region& region : object.fixed) {
+  for (const RecordedSupport& support : object.fixed) {
     RecordedGrip grip;
-    grip.region = region;
+    grip.region = support.region;
+    grip.axes = support.axes;
     grip.motion = GripMotion::kGiven;
     grip.times = Eigen::Vector2d(first, last);
     grip.displacements = Eigen::Matrix3Xd::Zero(3, 2);
@@ -249,6 +250,12 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
     if (grips.empty())
       throw InputError(
           fmt::format("{}: nothing holds the object", protocol.turn.isZero(0) ? "shake" : "turn"));
+    for (const RecordedGrip& grip : grips)
+      if (!grip.axes.IsAll())
+        throw InputError(fmt::format(
+            "{}: {} is held along {} only; a fixture with such a support can neither "
+            "be turned nor shaken",
+            protocol.turn.isZero(0) ? "shake" : "turn", grip.region.name, grip.axes.Names()));
     const Eigen::Vector3d middle =
         mesh.nodes(Eigen::all, NodesOf(grips.front().region, mesh)).rowwise().mean();
     fixture.turn.translate(middle);

@@ -39,7 +39,8 @@ Eigen::Vector3d FarthestMarker(const PredictedRecording& item, const TetMesh& me
   const RecordedObject& object = item.recording.object;
   Eigen::Vector3d from = mesh.nodes.rowwise().mean();
   if (HoldsSomething(object)) {
-    const Region& held = object.fixed.empty() ? object.grips.front().region : object.fixed.front();
+    const Region& held =
+        object.fixed.empty() ? object.grips.front().region : object.fixed.front().region;
     from = mesh.nodes(Eigen::all, SelectNodes(held, mesh.nodes)).rowwise().mean();
   }
   const Eigen::Matrix3Xd& places = item.recording.markers.places;

@@ -78,7 +78,9 @@ Eigen::VectorXd ReadingAt(const MeasuredReaction& reaction, double time) {
 
 std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLocation& data,
                                             const FrameData& frames,
-                                            const std::vector<std::string>& held) {
+                                            const std::vector<std::string>& held,
+                                            const std::vector<AxisSet>& axes) {
+  CHECK_EQ(held.size(), axes.size());
   std::vector<MeasuredReaction> reactions;
   size_t part = 0;
   for (const char* key : {"fixed", "gripped"}) {
@@ -88,6 +90,11 @@ std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLoca
         const auto child = item.OptionalChild(is_torque ? "measured_torque" : "measured_force");
         if (!child) continue;
         reactions.push_back(ReadReaction(*child, data, frames, is_torque));
+        for (int axis = 0; axis < 3 && !is_torque; ++axis)
+          if (!axes[part].Has(axis) && !reactions.back().directions.row(axis).isZero(0))
+            child->Fail("", fmt::format("has a component along {}, along which {} is not held and "
+                                        "exerts no force",
+                                        "xyz"[axis], held[part]));
         reactions.back().held = part;
         reactions.back().name = held[part];
       }

@@ -16,6 +16,7 @@
 
 #include "core/config.h"
 #include "core/quantity.h"
+#include "geometry/axis_set.h"
 #include "scan/data_location.h"
 
 namespace lacuna {
@@ -64,7 +65,8 @@ Eigen::VectorXd ReadingAt(const MeasuredReaction& reaction, double time);
 //   {from: headers, unit, …}                     values in the headers of the frame files
 std::vector<MeasuredReaction> ReadReactions(const Config& config, const DataLocation& data,
                                             const FrameData& frames,
-                                            const std::vector<std::string>& held);
+                                            const std::vector<std::string>& held,
+                                            const std::vector<AxisSet>& axes);
 
 // What `lacuna info` says about a reading.
 std::string DescribeReaction(const MeasuredReaction& reaction);

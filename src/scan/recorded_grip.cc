@@ -77,6 +77,11 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
       item.Choice<int>("follows", {{"scan", 0}}, "scan");
     }
     grip.deforms = item.Flag("deforms", false);
+    grip.axes = ReadDirections(item);
+    if (!grip.axes.IsAll() && (!path || grip.rotations.cols() > 0))
+      item.Fail("directions", path ? "cannot be combined with a `turn` of the path"
+                                   : "needs a `path`: a part that follows markers or a scan is "
+                                     "held along all axes");
     if (grip.deforms && path) item.Fail("deforms", "a grip that moves along a path is rigid");
     grips.push_back(std::move(grip));
   }
@@ -85,7 +90,9 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
 
 std::string DescribeGrip(const RecordedGrip& grip) {
   std::string text = fmt::format("{}: {}", grip.region.name, DescribeRegion(grip.region));
-  if (grip.motion == GripMotion::kGiven) return text + ", moves along a given path";
+  if (grip.motion == GripMotion::kGiven)
+    return text + ", moves along a given path" +
+           (grip.axes.IsAll() ? "" : ", held along " + grip.axes.Names() + " only");
   text += grip.motion == GripMotion::kFollowsScan
               ? ", follows the scan"
               : fmt::format(", follows the markers {}", fmt::join(grip.markers, ", "));
@@ -95,7 +102,7 @@ std::string DescribeGrip(const RecordedGrip& grip) {
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
                       size_t number) {
   CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
-  std::string item = FormatRegion(grip.region);
+  std::string item = WithDirections(FormatRegion(grip.region), grip.axes);
   if (grip.motion == GripMotion::kFollowsScan) return item;
   const std::string name = fmt::format("grip{}.csv", number);
   item.pop_back();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "geometry/axis_set.h"
 #include "scan/data_location.h"
 #include "scan/region.h"
 
@@ -23,6 +24,7 @@ enum class GripMotion {
 struct RecordedGrip {
   Region region;
   GripMotion motion = GripMotion::kFollowsScan;
+  AxisSet axes = AxisSet::All();  // along which it is held; all unless it is kGiven
   bool deforms = false;  // whether it may deform instead of moving as a rigid body; not kGiven
   std::vector<std::string> markers;  // kFollowsMarkers
 
@@ -45,7 +47,8 @@ Eigen::Isometry3d MotionAt(const RecordedGrip& grip, double time);
 //   path: {file, time, x, y, z, time_unit, length_unit, turn: {x, y, z, unit, about}}
 // A path has one row per time, the first of which belongs to the undeformed place; `turn` names
 // three more columns of the same file with a rotation vector about the point `about`. `deforms:
-// true` lets a grip that follows something deform with it. `frames` are all
+// true` lets a grip that follows something deform with it. `directions: [z]` beside a path without
+// `turn` leaves the part free along the other axes, like plates without friction. `frames` are all
 // frames in the files, `marker_names` is empty when the frames have no markers. Throws InputError
 // (file, line, column and field).
 std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& data,

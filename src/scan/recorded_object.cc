@@ -6,8 +6,27 @@
 
 namespace lacuna {
 
+std::vector<RecordedSupport> ReadSupports(const Config& config, const DataLocation& data) {
+  std::vector<RecordedSupport> supports;
+  for (const Config& item : config.Items("fixed")) {
+    const std::string name = fmt::format("fixed {}", supports.size() + 1);
+    supports.push_back({ReadRegion(item, data.folder, name), ReadDirections(item)});
+  }
+  return supports;
+}
+
+std::string DescribeSupport(const RecordedSupport& support) {
+  const std::string text = support.region.name + ": " + DescribeRegion(support.region);
+  return support.axes.IsAll() ? text : text + ", along " + support.axes.Names() + " only";
+}
+
+std::string WriteSupport(const RecordedSupport& support) {
+  return WithDirections(FormatRegion(support.region), support.axes);
+}
+
 std::vector<Region> RegionsOf(const RecordedObject& object) {
-  std::vector<Region> regions = object.fixed;
+  std::vector<Region> regions;
+  for (const RecordedSupport& support : object.fixed) regions.push_back(support.region);
   for (const RecordedGrip& grip : object.grips) regions.push_back(grip.region);
   for (const MeasuredForce& force : object.forces)
     if (force.region) regions.push_back(*force.region);
@@ -29,9 +48,16 @@ std::vector<std::filesystem::path> FilesOf(const RecordedObject& object) {
 
 std::vector<std::string> HeldParts(const RecordedObject& object) {
   std::vector<std::string> names;
-  for (const Region& region : object.fixed) names.push_back(region.name);
+  for (const RecordedSupport& support : object.fixed) names.push_back(support.region.name);
   for (const RecordedGrip& grip : object.grips) names.push_back(grip.region.name);
   return names;
+}
+
+std::vector<AxisSet> HeldAxesOfParts(const RecordedObject& object) {
+  std::vector<AxisSet> axes;
+  for (const RecordedSupport& support : object.fixed) axes.push_back(support.axes);
+  for (const RecordedGrip& grip : object.grips) axes.push_back(grip.axes);
+  return axes;
 }
 
 std::vector<std::string> DoubtsOfObject(const RecordedObject& object, double first, double last) {

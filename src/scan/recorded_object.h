@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "geometry/axis_set.h"
+#include "scan/data_location.h"
 #include "scan/measured_force.h"
 #include "scan/measured_reaction.h"
 #include "scan/recorded_grip.h"
@@ -15,20 +17,37 @@
 
 namespace lacuna {
 
+// A part that does not move, or only perpendicular to some of the coordinate axes: `axes` {x}
+// leaves the part free to move along y and z, as on a plane of symmetry x = constant.
+struct RecordedSupport {
+  Region region;
+  AxisSet axes = AxisSet::All();
+};
+
 struct RecordedObject {
   std::optional<double> density;           // kg/m³
   std::optional<Eigen::Vector3d> gravity;  // m/s², world frame
-  std::vector<Region> fixed;               // parts that do not move
+  std::vector<RecordedSupport> fixed;      // parts that do not move
   std::vector<RecordedGrip> grips;         // parts that are moved from outside
   std::vector<MeasuredForce> forces;
   std::vector<MeasuredReaction> reactions;  // forces and torques that the grips exert
 };
 
+// Reads the items of `fixed`: each a region (region.h) and optionally `directions: [x, y]`, the
+// axes along which it cannot move. Throws InputError (file, line, column and field).
+std::vector<RecordedSupport> ReadSupports(const Config& config, const DataLocation& data);
+
+// What `lacuna info` says about a support, and the support as an item of `fixed` in recording.yaml.
+std::string DescribeSupport(const RecordedSupport& support);
+std::string WriteSupport(const RecordedSupport& support);
+
 // The regions that the object has: of the parts that are held, and where forces act.
 std::vector<Region> RegionsOf(const RecordedObject& object);
 
-// The names of the held parts: the fixed regions, then the gripped ones.
+// The names of the held parts, and the axes along which they are held: the fixed regions, then the
+// gripped ones.
 std::vector<std::string> HeldParts(const RecordedObject& object);
+std::vector<AxisSet> HeldAxesOfParts(const RecordedObject& object);
 
 // The files that the object's regions, paths, forces and reactions were read from.
 std::vector<std::filesystem::path> FilesOf(const RecordedObject& object);

@@ -71,9 +71,8 @@ std::vector<InfoLine> DescribeObject(const Recording& recording) {
                                                   object.gravity->y(), object.gravity->z())
                                     : "not given");
   lines.emplace_back("reference", DescribeReference(recording.reference));
-  for (const Region& region : object.fixed) {
-    lines.emplace_back("fixed", fmt::format("{}: {}", region.name, DescribeRegion(region)));
-  }
+  for (const RecordedSupport& support : object.fixed)
+    lines.emplace_back("fixed", DescribeSupport(support));
   for (const RecordedGrip& grip : object.grips) lines.emplace_back("gripped", DescribeGrip(grip));
   for (const MeasuredForce& force : object.forces) {
     lines.emplace_back("force", DescribeForce(force));

@@ -42,13 +42,11 @@ RecordedObject ReadObject(const Config& config, const Recording& recording,
   const Eigen::Vector3d gravity =
       config.Vector("gravity", kAcceleration, Eigen::Vector3d::Constant(kAbsent));
   if (gravity.allFinite()) object.gravity = gravity;
-  for (const Config& item : config.Items("fixed")) {
-    object.fixed.push_back(
-        ReadRegion(item, recording.data.folder, fmt::format("fixed {}", object.fixed.size() + 1)));
-  }
+  object.fixed = ReadSupports(config, recording.data);
   object.grips = ReadGrips(config, recording.data, frames, recording.markers.names);
   object.forces = ReadForces(config, recording.data, frames, recording.times.front());
-  object.reactions = ReadReactions(config, recording.data, frames, HeldParts(object));
+  object.reactions =
+      ReadReactions(config, recording.data, frames, HeldParts(object), HeldAxesOfParts(object));
   return object;
 }
 

@@ -109,6 +109,33 @@ Region ReadRegion(const Config& config, const std::filesystem::path& data_folder
   return region;
 }
 
+AxisSet ReadDirections(const Config& config) {
+  if (!config.Has("directions")) return AxisSet::All();
+  const std::vector<std::string> names = config.Texts("directions");
+  AxisSet axes;
+  for (size_t k = 0; k < names.size(); ++k) {
+    const size_t axis =
+        names[k].size() == 1 ? std::string("xyz").find(names[k]) : std::string::npos;
+    if (axis == std::string::npos)
+      config.FailAtItem(
+          "directions", k,
+          fmt::format("got \"{}\"; expected x, y or z: choose the coordinate system so "
+                      "that these are the directions of the support",
+                      names[k]));
+    if (axes.Has(static_cast<int>(axis)))
+      config.FailAtItem("directions", k, fmt::format("{} appears twice", names[k]));
+    axes = axes | AxisSet::Of(static_cast<int>(axis));
+  }
+  if (axes.IsEmpty()) config.Fail("directions", "is empty; expected axes, e.g. [x]");
+  return axes;
+}
+
+std::string WithDirections(std::string mapping, AxisSet axes) {
+  if (axes.IsAll()) return mapping;
+  mapping.pop_back();
+  return mapping + ", directions: [" + axes.Names() + "]}";
+}
+
 std::vector<int> SelectNodes(const Region& region, const Eigen::Matrix3Xd& nodes) {
   std::vector<int> selected;
   if (const auto* listed = std::get_if<NodeRegion>(&region.shape)) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/config.h"
+#include "geometry/axis_set.h"
 
 namespace lacuna {
 
@@ -54,6 +55,12 @@ bool Contains(const Region& region, const Eigen::Vector3d& point);
 
 // The shape in words, e.g. "box from (0, 0, 0) to (0.03, 0.1, 0.03) m".
 std::string DescribeRegion(const Region& region);
+
+// Reads `directions: [x, z]` beside a region, the axes along which a part is held; all axes without
+// it. Throws InputError for an empty list, an axis that appears twice, or another word.
+AxisSet ReadDirections(const Config& config);
+// Adds the directions to a YAML flow mapping; nothing where these are all axes.
+std::string WithDirections(std::string mapping, AxisSet axes);
 
 // The region as a YAML flow mapping that ReadRegion reads back to the same numbers.
 std::string FormatRegion(const Region& region);

@@ -29,7 +29,7 @@ std::string WriteConstraints(const std::filesystem::path& folder, const Recorded
     return "  - " + item + "\n";
   };
   if (!object.fixed.empty()) yaml += "fixed:\n";
-  for (size_t i = 0; i < object.fixed.size(); ++i) yaml += held(FormatRegion(object.fixed[i]), i);
+  for (size_t i = 0; i < object.fixed.size(); ++i) yaml += held(WriteSupport(object.fixed[i]), i);
   if (!object.grips.empty()) yaml += "gripped:\n";
   for (size_t i = 0; i < object.grips.size(); ++i)
     yaml += held(WriteGrip(folder, object.grips[i], i + 1), object.fixed.size() + i);

@@ -186,6 +186,34 @@ TEST(Calculix, HasTheReactionsOfLacuna) {
         << row;
 }
 
+// Planes of symmetry, and a plate without friction that compresses the block: supports along some
+// axes only. Hooke's law is the same in both programs.
+TEST(Calculix, HoldsPartsAlongSomeAxesOnly) {
+  SKIP_WITHOUT_CALCULIX();
+  Cantilever bar("linear", {4, 2, 2}, 2);
+  bar.model.effects.pop_back();  // gravity
+  bar.model.grips.clear();
+  bar.names.grips.clear();
+  for (int axis = 0; axis < 3; ++axis) {
+    bar.model.grips.push_back(
+        {NodesWhere(bar.mesh, [axis](const Eigen::Vector3d& x) { return x[axis] < 1e-9; }),
+         {},
+         AxisSet::Of(axis)});
+    bar.names.grips.push_back(std::string("plane ") + "xyz"[axis]);
+  }
+  const Eigen::Matrix3Xd rest = bar.mesh.nodes(Eigen::all, bar.Tip());
+  bar.model.grips.push_back({bar.Tip(),
+                             [rest](double) -> Eigen::Matrix3Xd {
+                               return rest.colwise() + Eigen::Vector3d(-0.001, 0, 0);
+                             },
+                             AxisSet::Of(0)});
+  bar.names.grips.emplace_back("plate");
+  bar.options.step.scheme = TimeScheme::kQuasiStatic;
+  const DisplacementDifference difference = Difference(bar);
+  EXPECT_NEAR(difference.largest_displacement, 0.001, 1e-4);
+  EXPECT_LT(difference.largest, 1e-5);  // ccx prints seven digits
+}
+
 TEST(Calculix, SaysWhyItStopped) {
   SKIP_WITHOUT_CALCULIX();
   TemporaryFolder folder;

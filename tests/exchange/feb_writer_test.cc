@@ -95,5 +95,12 @@ TEST(FebWriter, ClosesEveryElementOfTheXml) {
   EXPECT_TRUE(open.empty());
 }
 
+TEST(FebWriter, HoldsPartsAlongTheirAxesOnly) {
+  Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, 1);
+  bar.model.grips[0].axes = AxisSet::Of(0) | AxisSet::Of(2);
+  EXPECT_THAT(FebText(bar.Describe()),
+              testing::HasSubstr("<x_dof>1</x_dof><y_dof>0</y_dof><z_dof>1</z_dof>"));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -49,7 +49,7 @@ TEST(ImportedExperiment, CanBeReadOnceItIsCompleted) {
     const TetMesh body = MakeReferenceBody(study).mesh;
     EXPECT_EQ(body.nodes, model.mesh.nodes);
     EXPECT_EQ(body.tets, model.mesh.tets);
-    const Region& clamp = study.recordings[0].recording.object.fixed.at(0);
+    const Region& clamp = study.recordings[0].recording.object.fixed.at(0).region;
     EXPECT_EQ(SelectNodes(clamp, body.nodes), model.node_sets[1].nodes);
   }
 }

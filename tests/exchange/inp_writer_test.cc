@@ -136,5 +136,21 @@ TEST(ExportFormats, AreFoundByName) {
   EXPECT_THROW(FindExportFormat("imp"), InputError);
 }
 
+// A plane of symmetry, and a plate that moves along z only.
+TEST(InpWriter, HoldsPartsAlongTheirAxesOnly) {
+  Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, 1);
+  bar.model.grips[0].axes = AxisSet::Of(1) | AxisSet::Of(2);
+  const Eigen::Matrix3Xd rest = bar.mesh.nodes(Eigen::all, bar.Tip());
+  bar.model.grips.push_back(
+      {bar.Tip(),
+       [rest](double) -> Eigen::Matrix3Xd { return rest.colwise() + Eigen::Vector3d(1, 1, 0.001); },
+       AxisSet::Of(2)});
+  bar.names.grips.emplace_back("plate");
+  const std::string text = InpText(bar.Describe(), InpDialect::kCalculix);
+  EXPECT_THAT(text, HasSubstr("*BOUNDARY\nCLAMP, 2, 2\nCLAMP, 3, 3\n"));
+  EXPECT_THAT(text, HasSubstr("*BOUNDARY, AMPLITUDE=U_PLATE_Z\nPLATE, 3, 3, 1.\n"));
+  EXPECT_THAT(text, Not(HasSubstr("U_PLATE_X")));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -88,5 +88,17 @@ TEST(UsdWriter, WritesTheMesh) {
       ElementsAre("st_venant_kirchhoff", "gravity", "mass_damping", "grip clamp", "force pull"));
 }
 
+// A plane of symmetry has a counterpart in SOFA and none in MuJoCo, which says so.
+TEST(SceneWriters, HoldAlongSomeAxesWhereTheyCan) {
+  Cantilever bar = Pulled(1);
+  bar.model.grips[0].axes = AxisSet::Of(0);
+  const PortableModel model = bar.Describe();
+  EXPECT_THAT(SofaText(model),
+              HasSubstr("'PartialFixedProjectiveConstraint', indices=[0, 3, 6, 9],\n"
+                        "                   fixedDirections=[1, 0, 0])"));
+  EXPECT_THAT(Names(MujocoCounterparts(model)), testing::Contains("grip clamp"));
+  EXPECT_THAT(MujocoText(model), Not(HasSubstr("<pin")));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -53,5 +53,39 @@ TEST_F(RecordingTest, AGripRotatesAndShiftsSmoothlyAlongItsPath) {
               HasSubstr("r"));
 }
 
+TEST_F(RecordingTest, PartsMayBeHeldAlongSomeAxesOnly) {
+  WriteClouds(2);
+  folder_.Write("plate.csv", "t,x,y,z,rx,ry,rz\n0,0,0,0,0,0,0\n1,0,0,-2,0,0,1\n");
+  const std::string frames = "  kind: points\n  files: f/*.csv\n  rate: 1 Hz\n";
+  const std::string path = "path: {file: plate.csv, time: t, x: x, y: y, z: z";
+  const auto parts = [&](const std::string& fixed, const std::string& gripped) {
+    return Yaml(frames, "fixed: [{name: plane, half_space: {point: [0, 0, 0], normal: [-1, 0, 0]}" +
+                            fixed + "}]\ngripped: [{name: plate, nodes: [3], " + gripped + "}]\n");
+  };
+  const Recording recording = Load(parts(", directions: [x, z]", path + "}, directions: [z]"));
+  const RecordedSupport& plane = recording.object.fixed.at(0);
+  EXPECT_EQ(plane.axes, AxisSet::Of(0) | AxisSet::Of(2));
+  EXPECT_EQ(recording.object.grips.at(0).axes, AxisSet::Of(2));
+  EXPECT_THAT(DescribeSupport(plane), HasSubstr("along x, z only"));
+  EXPECT_THAT(WriteSupport(plane), HasSubstr(", directions: [x, z]}"));
+  EXPECT_THAT(DescribeGrip(recording.object.grips.at(0)), HasSubstr("held along z only"));
+  EXPECT_TRUE(Load(parts("", path + "}")).object.fixed.at(0).axes.IsAll());
+
+  const auto error = [&](const std::string& fixed, const std::string& gripped) {
+    return LoadError(parts(fixed, gripped));
+  };
+  EXPECT_THAT(error(", directions: [x, north]", path + "}"),
+              AllOf(HasSubstr("fixed[0].directions[1]"), HasSubstr("expected x, y or z")));
+  EXPECT_THAT(error(", directions: [x, x]", path + "}"), HasSubstr("x appears twice"));
+  EXPECT_THAT(error(", directions: []", path + "}"), HasSubstr("is empty"));
+  EXPECT_THAT(error("", "follows: scan, directions: [z]"),
+              AllOf(HasSubstr("gripped[0].directions"), HasSubstr("needs a `path`")));
+  EXPECT_THAT(error("", path + ", turn: {x: rx, y: ry, z: rz, about: [0, 0, 0]}}, directions: [z]"),
+              HasSubstr("cannot be combined with a `turn`"));
+  EXPECT_THAT(
+      error(", directions: [x], measured_force: {file: plate.csv, time: t, y: y}", path + "}"),
+      AllOf(HasSubstr("measured_force"), HasSubstr("along y, along which plane is not held")));
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -1,0 +1,28 @@
+// Which nodes the held parts of an object hold.
+#ifndef LACUNA_EXPERIMENT_HELD_PARTS_H_
+#define LACUNA_EXPERIMENT_HELD_PARTS_H_
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "geometry/axis_set.h"
+#include "scan/region.h"
+
+namespace lacuna {
+
+struct HeldPart {
+  Region region;
+  AxisSet axes = AxisSet::All();  // along which it is held
+  bool moves = false;
+};
+
+// The nodes (columns of 3 × n, m) of each part, ascending. A part that is held along some axes only
+// does without the nodes that another part holds along all axes, as where a plane of symmetry meets
+// a clamp; two such parts at rest may share nodes. Throws InputError with the names of the parts
+// where one holds no node, two others hold a node along the same axis, or no component is free.
+std::vector<Eigen::VectorXi> NodesOfParts(const std::vector<HeldPart>& parts,
+                                          const Eigen::Matrix3Xd& nodes);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_EXPERIMENT_HELD_PARTS_H_
