@@ -20,6 +20,11 @@ struct Arguments {
   std::string recording;
 };
 
+// Nine components row by row, from xx, yy, zz, yz, xz, xy.
+Eigen::MatrixXd AsTensors(const Eigen::MatrixXd& cauchy) {
+  return cauchy({0, 5, 4, 5, 1, 3, 4, 3, 2}, Eigen::all);
+}
+
 // Writes the trajectory for ParaView, and the loads and the forces of the grips as a table.
 void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& folder) {
   std::vector<TimedFile> series;
@@ -31,7 +36,10 @@ void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& fol
     const auto file = folder / fmt::format("body_{:04}.vtu", k);
     WriteVtu(file, deformed,
              {{{"displacement_m", motion.positions[k] - motion.body->mesh.nodes},
-               {"velocity_m_per_s", motion.velocities[k]}},
+               {"velocity_m_per_s", motion.velocities[k]},
+               {"cauchy_stress_Pa", AsTensors(motion.stress[k].cauchy)},
+               {"von_mises_stress_Pa", motion.stress[k].von_mises.transpose()},
+               {"principal_stretches", motion.stress[k].stretch}},
               {}});
     series.push_back({motion.times[k], file});
     loads.row(static_cast<Eigen::Index>(k)) << motion.times[k], motion.load[k].transpose();

@@ -14,6 +14,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "fem/nodal_recovery.h"
 #include "prediction/predicted_states.h"
 #include "prediction/replayed_motion.h"
 
@@ -59,6 +60,28 @@ void AddMotionTrends(const ReplayedMotion& motion, const RecordedResiduals& resi
       TrendWith("strain_rate_per_s", RmsOfFrames(in_range(motion.strain_rate)), error));
   part->trends.push_back(
       TrendWith("height_m", in_range(motion.height).colwise().mean().transpose(), error));
+}
+
+LoadedMost FindLoadedMost(const Model& model, const ReplayedMotion& motion) {
+  LoadedMost loaded;
+  for (const TrajectoryState& state : motion.states) {
+    const NodalStress stress =
+        RecoverNodalStress(model, state.position, state.velocity, state.time, state.effect_state);
+    const auto keep_largest = [&](const Eigen::VectorXd& nodal, double* value, double* time,
+                                  Eigen::Vector3d* place) {
+      Eigen::Index node = 0;
+      const double largest = nodal.maxCoeff(&node);
+      if (largest <= *value) return;  // false where *value is not known yet
+      *value = largest;
+      *time = state.time + motion.delay;
+      *place = model.body->mesh.nodes.col(node);
+    };
+    keep_largest(stress.von_mises, &loaded.von_mises, &loaded.von_mises_time,
+                 &loaded.von_mises_place);
+    keep_largest(stress.stretch.row(0).transpose(), &loaded.stretch, &loaded.stretch_time,
+                 &loaded.stretch_place);
+  }
+  return loaded;
 }
 
 // Keeps the motion for the report, with the unexplained force where it could be computed.
@@ -113,6 +136,7 @@ void CompareMotion(const std::filesystem::path& run, Progress* progress, Compari
     const std::vector<FrameRange> ranges = FittedAndHeldOutRanges(residuals);
     for (size_t p = 0; p < ranges.size(); ++p)
       AddMotionTrends(motion, residuals, ranges[p], &recording.parts[p]);
+    recording.loaded_most = FindLoadedMost(model.model(), motion);
     comparison->forces[r] = EstimateUnexplainedForce(model, motion, problem.ErrorsOf(model));
     recording.force = comparison->forces[r]->record;
     recording.field_frames =

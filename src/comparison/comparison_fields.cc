@@ -8,14 +8,27 @@
 
 #include "core/atomic_file.h"
 #include "fem/element_strain.h"
+#include "fem/nodal_recovery.h"
 #include "report/vtk_files.h"
 
 namespace lacuna {
 namespace {
 
-void WriteBody(const Body& body, const TrajectoryState& state,
+// σ in turned coordinates, nine components row by row.
+Eigen::MatrixXd TurnedTensors(const Eigen::MatrixXd& cauchy, const Eigen::Matrix3d& rotation) {
+  Eigen::MatrixXd turned(9, cauchy.cols());
+  for (Eigen::Index node = 0; node < cauchy.cols(); ++node) {
+    const Eigen::Matrix<double, 6, 1> s = cauchy.col(node);
+    const Eigen::Matrix3d tensor{{s[0], s[5], s[4]}, {s[5], s[1], s[3]}, {s[4], s[3], s[2]}};
+    turned.col(node) = (rotation * tensor * rotation.transpose()).reshaped<Eigen::RowMajor>();
+  }
+  return turned;
+}
+
+void WriteBody(const Model& model, const TrajectoryState& state,
                const Eigen::Isometry3d& registration, const UnexplainedForce* force,
                double recorded_time, const std::filesystem::path& file) {
+  const Body& body = *model.body;
   const Eigen::Matrix3Xd position = state.position.reshaped(3, body.NodeCount());
   const Eigen::Matrix3d& rotation = registration.linear();
   TetMesh deformed = body.mesh;
@@ -24,8 +37,13 @@ void WriteBody(const Body& body, const TrajectoryState& state,
   for (int element = 0; element < body.ElementCount(); ++element)
     strain[element] =
         LargestPrincipal(MeanStrain(body, element, state.position, state.velocity).strain);
+  const NodalStress stress =
+      RecoverNodalStress(model, state.position, state.velocity, state.time, state.effect_state);
   FieldSet fields{{{"displacement_m", rotation * (position - body.mesh.nodes)},
-                   {"velocity_m_per_s", rotation * state.velocity.reshaped(3, body.NodeCount())}},
+                   {"velocity_m_per_s", rotation * state.velocity.reshaped(3, body.NodeCount())},
+                   {"cauchy_stress_Pa", TurnedTensors(stress.cauchy, rotation)},
+                   {"von_mises_stress_Pa", stress.von_mises.transpose()},
+                   {"principal_stretches", stress.stretch}},
                   {{"strain", strain}}};
   if (force != nullptr)
     fields.nodes.push_back({"unexplained_force_N_per_m3",
@@ -74,7 +92,7 @@ int WriteComparisonFields(const RecordingModel& model, const RecordedResiduals& 
     const int k = first + (count > 1 ? i * (states - 1) / (count - 1) : 0);
     const int frame = motion.state_frame[k];
     const double time = residuals.times[frame];
-    WriteBody(*model.model().body, motion.states[k], motion.registration,
+    WriteBody(model.model(), motion.states[k], motion.registration,
               force.record.usable ? &force : nullptr, time, file("body", frame, "vtu"));
     bodies.push_back({time, file("body", frame, "vtu")});
     WriteMarkers(residuals, frame, noise, file("markers", frame, "vtp"));

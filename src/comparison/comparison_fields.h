@@ -15,9 +15,10 @@ namespace lacuna {
 inline constexpr int kMostFieldFrames = 60;
 
 // Writes two time series to `folder`, and the files that they list to <folder>/fields:
-//   body.pvd     the predicted mesh: displacement_m, velocity_m_per_s and
-//                unexplained_force_N_per_m3 (if usable) at the nodes; strain, the largest principal
-//                Green–Lagrange strain, in the tetrahedra;
+//   body.pvd     the predicted mesh: displacement_m, velocity_m_per_s, cauchy_stress_Pa (nine
+//                components, row by row), von_mises_stress_Pa, principal_stretches (the largest
+//                first; nodal_recovery.h) and unexplained_force_N_per_m3 (if usable) at the nodes;
+//                strain, the largest principal Green–Lagrange strain, in the tetrahedra;
 //   markers.pvd  the measured markers: predicted_m, difference_m,
 //                difference_over_sigma (the length of the difference over √3 `noise`, m), fitted,
 //                marker. Markers that were not observed are left out.

@@ -58,6 +58,19 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
     if (!IsAtRest(at)) AddViscousForce(at, Viscosity(), force);
   }
 
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    if (IsAtRest(at)) return true;
+    const LameConstants viscosity = Viscosity();
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      ForEachElement(*at.body.schedule, [&](int element) {
+        ForEachViscousStress<decltype(nodes)::value>(
+            at, viscosity, element,
+            [&](int q, const Eigen::Matrix3d& P) { stress->middleCols<3>(3 * q) += P; });
+      });
+    });
+    return true;
+  }
+
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     const bool by_position = !convexify && weights.position != 0 && !IsAtRest(at);
@@ -169,18 +182,28 @@ class StiffnessDampingEffect final : public CloneableEffect<StiffnessDampingEffe
                               Eigen::VectorXd* force) {
     const Body& body = at.body;
     ForEachElement(*body.schedule, [&](int element) {
-      const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(body, element, at.position);
-      const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(body, element, at.velocity);
       Eigen::Matrix<double, 3, kNodes> nodal = Eigen::Matrix<double, 3, kNodes>::Zero();
-      for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
-        const int q = element * QuadraturePoints<kNodes>() + p;
-        const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(body, q);
-        const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
-        const Eigen::Matrix3d stress = F * ViscousStress(viscosity, F, FieldGradient<kNodes>(v, g));
-        nodal.noalias() -= (body.weight[q] * stress).lazyProduct(g.transpose());
-      }
+      ForEachViscousStress<kNodes>(at, viscosity, element, [&](int q, const Eigen::Matrix3d& P) {
+        nodal.noalias() -=
+            (body.weight[q] * P).lazyProduct(ShapeGradient<kNodes>(body, q).transpose());
+      });
       ScatterNodes<kNodes>(body, element, nodal, force);
     });
+  }
+
+  // Calls visit(q, P) with the first Piola–Kirchhoff stress at the points of an element.
+  template <int kNodes, typename Visit>
+  static void ForEachViscousStress(const Kinematics& at, const LameConstants& viscosity,
+                                   int element, const Visit& visit) {
+    const Eigen::Matrix<double, 3, kNodes> x = GatherNodes<kNodes>(at.body, element, at.position);
+    const Eigen::Matrix<double, 3, kNodes> v = GatherNodes<kNodes>(at.body, element, at.velocity);
+    for (int p = 0; p < QuadraturePoints<kNodes>(); ++p) {
+      const int q = element * QuadraturePoints<kNodes>() + p;
+      const Eigen::Matrix<double, kNodes, 3> g = ShapeGradient<kNodes>(at.body, q);
+      const Eigen::Matrix3d F = FieldGradient<kNodes>(x, g);
+      const Eigen::Matrix3d P = F * ViscousStress(viscosity, F, FieldGradient<kNodes>(v, g));
+      visit(q, P);
+    }
   }
 
   // Adds the matrix of the moduli C(F, Ḟ): its symmetric part, or with kMirror = −1 its

@@ -45,6 +45,16 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect> {
         force);
   }
 
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    AddDifference(
+        at, Stretch() * Stretch(),
+        [&](const Kinematics& where, Eigen::Matrix3Xd* of_law) {
+          Law(at).AddStress(where, of_law);
+        },
+        stress);
+    return true;
+  }
+
   // With `convexify` nothing: the law's own approximation stands for both.
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
@@ -146,13 +156,12 @@ class SwellingEffect final : public CloneableEffect<SwellingEffect> {
     return *at.elasticity;
   }
 
-  // Adds scale · q(x/s) − q(x), where add(where, &q) adds a nodal vector q of the law.
-  template <typename Add>
-  void AddDifference(const Kinematics& at, double scale, const Add& add,
-                     Eigen::VectorXd* result) const {
+  // Adds scale · q(x/s) − q(x), where add(where, &q) adds nodal forces or stresses q of the law.
+  template <typename Add, typename Values>
+  void AddDifference(const Kinematics& at, double scale, const Add& add, Values* result) const {
     if (strain_ == 0) return;
     const ElasticPart elastic(at, Stretch());
-    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
+    Values of_law = Values::Zero(result->rows(), result->cols());
     add(elastic.kinematics, &of_law);
     *result += scale * of_law;
     of_law.setZero();

@@ -212,6 +212,8 @@ SceneMotion SimulateScene(const Scene& scene, Progress* progress) {
     motion.times.push_back(frame / scene.frame_rate);
     motion.positions.push_back(AsPoints(history.position));
     motion.velocities.push_back(AsPoints(history.velocity));
+    motion.stress.push_back(RecoverNodalStress(model, history.position, history.velocity,
+                                               history.time, history.effect_state));
     motion.load.push_back(load);
     progress->Report(frame + 1);
   }

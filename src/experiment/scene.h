@@ -14,6 +14,7 @@
 #include "core/config.h"
 #include "core/progress.h"
 #include "experiment/model_reader.h"
+#include "fem/nodal_recovery.h"
 #include "fem/simulate.h"
 #include "scan/virtual_scanner.h"
 
@@ -85,6 +86,7 @@ struct SceneMotion {
   std::vector<Eigen::Matrix3Xd> positions;   // 3 × nodes, m, one per frame
   std::vector<Eigen::Matrix3Xd> velocities;  // m/s
   std::vector<Eigen::Vector3d> load;         // N, total of the loads, one per frame
+  std::vector<NodalStress> stress;           // in each frame
   // 3·grips × frames, N and N m: the force of each grip on the body, and its torque about the mean
   // of the grip's undeformed nodes.
   Eigen::MatrixXd reactions, torques;

@@ -125,6 +125,14 @@ class Effect {
   virtual void AddElasticityDerivative(const Kinematics& /*at*/, int /*parameter*/,
                                        Eigen::VectorXd* /*derivative*/) const {}
 
+  // Adds the first Piola–Kirchhoff stress P of the effect at the quadrature points (3 × 3·points,
+  // Pa, that of point q in columns 3q to 3q + 2), from which its forces follow as f_a = −Σ w P g_a
+  // (point_integrals.h). Returns false, and adds nothing, if the effect is no stress of the
+  // material: a load, a support, a mass.
+  virtual bool AddStress(const Kinematics& /*at*/, Eigen::Matrix3Xd* /*stress*/) const {
+    return false;
+  }
+
   // The potential E with f = −∂E/∂x, J, up to a constant; no value if the force has no potential.
   virtual std::optional<double> Energy(const Kinematics&) const { return std::nullopt; }
 

@@ -102,6 +102,13 @@ class ElasticSolid final : public CloneableEffect<ElasticSolid<Law>> {
     AddForcesOf(Law(LameFromYoung(young_modulus_, poisson_ratio_)), at, force);
   }
 
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    const Law law(LameFromYoung(young_modulus_, poisson_ratio_));
+    AddPointStress<Points>(
+        at, [&](const auto& points, int k) { return points.Stress(law, k); }, stress);
+    return true;
+  }
+
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK(parameter == 0 || parameter == 1);

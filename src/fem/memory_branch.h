@@ -73,6 +73,21 @@ class MemoryBranch final : public CloneableEffect<MemoryBranch<Law>> {
         force);
   }
 
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    CHECK_EQ(at.state.size(), StateSize(at.body));
+    const double modulus = Modulus();
+    const Law law(parameters_, at.time_step);
+    WithNodesPerElement(at.body, [&](auto nodes) {
+      ForEachElement(*at.body.schedule, [&](int element) {
+        ForEachPoint<decltype(nodes)::value>(at, element, [&](int q, const Eigen::Matrix3d& F) {
+          stress->middleCols<3>(3 * q) +=
+              modulus * F * FromKelvin(law.Stress(GreenLagrangeStrain(F), StateOf(at.state, q)));
+        });
+      });
+    });
+    return true;
+  }
+
   void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                    BlockMatrix* tangent) const override {
     if (weights.position == 0) return;

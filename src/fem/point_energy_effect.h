@@ -70,6 +70,13 @@ class PointEnergyEffect final : public CloneableEffect<PointEnergyEffect<Law>> {
         force);
   }
 
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    AddPointStress<MaterialPoints>(
+        at, [&](const auto& points, int k) { return law_.Stress(points.F(k), points.Point(k)); },
+        stress);
+    return true;
+  }
+
   void AddParameterDerivative(const Kinematics& at, int parameter,
                               Eigen::VectorXd* derivative) const override {
     CHECK(parameter >= 0 && parameter < parameters_.size());

@@ -60,6 +60,20 @@ void AddNodalForces(const Kinematics& at, const Stress& stress, Eigen::VectorXd*
   });
 }
 
+// Adds P to `stress` (3 × 3·points, Pa; columns 3q to 3q + 2 at point q).
+template <template <int> class Points, typename Stress>
+void AddPointStress(const Kinematics& at, const Stress& stress_of, Eigen::Matrix3Xd* stress) {
+  WithNodesPerElement(at.body, [&](auto nodes) {
+    constexpr int kNodes = decltype(nodes)::value;
+    constexpr int kPoints = QuadraturePoints<kNodes>();
+    ForEachBatch(*at.body.schedule, [&](int begin, int end) {
+      const Points<kNodes> points(at, begin, end);
+      for (int q = begin * kPoints; q < end * kPoints; ++q)
+        stress->middleCols<3>(3 * q) += stress_of(points, q - begin * kPoints);
+    });
+  });
+}
+
 // Adds weight · ∂f/∂x to `tangent`. tangent_of(points, k) returns ∂P/∂F in Pa as a StressTangent,
 // or as a type for which AddStiffness(tangent, …) is overloaded.
 template <template <int> class Points, typename TangentOf>

@@ -33,6 +33,15 @@ Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric)
   return derivatives;
 }
 
+Eigen::Matrix4Xd NodeCoordinates(int order) {
+  if (order == 1) return Eigen::Matrix4d::Identity();
+  Eigen::Matrix4Xd coordinates = Eigen::Matrix4Xd::Zero(4, 10);
+  coordinates.leftCols<4>().setIdentity();
+  for (int k = 0; k < 6; ++k)
+    for (const int corner : kEdges[k]) coordinates(corner, 4 + k) = 0.5;
+  return coordinates;
+}
+
 TetQuadrature ElementQuadrature(int order) {
   TetQuadrature rule;
   if (order == 1) {

@@ -16,6 +16,9 @@ Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric);
 // The derivatives ∂N_a/∂ξ_k (nodes × 4), where the four coordinates are treated as independent.
 Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric);
 
+// The barycentric coordinates of the nodes of an element, 4 × nodes.
+Eigen::Matrix4Xd NodeCoordinates(int order);
+
 struct TetQuadrature {
   Eigen::Matrix4Xd points;  // 4 × n, barycentric
   Eigen::VectorXd weights;  // n, sum 1

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "effects/gravity.h"
+#include "fem/effect_memory.h"
 #include "fem/element_strain.h"
+#include "fem/nodal_recovery.h"
 #include "geometry/thinned_surface.h"
 
 namespace lacuna {
@@ -42,15 +47,34 @@ PredictedStates PredictStates(const RecordingModel& recording, const Eigen::Vect
   predicted.delay = recording.Delay(nuisance);
   predicted.registration = recording.Registration(nuisance);
   const std::vector<int>& frames = recording.item().frames;
+  const PredictionOptions options = recording.Options(nuisance);
+  EffectMemory memory(recording.model());
+  const std::vector<int> chosen = EvenlySpread(static_cast<int>(frames.size()), most);
+  // Internal variables are followed through the start of the motion and all frames; without any,
+  // the frames in between need not be visited.
   std::vector<double> times;
-  for (const int chosen : EvenlySpread(static_cast<int>(frames.size()), most))
-    times.push_back(recording.item().recording.times[frames[static_cast<size_t>(chosen)]] -
+  std::vector<char> is_kept;
+  for (int frame = 0; frame < static_cast<int>(frames.size()); ++frame) {
+    const bool keep = std::binary_search(chosen.begin(), chosen.end(), frame);
+    if (!keep && memory.IsEmpty()) continue;
+    times.push_back(recording.item().recording.times[frames[static_cast<size_t>(frame)]] -
                     predicted.delay);
+    is_kept.push_back(keep);
+  }
+  if (!memory.IsEmpty()) {
+    const auto start = std::upper_bound(times.begin(), times.end(), options.start_time);
+    is_kept.insert(is_kept.begin() + (start - times.begin()), 0);
+    times.insert(start, options.start_time);
+  }
+  double time_before = options.start_time;
   predicted.summary =
-      Predict(recording.model(), recording.Options(nuisance), times, {},
-              [&](int /*index*/, const PredictedState& state) {
-                predicted.states.push_back({state.time, state.position, state.velocity, {}});
-              });
+      Predict(recording.model(), options, times, {}, [&](int index, const PredictedState& state) {
+        const std::vector<Eigen::VectorXd>& effect_state = memory.Advance(
+            state.position, state.velocity, state.time, std::max(state.time - time_before, 0.0));
+        time_before = std::max(state.time, time_before);
+        if (is_kept[static_cast<size_t>(index)])
+          predicted.states.push_back({state.time, state.position, state.velocity, effect_state});
+      });
   return predicted;
 }
 
@@ -72,7 +96,9 @@ MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates&
   motion.positions.resize(3 * vertices, count);
   motion.fields = {{"displacement", "displacement", "m", Eigen::MatrixXd(vertices, count)},
                    {"speed", "speed", "m/s", Eigen::MatrixXd(vertices, count)},
-                   {"strain", "largest principal strain", "", Eigen::MatrixXd(vertices, count)}};
+                   {"strain", "largest principal strain", "", Eigen::MatrixXd(vertices, count)},
+                   {"von_mises", "von Mises stress", "Pa", Eigen::MatrixXd(vertices, count)},
+                   {"stretch", "largest principal stretch", "", Eigen::MatrixXd(vertices, count)}};
   if (force != nullptr)
     motion.fields.push_back({"unexplained_force", "unexplained force per volume", "N/m³",
                              Eigen::MatrixXd(vertices, count)});
@@ -85,8 +111,12 @@ MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates&
     motion.fields[0].values.col(k) = LengthsAt(position - body.mesh.nodes, nodes);
     motion.fields[1].values.col(k) = LengthsAt(state.velocity.reshaped(3, body.NodeCount()), nodes);
     motion.fields[2].values.col(k) = At(NodalStrain(body, state), nodes);
+    const NodalStress stress = RecoverNodalStress(recording.model(), state.position, state.velocity,
+                                                  state.time, state.effect_state);
+    motion.fields[3].values.col(k) = At(stress.von_mises, nodes);
+    motion.fields[4].values.col(k) = At(stress.stretch.row(0).transpose(), nodes);
     if (force != nullptr)
-      motion.fields[3].values.col(k) = LengthsAt(force->DensityAt(state.time), nodes);
+      motion.fields[5].values.col(k) = LengthsAt(force->DensityAt(state.time), nodes);
   }
   if (vertices < body.boundary.surface.vertices.cols())
     motion.notes.push_back(fmt::format("The surface is drawn with {} of its {} vertices.", vertices,

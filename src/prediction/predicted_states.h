@@ -19,18 +19,20 @@ struct PredictedStates {
   PredictionSummary summary;  // not usable: only the states that were reached are there
   double delay = 0;           // s, of the recording's clock; model time is recorded time − delay
   Eigen::Isometry3d registration = Eigen::Isometry3d::Identity();  // model to recording
-  std::vector<TrajectoryState> states;  // in the model's coordinates, without internal variables
+  std::vector<TrajectoryState> states;                             // in the model's coordinates
 };
 
 // Predicts the recording, of markers or of scans, with these values of its nuisance parameters, and
-// keeps the states at `most` of its chosen frames, evenly spread. Throws Interrupted.
+// keeps the states at `most` of its chosen frames, evenly spread. Internal variables of effects are
+// advanced from frame to frame (effect_memory.h). Throws Interrupted.
 PredictedStates PredictStates(const RecordingModel& recording, const Eigen::VectorXd& nuisance,
                               int most = kMostShownFrames);
 
 // The surface of the body in these states, in the recording's coordinates, with the fields
 // displacement, speed, strain (the mean of the largest principal Green–Lagrange strains of the
-// elements at a node, weighted by volume) and, where `force` is given, the density of that force. A
-// note says where vertices or frames were left out. `fit` is left empty.
+// elements at a node, weighted by volume), von Mises stress and largest principal stretch
+// (nodal_recovery.h) and, where `force` is given, the density of that force. A note says where
+// vertices or frames were left out. `fit` is left empty.
 MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates& predicted,
                          const SmoothForce* force = nullptr);
 

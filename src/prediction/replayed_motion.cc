@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "effects/gravity.h"
+#include "fem/effect_memory.h"
 #include "fem/element_strain.h"
 
 namespace lacuna {
@@ -16,36 +17,6 @@ void FindUp(const Model& model, ReplayedMotion* motion) {
   motion->up = -gravity.normalized();
   motion->up_from_gravity = true;
 }
-
-// The internal variables of the effects along a trajectory, from one visited state to the next.
-class EffectMemory {
- public:
-  explicit EffectMemory(const Model& model) : model_(model) {
-    for (const auto& effect : model.effects) {
-      Eigen::VectorXd state(effect->StateSize(*model.body));
-      effect->InitialState(*model.body, &state);
-      state_.push_back(std::move(state));
-    }
-  }
-
-  // The internal variables at a state that follows the last one after `time_step` s (0 for the
-  // equilibrium).
-  const std::vector<Eigen::VectorXd>& Advance(const PredictedState& at, double time_step) {
-    const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(at.position.size());
-    for (size_t j = 0; j < state_.size(); ++j) {
-      if (state_[j].size() == 0) continue;
-      const Eigen::VectorXd before = state_[j];
-      model_.effects[j]->AdvanceState({*model_.body, at.position, at.velocity, no_acceleration,
-                                       at.time, time_step, before, ElasticityOf(model_)},
-                                      model_.effects[j]->Parameters(), &state_[j]);
-    }
-    return state_;
-  }
-
- private:
-  const Model& model_;
-  std::vector<Eigen::VectorXd> state_;
-};
 
 // Stores the motion and deformation of the markers in one frame. Frames must be stored in order.
 void StoreMarkers(const RecordingModel& recording, const PredictedState& state, int frame,
@@ -112,13 +83,14 @@ ReplayedMotion Replay(const RecordingModel& recording, const Eigen::VectorXd& nu
       motion.state_frame.push_back(frame);
     };
     if (index == at_start) {
-      keep(at_start - 1, memory.Advance(state, 0));
+      keep(at_start - 1, memory.Advance(state.position, state.velocity, state.time, 0));
       return;
     }
     const int frame = index < at_start ? index : index - 1;
     StoreMarkers(recording, state, frame, &motion);
     if (index < at_start) return;
-    const auto& effect_state = memory.Advance(state, state.time - time_before);
+    const auto& effect_state =
+        memory.Advance(state.position, state.velocity, state.time, state.time - time_before);
     time_before = state.time;
     if ((last - frame) % stride == 0) keep(frame, effect_state);
   });

@@ -184,6 +184,23 @@ NoiseFloor NoiseFloorFromJson(const json& object) {
   return noise_floor;
 }
 
+json LoadedMostToJson(const LoadedMost& loaded) {
+  return {{"von_mises_Pa", NumberOrNull(loaded.von_mises)},
+          {"von_mises_time_s", NumberOrNull(loaded.von_mises_time)},
+          {"von_mises_place_m", VectorToJson(loaded.von_mises_place)},
+          {"largest_stretch", NumberOrNull(loaded.stretch)},
+          {"largest_stretch_time_s", NumberOrNull(loaded.stretch_time)},
+          {"largest_stretch_place_m", VectorToJson(loaded.stretch_place)}};
+}
+LoadedMost LoadedMostFromJson(const json& object) {
+  return {NumberOr(object.at("von_mises_Pa")),
+          NumberOr(object.at("von_mises_time_s")),
+          VectorFromJson(object.at("von_mises_place_m")),
+          NumberOr(object.at("largest_stretch")),
+          NumberOr(object.at("largest_stretch_time_s")),
+          VectorFromJson(object.at("largest_stretch_place_m"))};
+}
+
 json RecordingToJson(const ComparedRecording& recording) {
   json parts = json::array(), reactions = json::array();
   for (const FittedReaction& reaction : recording.reactions)
@@ -201,6 +218,7 @@ json RecordingToJson(const ComparedRecording& recording) {
       {"reactions", reactions},
       {"height_along", recording.height_by_gravity ? "against gravity" : "z"},
       {"field_frames", recording.field_frames},
+      {"loaded_most", recording.loaded_most ? LoadedMostToJson(*recording.loaded_most) : json()},
       {"unexplained_force", recording.force ? UnexplainedForceToJson(*recording.force) : json()}};
 }
 ComparedRecording RecordingFromJson(const json& object) {
@@ -217,6 +235,8 @@ ComparedRecording RecordingFromJson(const json& object) {
     recording.reactions.push_back(ReactionFromJson(reaction));
   recording.height_by_gravity = object.at("height_along") == "against gravity";
   recording.field_frames = object.at("field_frames");
+  if (const json loaded = object.value("loaded_most", json()); !loaded.is_null())
+    recording.loaded_most = LoadedMostFromJson(loaded);
   if (const json& force = object.at("unexplained_force"); !force.is_null())
     recording.force = UnexplainedForceFromJson(force);
   return recording;

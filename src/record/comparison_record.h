@@ -122,6 +122,16 @@ struct NoiseFloor {
   std::vector<RestPeriod> rests;
 };
 
+// Where the model's material is loaded most, at the nodes and in the states that were kept of the
+// motion (fem/nodal_recovery.h). Places are on the undeformed object, m; times on the recording's
+// clock, s.
+struct LoadedMost {
+  double von_mises = kNotMeasured, von_mises_time = kNotMeasured;  // Pa
+  Eigen::Vector3d von_mises_place = Eigen::Vector3d::Constant(kNotMeasured);
+  double stretch = kNotMeasured, stretch_time = kNotMeasured;  // the largest principal stretch
+  Eigen::Vector3d stretch_place = Eigen::Vector3d::Constant(kNotMeasured);
+};
+
 struct ComparedRecording {
   std::string name;
   bool is_scan = false;                  // its points are patches, measured along their normal
@@ -134,6 +144,7 @@ struct ComparedRecording {
   // The following is known only if the model was run again.
   bool height_by_gravity = false;               // height is measured against gravity, else along z
   int field_frames = 0;                         // number of frames written for ParaView
+  std::optional<LoadedMost> loaded_most;        // absent if not computed
   std::optional<UnexplainedForceRecord> force;  // absent if not computed
 
   // The rms length that noise of standard deviation σ per component would give: √3 σ for a marker,

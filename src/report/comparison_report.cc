@@ -137,6 +137,18 @@ std::string DescribeNoise(const ComparedRecording& recording) {
   return text;
 }
 
+std::string DescribeLoadedMost(const LoadedMost& loaded, const std::string& recording) {
+  const auto place = [](const Eigen::Vector3d& at) {
+    return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", 1e3 * at.x(), 1e3 * at.y(), 1e3 * at.z());
+  };
+  return fmt::format(
+      "{}, stress of the model: the von Mises stress is largest at {:.3f} s, {:.3g} kPa at {} of "
+      "the undeformed object; the largest principal stretch is {:.3f}, at {:.3f} s and {}. At the "
+      "edge of a clamp such values grow without limit as the mesh is refined.",
+      recording, loaded.von_mises_time, 1e-3 * loaded.von_mises, place(loaded.von_mises_place),
+      loaded.stretch, loaded.stretch_time, place(loaded.stretch_place));
+}
+
 std::string DescribePair(const ComparedPair& pair) {
   return fmt::format(
       "{} and {}, as measured, differ by {} rms over {} frames if {} is shifted {:.4f} s {}. If "
@@ -187,6 +199,8 @@ std::vector<std::string> DescribeComparison(const ComparisonRecord& record) {
     if (!recording.is_scan) paragraphs.push_back(DescribeNoise(recording));
     for (const FittedReaction& reaction : recording.reactions)
       paragraphs.push_back(DescribeReactionFit(reaction, recording.name));
+    if (recording.loaded_most)
+      paragraphs.push_back(DescribeLoadedMost(*recording.loaded_most, recording.name));
     if (recording.force)
       paragraphs.push_back(DescribeUnexplainedForce(*recording.force, recording.name));
   }

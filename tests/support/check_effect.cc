@@ -78,6 +78,7 @@ class Checker {
 
   void Run() {
     CheckEnergy();
+    CheckStress();
     CheckTangent("position", {.position = 1}, options_.depends_on_position);
     CheckTangent("velocity", {.velocity = 1}, options_.depends_on_velocity);
     CheckTangent("acceleration", {.acceleration = 1}, options_.depends_on_acceleration);
@@ -156,6 +157,26 @@ class Checker {
       const Eigen::Matrix<double, 1, 1> power(force.dot(direction));
       EXPECT_LT(BestError(value, power, 0.001), options_.tolerance) << "f = −∂E/∂x";
     }
+  }
+
+  // The stress, where the effect is one, integrates to the forces.
+  void CheckStress() const {
+    const Body& body = moving_.body;
+    Eigen::Matrix3Xd stress = Eigen::Matrix3Xd::Zero(3, 3 * body.PointCount());
+    if (!effect_.AddStress(At(moving_.motion), &stress)) {
+      EXPECT_TRUE(stress.isZero(0)) << "an effect that is no stress added one";
+      return;
+    }
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(size_);
+    for (int q = 0; q < body.PointCount(); ++q) {
+      const Eigen::Matrix3d P = body.weight[q] * stress.middleCols<3>(3 * q);
+      const auto gradient = body.shape_gradient.middleCols<3>(3 * q);
+      for (Eigen::Index a = 0; a < gradient.rows(); ++a)
+        force.segment<3>(3 * body.mesh.tets(a, q / body.points_per_element)) -=
+            P * gradient.row(a).transpose();
+    }
+    const Eigen::VectorXd expected = Force(moving_.motion);
+    EXPECT_LT((force - expected).norm(), 1e-12 * expected.norm()) << "f = −Σ w P ∂N/∂X";
   }
 
   void CheckTangent(const std::string& name, const TangentWeights& weights, bool depends) const {

@@ -35,7 +35,7 @@ Eigen::VectorXd ForceAt(const Effect& effect, const Body& body, const Eigen::Vec
 
 // At a random deformed and moving state, for linear and quadratic elements:
 //  - the card is complete and its parameters agree with Parameters() and WithParameters();
-//  - f = −∂E/∂x where the effect has an energy;
+//  - f = −∂E/∂x where the effect has an energy, and f = −Σ w P ∂N/∂X where it is a stress;
 //  - AddTangents and AddSkewTangents together, and AddParameterDerivative, agree with central
 //    differences, for all weights and every parameter that is not a setting, and are not simply
 //    zero; they add into what is there, in proportion to the weight;

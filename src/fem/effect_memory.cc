@@ -1,0 +1,31 @@
+#include "fem/effect_memory.h"
+
+#include <algorithm>
+
+#include "fem/step_equation.h"
+
+namespace lacuna {
+
+EffectMemory::EffectMemory(const Model& model)
+    : model_(model), state_(RestHistory(model).effect_state) {}
+
+bool EffectMemory::IsEmpty() const {
+  return std::all_of(state_.begin(), state_.end(),
+                     [](const Eigen::VectorXd& state) { return state.size() == 0; });
+}
+
+const std::vector<Eigen::VectorXd>& EffectMemory::Advance(const Eigen::VectorXd& position,
+                                                          const Eigen::VectorXd& velocity,
+                                                          double time, double time_step) {
+  const Eigen::VectorXd no_acceleration = Eigen::VectorXd::Zero(position.size());
+  for (size_t j = 0; j < state_.size(); ++j) {
+    if (state_[j].size() == 0) continue;
+    const Eigen::VectorXd before = state_[j];
+    model_.effects[j]->AdvanceState({*model_.body, position, velocity, no_acceleration, time,
+                                     time_step, before, ElasticityOf(model_)},
+                                    model_.effects[j]->Parameters(), &state_[j]);
+  }
+  return state_;
+}
+
+}  // namespace lacuna
