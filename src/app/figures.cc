@@ -57,7 +57,11 @@ bool MakeOthers(const Arguments& arguments, Progress* progress) {
     all = Told(figure, content.text, WriteFigure(content, name, arguments.output)) && all;
   };
   if (IsWanted(arguments, 3)) make(3, DrawCloudAndSurface(scans, settings));
-  if (IsWanted(arguments, 4)) make(4, DrawMeshes(table1, scans, settings));
+  if (IsWanted(arguments, 4)) {
+    make(4, DrawMeshes(table1, scans, settings));
+    const FigureContent own = DrawOwnSurfaceMeshes(table1, scans, settings);
+    all = Told(4, own.text, WriteFigure(own, "figure4_own_surface", arguments.output)) && all;
+  }
   if (IsWanted(arguments, 5)) make(5, DrawBend(table1, scans, settings));
   if (!IsWanted(arguments, 6)) return all;
   try {

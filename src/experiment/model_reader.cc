@@ -18,6 +18,10 @@ MeshSettings ReadMeshSettings(const Config& config) {
   settings.tets.radius_edge_ratio =
       config.Number("radius_edge_ratio", {1, 100, true, false}, settings.tets.radius_edge_ratio);
   settings.tets.max_volume = config.Quantity("max_volume", kVolume, kPositive);
+  // Left out where it is not given, so that results kept under the hash of older files stay valid.
+  if (config.Has("min_dihedral_angle"))
+    settings.tets.min_dihedral_angle =
+        config.Quantity("min_dihedral_angle", kAngle, {0, 1.2, false, false});
   settings.tets.preserve_surface = config.Flag("preserve_surface", settings.tets.preserve_surface);
   settings.order = config.Integer("order", 1, 2, 1);
   return settings;

@@ -17,7 +17,8 @@
 namespace lacuna {
 
 // The settings `mesh: {radius_edge_ratio: 2.0, max_volume: 60 mm^3, order: 2}`. The first two are q
-// and v of the paper; the order is that of the elements, 1 or 2.
+// and v of the paper; the order is that of the elements, 1 or 2. `min_dihedral_angle` and
+// `preserve_surface` are described in meshing/tetrahedralize.h.
 struct MeshSettings {
   TetOptions tets;
   int order = 1;

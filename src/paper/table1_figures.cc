@@ -10,6 +10,7 @@
 #include "experiment/kept_recording.h"
 #include "geometry/cut_open.h"
 #include "geometry/nearest.h"
+#include "meshing/tet_quality.h"
 #include "paper/evaluation_record.h"
 #include "paper/parameter_objective.h"
 #include "report/arrow_mesh.h"
@@ -163,6 +164,47 @@ FigureContent DrawCloudAndSurface(const Table1Scans& scans, const Table1FigureSe
   return figure;
 }
 
+namespace {
+
+// One mesh of Figure 4: its panel, its line of the table and its numbers.
+void AddMesh(const ReferenceBody& body, double ratio, const std::string& volume,
+             const nlohmann::json& settings, FigureContent* figure) {
+  const CutMesh cut =
+      CutOpen(body.mesh, BoundingBox(body.mesh.nodes).center(), -Eigen::Vector3d::UnitY());
+  Panel panel;
+  panel.title = fmt::format("q = {:g}, {}: {} nodes, {} tetrahedra", ratio, volume,
+                            body.mesh.NodeCount(), body.mesh.TetCount());
+  for (const bool inner : {false, true}) {
+    PanelSurface surface;
+    surface.mesh = inner ? cut.inner : cut.skin;
+    surface.colour = inner ? kInnerColour : kSkinColour;
+    surface.show_edges = true;
+    surface.flat = true;
+    panel.surfaces.push_back(std::move(surface));
+  }
+  figure->picture.panels.push_back(std::move(panel));
+  const TetQuality shapes = MeasureTets(body.mesh);
+  figure->text += fmt::format(
+      "{:8.2f}  {:>14}  {:7}  {:6}   {:9.2f}   {:13.2f}   {:16.1f}   {:10.2f}\n", ratio, volume,
+      body.mesh.NodeCount(), body.mesh.TetCount(), body.quality.largest_radius_edge_ratio,
+      shapes.aspect_ratio.mean, kDeg * body.quality.smallest_angle, 1e3 * body.quality.volume);
+  nlohmann::json numbers = settings;
+  numbers.update({{"radius_edge_ratio", ratio},
+                  {"nodes", body.mesh.NodeCount()},
+                  {"tetrahedra", body.mesh.TetCount()},
+                  {"largest_radius_edge_ratio", body.quality.largest_radius_edge_ratio},
+                  {"mean_aspect_ratio", shapes.aspect_ratio.mean},
+                  {"smallest_dihedral_angle_rad", body.quality.smallest_angle},
+                  {"volume_m3", body.quality.volume}});
+  figure->numbers.push_back(numbers);
+}
+
+constexpr const char* kMeshColumns =
+    "       q               v    nodes    tets   largest q   mean elongation   least dihedral °   "
+    "volume dm³\n";
+
+}  // namespace
+
 FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
                          const Table1FigureSettings& settings) {
   FigureContent figure;
@@ -170,43 +212,44 @@ FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
   figure.picture.title = "Figure 4: tetrahedral meshes of the first surface, cut open";
   figure.picture.columns = static_cast<int>(settings.max_volumes.size());
   figure.picture.legend = {{kSkinColour, "surface"}, {kInnerColour, "inside"}};
-  figure.text =
-      "Figure 4: meshes of the first surface\n"
-      "       q     v cm³    nodes    tets   largest q   least dihedral °   volume dm³\n";
+  figure.text = std::string("Figure 4: meshes of the first surface\n") + kMeshColumns;
   const ParameterObjective problem = ProblemOf(table1, scans);
   for (const double ratio : settings.radius_edge_ratios) {
     for (const double volume : settings.max_volumes) {
       SearchedParameters parameters = ReferenceParameters(table1);
       parameters.radius_edge_ratio = ratio;
       parameters.max_volume = volume;
-      const ReferenceBody body = MakeObjectiveBody(problem, parameters);
-      const CutMesh cut =
-          CutOpen(body.mesh, BoundingBox(body.mesh.nodes).center(), -Eigen::Vector3d::UnitY());
-      Panel panel;
-      panel.title = fmt::format("q = {:g}, v = {:g} cm\u00b3: {} nodes, {} tetrahedra", ratio,
-                                1e6 * volume, body.mesh.NodeCount(), body.mesh.TetCount());
-      for (const bool inner : {false, true}) {
-        PanelSurface surface;
-        surface.mesh = inner ? cut.inner : cut.skin;
-        surface.colour = inner ? kInnerColour : kSkinColour;
-        surface.show_edges = true;
-        surface.flat = true;
-        panel.surfaces.push_back(std::move(surface));
-      }
-      figure.picture.panels.push_back(std::move(panel));
-      figure.text += fmt::format("{:8.2f}  {:8.1f}  {:7}  {:6}   {:9.2f}   {:16.1f}   {:10.2f}\n",
-                                 ratio, 1e6 * volume, body.mesh.NodeCount(), body.mesh.TetCount(),
-                                 body.quality.largest_radius_edge_ratio,
-                                 kDeg * body.quality.smallest_angle, 1e3 * body.quality.volume);
-      figure.numbers.push_back(
-          {{"radius_edge_ratio", ratio},
-           {"max_volume_m3", volume},
-           {"nodes", body.mesh.NodeCount()},
-           {"tetrahedra", body.mesh.TetCount()},
-           {"largest_radius_edge_ratio", body.quality.largest_radius_edge_ratio},
-           {"smallest_dihedral_angle_rad", body.quality.smallest_angle},
-           {"volume_m3", body.quality.volume}});
+      AddMesh(MakeObjectiveBody(problem, parameters), ratio,
+              fmt::format("v = {:g} cm\u00b3", 1e6 * volume), {{"max_volume_m3", volume}}, &figure);
     }
+  }
+  return figure;
+}
+
+FigureContent DrawOwnSurfaceMeshes(const Table1Study& table1, const Table1Scans& scans,
+                                   const Table1FigureSettings& settings) {
+  const Table1FigureSettings::OwnSurface& own = settings.own_surface;
+  FigureContent figure;
+  figure.options = SideView(1700, 575 * static_cast<int>((own.radius_edge_ratios.size() + 1) / 2));
+  figure.picture.title =
+      "Figure 4: meshes of the first surface with its own triangles; only q differs";
+  figure.picture.columns = 2;
+  figure.picture.legend = {{kSkinColour, "surface"}, {kInnerColour, "inside"}};
+  figure.text = fmt::format(
+                    "Figure 4, second part: S_0 with its own triangles, which TetGen keeps; "
+                    "dihedral angles of at least {:.1f}° where possible\n",
+                    kDeg * own.min_dihedral_angle) +
+                kMeshColumns;
+  ReconstructionStudy study = scans.study;
+  study.mesh.tets.min_dihedral_angle = own.min_dihedral_angle;
+  study.mesh.tets.preserve_surface = true;
+  const ParameterObjective problem{study, scans.states, scans.tracked, /*remesh_surface=*/false};
+  for (const double ratio : own.radius_edge_ratios) {
+    SearchedParameters parameters = ReferenceParameters(table1);
+    parameters.radius_edge_ratio = ratio;
+    parameters.max_volume = own.max_volume;
+    AddMesh(MakeObjectiveBody(problem, parameters), ratio, "no v",
+            {{"max_volume_m3", own.max_volume}, {"own_surface", true}}, &figure);
   }
   return figure;
 }

@@ -1,6 +1,7 @@
 // Figures 3 to 6 of Transue & Choi 2015, from the recording and the searches of Table 1:
 //   3  the cleaned points of a scan, and the surface made from them
-//   4  tetrahedral meshes of the undeformed surface at two q and two v, cut open
+//   4  tetrahedral meshes of the undeformed surface, cut open: at two q and two v, and with the
+//      surface's own triangles at several q
 //   5  the bend: registered displacements on the scans' surfaces, and the simulation
 //   6  the optima of the three searches over the scans' surfaces, coloured by their distance
 #ifndef LACUNA_PAPER_TABLE1_FIGURES_H_
@@ -25,6 +26,9 @@ struct FigureContent {
 FigureContent DrawCloudAndSurface(const Table1Scans& scans, const Table1FigureSettings& settings);
 FigureContent DrawMeshes(const Table1Study& table1, const Table1Scans& scans,
                          const Table1FigureSettings& settings);
+// The same where S_0's own triangles are kept and v does not act, so that q does.
+FigureContent DrawOwnSurfaceMeshes(const Table1Study& table1, const Table1Scans& scans,
+                                   const Table1FigureSettings& settings);
 FigureContent DrawBend(const Table1Study& table1, const Table1Scans& scans,
                        const Table1FigureSettings& settings);
 // `results` holds table1.json. Throws InputError when it is missing or belongs to another

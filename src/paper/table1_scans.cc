@@ -41,6 +41,14 @@ Table1FigureSettings ReadTable1Figures(const Config& config) {
   settings.radius_edge_ratios =
       meshes.Quantities("radius_edge_ratios", kDimensionless, {1, 100, true, false});
   settings.max_volumes = meshes.Quantities("max_volumes", kVolume, kPositive);
+  const Config own = config.Child("own_surface_meshes");
+  settings.own_surface.radius_edge_ratios =
+      own.Quantities("radius_edge_ratios", kDimensionless, {1, 100, true, false});
+  settings.own_surface.max_volume = own.Quantity("max_volume", kVolume, kPositive);
+  settings.own_surface.min_dihedral_angle =
+      own.Quantity("min_dihedral_angle", kAngle, {0, 1.2, false, false});
+  if (settings.own_surface.radius_edge_ratios.empty())
+    own.Fail("radius_edge_ratios", "expected at least one");
   settings.bend_frames = config.Child("bend").Integers("frames", 1);
   settings.alignment_frames = config.Child("alignment").Integers("frames", 1);
   if (settings.radius_edge_ratios.empty() || settings.max_volumes.empty())

@@ -20,6 +20,13 @@ struct Table1FigureSettings {
   int cloud_frame = 1;
   std::vector<double> radius_edge_ratios;  // q, the rows of Figure 4
   std::vector<double> max_volumes;         // v, m³, the columns of Figure 4
+  // The second part of Figure 4: S_0's own triangles, kept, with meshes that differ in q alone.
+  struct OwnSurface {
+    std::vector<double> radius_edge_ratios;
+    double max_volume = 1;          // m³; as large as the body: no bound
+    double min_dihedral_angle = 0;  // rad
+  };
+  OwnSurface own_surface;
   std::vector<int> bend_frames;
   std::vector<int> alignment_frames;
 };

@@ -39,7 +39,8 @@ class Table1FiguresTest : public testing::Test {
     table1_->scene_key = "a scene";
     table1_->true_young_modulus = 1e5;
     table1_->true_poisson_ratio = 0.35;
-    settings_ = new Table1FigureSettings{{}, 3, {1.5, 3.0}, {5e-8, 3e-7}, {1, 3}, {3}};
+    settings_ =
+        new Table1FigureSettings{{}, 3, {1.5, 3.0}, {5e-8, 3e-7}, {{1.1, 3.0}, 1, 0}, {1, 3}, {3}};
   }
   static void TearDownTestSuite() {
     delete scans_;
@@ -80,6 +81,18 @@ TEST_F(Table1FiguresTest, ASmallerVGivesMoreTetrahedraAndEachMeshIsCutOpen) {
   EXPECT_GT(tets(2), tets(3));
   // TetGen may keep the tighter q without being asked to.
   EXPECT_GE(tets(0), tets(2));
+}
+
+// With S_0's own triangles and no other bound, q alone decides on the tetrahedra.
+TEST_F(Table1FiguresTest, QActsWhereTheSurfaceIsKeptAndVDoesNot) {
+  const FigureContent figure = DrawOwnSurfaceMeshes(*table1_, *scans_, *settings_);
+  ASSERT_EQ(figure.numbers.size(), 2u);
+  const auto number = [&](size_t mesh, const char* name) {
+    return figure.numbers[mesh].at(name).get<double>();
+  };
+  EXPECT_GT(number(0, "tetrahedra"), 1.3 * number(1, "tetrahedra"));
+  EXPECT_GT(number(1, "largest_radius_edge_ratio"), 1.3 * number(0, "largest_radius_edge_ratio"));
+  EXPECT_GT(number(1, "mean_aspect_ratio"), 1.2 * number(0, "mean_aspect_ratio"));
 }
 
 TEST_F(Table1FiguresTest, ArrowsShowTheRegisteredDisplacement) {
