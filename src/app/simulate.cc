@@ -1,13 +1,19 @@
-// lacuna simulate SCENE
+// lacuna simulate SCENE, or EXPERIMENT
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 
 #include "app/commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file_name.h"
 #include "experiment/scene.h"
+#include "geometry/mesh_io.h"
+#include "prediction/played_recording.h"
+#include "prediction/predicted_body.h"
+#include "prediction/prediction_study_reader.h"
 #include "record/csv_table.h"
 #include "report/vtk_files.h"
 
@@ -25,26 +31,48 @@ Eigen::MatrixXd AsTensors(const Eigen::MatrixXd& cauchy) {
   return cauchy({0, 5, 4, 5, 1, 3, 4, 3, 2}, Eigen::all);
 }
 
-// Writes the trajectory for ParaView, and the loads and the forces of the grips as a table.
-void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& folder) {
+struct Trajectory {
+  const TetMesh& mesh;
+  const std::vector<double>& times;
+  const std::vector<Eigen::Matrix3Xd>& positions;
+  const std::vector<Eigen::Matrix3Xd>& velocities;
+  const std::vector<NodalStress>* stress = nullptr;  // null: not computed
+
+  double LargestDisplacement() const {
+    double largest = 0;
+    for (const Eigen::Matrix3Xd& nodes : positions)
+      largest = std::max(largest, (nodes - mesh.nodes).colwise().norm().maxCoeff());
+    return largest;
+  }
+};
+
+// Writes the trajectory for ParaView.
+void WriteTrajectory(const Trajectory& motion, const std::filesystem::path& folder) {
   std::vector<TimedFile> series;
-  const Eigen::Index frames = static_cast<Eigen::Index>(motion.times.size());
-  Eigen::MatrixXd loads(frames, 4);
   for (size_t k = 0; k < motion.times.size(); ++k) {
-    TetMesh deformed = motion.body->mesh;
+    TetMesh deformed = motion.mesh;
     deformed.nodes = motion.positions[k];
+    std::vector<Field> fields = {{"displacement_m", motion.positions[k] - motion.mesh.nodes},
+                                 {"velocity_m_per_s", motion.velocities[k]}};
+    if (motion.stress != nullptr) {
+      const NodalStress& stress = (*motion.stress)[k];
+      fields.push_back({"cauchy_stress_Pa", AsTensors(stress.cauchy)});
+      fields.push_back({"von_mises_stress_Pa", stress.von_mises.transpose()});
+      fields.push_back({"principal_stretches", stress.stretch});
+    }
     const auto file = folder / fmt::format("body_{:04}.vtu", k);
-    WriteVtu(file, deformed,
-             {{{"displacement_m", motion.positions[k] - motion.body->mesh.nodes},
-               {"velocity_m_per_s", motion.velocities[k]},
-               {"cauchy_stress_Pa", AsTensors(motion.stress[k].cauchy)},
-               {"von_mises_stress_Pa", motion.stress[k].von_mises.transpose()},
-               {"principal_stretches", motion.stress[k].stretch}},
-              {}});
+    WriteVtu(file, deformed, {std::move(fields), {}});
     series.push_back({motion.times[k], file});
-    loads.row(static_cast<Eigen::Index>(k)) << motion.times[k], motion.load[k].transpose();
   }
   WritePvd(folder / "body.pvd", series);
+}
+
+// Writes the loads and the forces of the grips as a table.
+void WriteLoads(const SceneMotion& motion, const std::filesystem::path& folder) {
+  const Eigen::Index frames = static_cast<Eigen::Index>(motion.times.size());
+  Eigen::MatrixXd loads(frames, 4);
+  for (size_t k = 0; k < motion.times.size(); ++k)
+    loads.row(static_cast<Eigen::Index>(k)) << motion.times[k], motion.load[k].transpose();
   CsvTable table{{"time_s", loads.col(0)},
                  {"load_x_N", loads.col(1)},
                  {"load_y_N", loads.col(2)},
@@ -58,30 +86,81 @@ void WriteSimulation(const SceneMotion& motion, const std::filesystem::path& fol
   SaveCsv(table, folder / "loads.csv");
 }
 
+int SayEnded(const Arguments& arguments, const std::string& why) {
+  fmt::print(stderr, "lacuna: {}: the simulation ended: {}\n", arguments.scene, why);
+  return 1;
+}
+
+void SayMotion(const std::string& name, const TetMesh& mesh, const Trajectory& trajectory,
+               const std::filesystem::path& folder) {
+  fmt::print(
+      "{}: {} nodes, {} tetrahedra, {} frames, largest displacement {:.2f} mm\n"
+      "The trajectory was written to {}\n",
+      name, mesh.NodeCount(), mesh.TetCount(), trajectory.times.size(),
+      1e3 * trajectory.LargestDisplacement(), (folder / "body.pvd").string());
+}
+
+std::filesystem::path OutputFolder(const Arguments& arguments, const std::string& name) {
+  return arguments.output.empty() ? "results/" + name + "_simulation" : arguments.output;
+}
+
+// Plays the recordings of an experiment with its model, each into a folder of its own where there
+// are several.
+int PlayExperiment(const Arguments& arguments, const Config& config) {
+  const PredictionStudy study = ReadPredictionStudy(config);
+  for (const PredictedRecording& item : study.recordings)
+    if (item.scans != nullptr)
+      throw InputError(SourcePosition{arguments.scene},
+                       fmt::format("recording {} shows scans; only recordings of markers can be "
+                                   "played",
+                                   item.name));
+  const bool several = study.recordings.size() > 1;
+  const TetMesh mesh = MakeReferenceBody(study).mesh;
+  const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));
+  const auto place = [&](const std::filesystem::path& folder, const std::string& name) {
+    const std::filesystem::path own = several ? folder / FileNameFor(name) : folder;
+    MakeFolder(own);
+    return own;
+  };
+  for (size_t r = 0; r < study.recordings.size(); ++r) {
+    const PredictedRecording& item = study.recordings[r];
+    const RecordingModel model(study, item, mesh, body, {});
+    const PlayedRecording played = Play(model, PlayedNuisances(model));
+    if (!played.summary.IsUsable())
+      return SayEnded(arguments, item.name + ": " + played.summary.message);
+    const std::filesystem::path folder = place(OutputFolder(arguments, study.name), item.name);
+    const Trajectory trajectory{body->mesh, played.times, played.positions, played.velocities};
+    WriteTrajectory(trajectory, folder);
+    SayMotion(item.name, mesh, trajectory, folder);
+    if (arguments.recording.empty()) continue;
+    const std::filesystem::path written = place(arguments.recording, item.name);
+    WriteTetMesh(written / "object.msh", mesh);
+    MarkerRecording recording = AsRecording(item, played, study.noise, r + 1);
+    recording.reference = written / "object.msh";
+    recording.comment = fmt::format("Simulated from {}.", study.file.filename().string());
+    WriteMarkerRecording(written, recording);
+    fmt::print("The recording was written to {}\n", written.string());
+  }
+  return 0;
+}
+
 int Simulate(const Arguments& arguments) {
-  const Scene scene = ReadScene(Config::Load(arguments.scene));
+  const Config config = Config::Load(arguments.scene);
+  if (IsPredictionStudy(config)) return PlayExperiment(arguments, config);
+  const Scene scene = ReadScene(config);
   if (!arguments.recording.empty() && !scene.scanner)
     throw InputError(SourcePosition{arguments.scene}, "has no `scanner`, which --recording needs");
-  const std::filesystem::path output =
-      arguments.output.empty() ? "results/" + scene.name + "_simulation" : arguments.output;
+  const std::filesystem::path output = OutputFolder(arguments, scene.name);
   MakeFolder(output);
   if (!arguments.recording.empty()) MakeFolder(arguments.recording);
   Progress progress;
   const SceneMotion motion = SimulateScene(scene, &progress);
-  if (!motion.IsUsable()) {
-    fmt::print(stderr, "lacuna: {}: the simulation ended: {}\n", arguments.scene, motion.message);
-    return 1;
-  }
-  fmt::print("{}: {} nodes, {} tetrahedra, {} frames, largest displacement {:.2f} mm\n", scene.name,
-             motion.body->NodeCount(), motion.body->ElementCount(), motion.times.size(), [&] {
-               double largest = 0;
-               for (const auto& nodes : motion.positions)
-                 largest = std::max(largest,
-                                    (nodes - motion.body->mesh.nodes).colwise().norm().maxCoeff());
-               return 1e3 * largest;
-             }());
-  WriteSimulation(motion, output);
-  fmt::print("The trajectory was written to {}\n", (output / "body.pvd").string());
+  if (!motion.IsUsable()) return SayEnded(arguments, motion.message);
+  const Trajectory trajectory{motion.body->mesh, motion.times, motion.positions, motion.velocities,
+                              &motion.stress};
+  WriteTrajectory(trajectory, output);
+  WriteLoads(motion, output);
+  SayMotion(scene.name, motion.body->mesh, trajectory, output);
   if (!arguments.recording.empty()) {
     WriteSceneRecording(scene, motion, arguments.recording);
     fmt::print("The recording was written to {}\n", arguments.recording);
@@ -93,13 +172,19 @@ int Simulate(const Arguments& arguments) {
 
 void AddSimulate(CLI::App* app, std::function<int()>* command) {
   CLI::App* simulate = app->add_subcommand(
-      "simulate", "Simulate a synthetic scene and, with --recording, scan it with virtual cameras");
+      "simulate",
+      "Simulate a synthetic scene or the recordings of an experiment, and record what it shows");
+  simulate->footer(
+      "Of a scene, --recording writes the scans of virtual cameras. Of an experiment with\n"
+      "`recordings`, each recording is played with the model as the experiment gives it, and\n"
+      "--recording writes what its markers would show.");
   auto arguments = std::make_shared<Arguments>();
-  simulate->add_option("scene", arguments->scene, "The scene's YAML file")->required();
+  simulate->add_option("scene", arguments->scene, "The YAML file of the scene or the experiment")
+      ->required();
   simulate->add_option("-o,--output", arguments->output,
                        "Folder for the trajectory (default: results/<name>_simulation)");
   simulate->add_option("--recording", arguments->recording,
-                       "Folder for the scans, a recording like any other that `reconstruct` reads");
+                       "Folder for a recording like any other, which `reconstruct` or `fit` reads");
   simulate->callback(
       [command, arguments] { *command = [arguments] { return Simulate(*arguments); }; });
 }

@@ -228,6 +228,9 @@ void RecordingModel::AddHold(const TetMesh& mesh) {
     force = Eigen::VectorXd::Zero(3 * share.size());
     for (Eigen::Index i = 0; i < share.size(); ++i) force[3 * i + axis] = share[i];
     AddNuisance(fmt::format("hold_force_{}", "xyz"[axis]), "N", weight, std::move(direction));
+    if (!item_.hold->force) continue;
+    nuisances_.back().prior.prior_mean = 0;
+    nuisances_.back().prior.start = (*item_.hold->force)[axis];
   }
 }
 

@@ -26,6 +26,7 @@ std::vector<int> FramesWithin(const Recording& recording, double from, double to
 Hold ReadHold(const Config& config, const Recording& recording) {
   Hold hold{ReadRegion(config.Child("region"), recording.data.folder, "hold"),
             config.Quantity("release", kTime, kAnyValue)};
+  if (config.Has("force")) hold.force = config.Vector("force", kForce);
   if (hold.release > recording.times.back()) {
     config.Fail("release", fmt::format("lies after the recording's last frame, at {:g} s",
                                        recording.times.back()));

@@ -30,6 +30,8 @@ namespace lacuna {
 struct Hold {
   Region region;
   double release = 0;  // s, in the recording's time
+  // N, with which a fit starts and a simulation holds; nothing: a fit starts with 0.
+  std::optional<Eigen::Vector3d> force = {};
 };
 
 // One recording of the study, and how the prediction is compared with it.

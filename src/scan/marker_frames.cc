@@ -127,7 +127,7 @@ std::string WriteMarkerFrames(const std::filesystem::path& folder, const std::ve
       "  kind: markers\n  file: markers.csv\n  columns: {time: t}\n  marker_places:\n";
   for (size_t m = 0; m < markers.names.size(); ++m) {
     const Eigen::Vector3d place = markers.places.col(static_cast<Eigen::Index>(m));
-    yaml += fmt::format("    - {{name: {}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
+    yaml += fmt::format("    - {{name: \"{}\", position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
                         markers.names[m], place.x(), place.y(), place.z());
   }
   return yaml;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 
@@ -101,21 +100,27 @@ std::string DescribeGrip(const RecordedGrip& grip) {
 
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip,
                       size_t number) {
-  CHECK(grip.motion != GripMotion::kFollowsMarkers) << "a virtual scanner sees no markers";
   std::string item = WithDirections(FormatRegion(grip.region), grip.axes);
-  if (grip.motion == GripMotion::kFollowsScan) return item;
-  const std::string name = fmt::format("grip{}.csv", number);
   item.pop_back();
-  item += fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z", name);
-  if (grip.rotations.cols() == 0) {
-    WriteTimeSeries(folder / name, grip.times, grip.displacements);
-    return item + "}}";
+  if (grip.deforms) item += ", deforms: true";
+  if (grip.motion == GripMotion::kFollowsScan) return item + "}";
+  if (grip.motion == GripMotion::kFollowsMarkers)
+    return item + fmt::format(", follows_markers: [\"{}\"]}}", fmt::join(grip.markers, "\", \""));
+  const std::string name = fmt::format("grip{}.csv", number);
+  const bool turns = grip.rotations.cols() > 0;
+  Eigen::MatrixXd path(turns ? 6 : 3, grip.times.size());
+  path.topRows<3>() = grip.displacements;
+  std::vector<std::string> columns = {"x", "y", "z"};
+  std::string turn;
+  if (turns) {
+    path.bottomRows<3>() = grip.rotations;
+    columns.insert(columns.end(), {"rx", "ry", "rz"});
+    turn = fmt::format(", turn: {{x: rx, y: ry, z: rz, about: {}}}", FormatVector(grip.pivot, "m"));
   }
-  Eigen::MatrixXd motion(6, grip.times.size());
-  motion << grip.displacements, grip.rotations;
-  WriteTimeSeries(folder / name, grip.times, motion, {"x", "y", "z", "rx", "ry", "rz"});
-  return item + fmt::format(", turn: {{x: rx, y: ry, z: rz, unit: rad, about: {}}}}}}}",
-                            FormatVector(grip.pivot, "m"));
+  WriteTimeSeries(folder / name, grip.times, path, columns);
+  return item +
+         fmt::format(", path: {{file: {}, time: time, x: x, y: y, z: z, length_unit: m{}}}}}", name,
+                     turn);
 }
 
 }  // namespace lacuna

@@ -59,7 +59,7 @@ std::vector<RecordedGrip> ReadGrips(const Config& config, const DataLocation& da
 std::string DescribeGrip(const RecordedGrip& grip);
 
 // The grip as an item of `gripped` in recording.yaml. A given path goes into the file
-// grip`number`.csv of `folder`. The grip may not follow markers.
+// grip`number`.csv of `folder`.
 std::string WriteGrip(const std::filesystem::path& folder, const RecordedGrip& grip, size_t number);
 
 }  // namespace lacuna

@@ -6,7 +6,7 @@
 
 #include "core/atomic_file.h"
 #include "core/npy.h"
-#include "scan/yaml_format.h"
+#include "scan/recording_writer.h"
 
 namespace lacuna {
 namespace {
@@ -15,29 +15,6 @@ std::string FormatTimes(const std::vector<double>& times) {
   std::vector<std::string> texts;
   for (const double time : times) texts.push_back(fmt::format("{} s", time));
   return fmt::format("  times: [{}]\n", fmt::join(texts, ", "));
-}
-
-// The entries for what is fixed, gripped and loaded; writes the files with paths and forces.
-std::string WriteConstraints(const std::filesystem::path& folder, const RecordedObject& object) {
-  std::string yaml;
-  const auto held = [&](std::string item, size_t part) {
-    for (size_t i = 0; i < object.reactions.size(); ++i) {
-      if (object.reactions[i].held != part) continue;
-      item.pop_back();
-      item += ", " + WriteReaction(folder, object.reactions[i], i + 1) + "}";
-    }
-    return "  - " + item + "\n";
-  };
-  if (!object.fixed.empty()) yaml += "fixed:\n";
-  for (size_t i = 0; i < object.fixed.size(); ++i) yaml += held(WriteSupport(object.fixed[i]), i);
-  if (!object.grips.empty()) yaml += "gripped:\n";
-  for (size_t i = 0; i < object.grips.size(); ++i)
-    yaml += held(WriteGrip(folder, object.grips[i], i + 1), object.fixed.size() + i);
-  if (!object.forces.empty()) yaml += "forces:\n";
-  for (size_t i = 0; i < object.forces.size(); ++i) {
-    yaml += "  - " + WriteForce(folder, object.forces[i], i + 1) + "\n";
-  }
-  return yaml;
 }
 
 std::filesystem::path TrueVertices(const std::filesystem::path& folder, size_t i) {
@@ -63,8 +40,7 @@ void WriteScan(const std::filesystem::path& folder, const std::string& name,
   MakeFolder(folder / "truth");
 
   std::string yaml = fmt::format("schema_version: 1\nname: \"{}\"\nlength_unit: m\n", name);
-  if (object.density) yaml += fmt::format("density: {} kg/m^3\n", *object.density);
-  if (object.gravity) yaml += fmt::format("gravity: {}\n", FormatVector(*object.gravity, "m/s^2"));
+  yaml += WriteDensityAndGravity(object);
   yaml += "frames:\n" + write_frames(folder, scan) + FormatTimes(scan.times);
   yaml += WriteConstraints(folder, object);
   WriteTruth(folder, surfaces);

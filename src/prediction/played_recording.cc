@@ -1,0 +1,101 @@
+#include "prediction/played_recording.h"
+
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <utility>
+
+#include "core/error.h"
+#include "prediction/reaction_misfit.h"
+#include "scan/random_bits.h"
+
+namespace lacuna {
+namespace {
+
+// The reading of a load cell in the frames that it covers.
+MeasuredReaction PlayedReading(const MeasuredReaction& reading, const ReactionMisfit& misfit,
+                               const std::vector<double>& times) {
+  MeasuredReaction played = reading;
+  std::vector<double> covered;
+  std::vector<Eigen::VectorXd> forces;
+  for (size_t k = 0; k < times.size(); ++k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * misfit.components;
+    if (!reading.Covers(times[k])) continue;
+    covered.push_back(times[k]);
+    forces.emplace_back(misfit.residual.segment(first, misfit.components) +
+                        ReadingAt(reading, times[k]));
+  }
+  const Eigen::Index count = static_cast<Eigen::Index>(covered.size());
+  played.times = Eigen::Map<const Eigen::VectorXd>(covered.data(), count);
+  played.forces.resize(misfit.components, count);
+  for (Eigen::Index k = 0; k < count; ++k) played.forces.col(k) = forces[static_cast<size_t>(k)];
+  return played;
+}
+
+}  // namespace
+
+Eigen::VectorXd PlayedNuisances(const RecordingModel& model) {
+  const PredictedRecording& item = model.item();
+  if (item.hold && !item.hold->force)
+    throw InputError(
+        fmt::format("{}: the object is held until {:g} s by a force that is not known; to play the "
+                    "recording, give `force` in its `hold`",
+                    item.name, item.hold->release));
+  Eigen::VectorXd values(static_cast<Eigen::Index>(model.nuisances().size()));
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    values[k] = model.nuisances()[static_cast<size_t>(k)].prior.start;
+  return values;
+}
+
+PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisance) {
+  const MarkerObserver* observer = model.Markers();
+  CHECK(observer != nullptr) << model.item().name << " shows scans";
+  const PredictedRecording& item = model.item();
+  PredictionOptions options = model.Options(nuisance);
+  options.reactions = MeasuredGrips(model.Reactions());
+  const double late = model.Delay(nuisance);
+  const Eigen::Isometry3d registration = model.Registration(nuisance);
+  std::vector<double> times;
+  for (const int frame : item.frames) times.push_back(item.recording.times[frame] - late);
+  PlayedRecording played;
+  std::vector<ReactionMisfit> reactions;
+  played.summary =
+      Predict(model.model(), options, times, {}, [&](int index, const PredictedState& state) {
+        const Eigen::Index nodes = state.position.size() / 3;
+        played.times.push_back(item.recording.times[item.frames[static_cast<size_t>(index)]]);
+        played.positions.emplace_back(state.position.reshaped(3, nodes));
+        played.velocities.emplace_back(state.velocity.reshaped(3, nodes));
+        const Eigen::VectorXd seen = observer->rows() * state.position;
+        const Eigen::Matrix3Xd markers = seen.reshaped(3, model.PointCount());
+        played.markers.emplace_back(registration * markers);
+        AppendReactions(model.Reactions(), played.times.back(), state, options.start_time, {},
+                        &reactions);
+      });
+  for (size_t k = 0; k < reactions.size(); ++k)
+    played.reactions.push_back(PlayedReading(model.Reactions()[k], reactions[k], played.times));
+  return played;
+}
+
+MarkerRecording AsRecording(const PredictedRecording& item, const PlayedRecording& played,
+                            double noise, uint64_t seed) {
+  constexpr uint64_t kMarkers = 90, kForces = 91;
+  MarkerRecording recording;
+  recording.name = item.name;
+  recording.object = item.recording.object;
+  recording.object.reactions = played.reactions;
+  recording.times = played.times;
+  recording.markers = {item.recording.markers.names, item.recording.markers.places, played.markers};
+  for (size_t f = 0; noise > 0 && f < played.markers.size(); ++f)
+    for (Eigen::Index k = 0; k < recording.markers.positions[f].size(); ++k)
+      recording.markers.positions[f].reshaped()[k] +=
+          noise * Normal(RandomBits({seed, kMarkers, f, static_cast<uint64_t>(k)}));
+  for (size_t r = 0; r < recording.object.reactions.size(); ++r) {
+    MeasuredReaction& reading = recording.object.reactions[r];
+    for (Eigen::Index k = 0; k < reading.forces.size(); ++k)
+      reading.forces.reshaped()[k] +=
+          reading.deviation * Normal(RandomBits({seed, kForces, r, static_cast<uint64_t>(k)}));
+  }
+  return recording;
+}
+
+}  // namespace lacuna
