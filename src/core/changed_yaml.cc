@@ -57,22 +57,29 @@ class Change {
  public:
   Change(const std::string& field, const YAML::Node& root) : field_(field), root_(root) {}
 
-  void Put(const YAML::Node& value) {
+  // Returns the name of the field: with the index of an item that was added.
+  std::string Put(const YAML::Node& value) {
     const std::vector<std::string> steps = StepsOf(field_);
     if (steps.empty()) Fail("is not a field name; expected e.g. mesh.max_volume or effects[0].eta");
     YAML::Node at;
     at.reset(root_);
     for (size_t k = 0; k + 1 < steps.size(); ++k) at.reset(Below(at, steps[k]));
     const std::string& last = steps.back();
+    if (last == "[+") {
+      if (!at.IsSequence()) Fail(path_ + " is not a list");
+      at.push_back(value);
+      return fmt::format("{}[{}]", field_.substr(0, field_.size() - 3), at.size() - 1);
+    }
     if (last[0] == '[') {
       const auto index = IndexIn(at, last);
       if (!index) Fail(path_ + " has no item " + last + "]");
       at[*index] = value;
-      return;
+      return field_;
     }
     if (!at.IsMap()) Fail(path_ + " is not a mapping");
     at.remove(last);
     if (!value.IsNull()) at.force_insert(last, value);
+    return field_;
   }
 
  private:
@@ -176,9 +183,10 @@ std::string ChangedYaml(const std::filesystem::path& file, const std::vector<Yam
                         const std::set<std::string>& path_keys,
                         const std::filesystem::path& folder) {
   const YamlDocument document = ParseYaml(ReadWholeFile(file), file.string());
-  for (const YamlChange& change : changes)
-    Change(change.field, *document.root).Put(ParseValue(change));
-  PathMover(document, changes, path_keys, folder).Move(*document.root, "");
+  std::vector<YamlChange> made = changes;
+  for (YamlChange& change : made)
+    change.field = Change(change.field, *document.root).Put(ParseValue(change));
+  PathMover(document, made, path_keys, folder).Move(*document.root, "");
   YAML::Emitter emitter;
   emitter << *document.root;
   return std::string(emitter.c_str()) + "\n";

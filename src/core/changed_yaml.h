@@ -11,8 +11,8 @@ namespace lacuna {
 
 // One entry to set or remove.
 struct YamlChange {
-  std::string field;           // e.g. "mesh.max_volume" or "effects[0].eta"
-  std::string value;           // YAML, e.g. "150 mm^3" or "[0, 0, 1 N]"; "~" removes the entry
+  std::string field;  // e.g. "mesh.max_volume" or "effects[0].eta"; "effects[+]" adds an item
+  std::string value;  // YAML, e.g. "150 mm^3" or "[0, 0, 1 N]"; "~" removes the entry
   std::filesystem::path file;  // the file with the change; its folder is the base of relative paths
 };
 

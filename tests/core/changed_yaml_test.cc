@@ -51,6 +51,18 @@ TEST_F(ChangedYamlTest, ReplacesAddsAndRemovesEntries) {
   EXPECT_EQ(changed.Path("scan"), folder_ / "base/pieces/mine.csv");
 }
 
+TEST_F(ChangedYamlTest, AddsItemsToLists) {
+  const Config changed =
+      Changed({{"effects[+]", "{type: gravity, scan: mine.csv}", folder_ / "data/s.yaml"},
+               {"effects[1].z", "3", "s.yaml"}});
+  const std::vector<Config> effects = changed.Items("effects");
+  ASSERT_EQ(effects.size(), 2u);
+  EXPECT_EQ(effects[0].Text("type"), "drag");
+  EXPECT_EQ(effects[1].Text("type"), "gravity");
+  EXPECT_EQ(effects[1].Text("z"), "3");
+  EXPECT_EQ(effects[1].Path("scan"), folder_ / "data/mine.csv");
+}
+
 TEST_F(ChangedYamlTest, RefusesFieldsThatCannotExist) {
   const auto refuses = [this](const std::string& field, const char* message) {
     EXPECT_THAT(
@@ -61,6 +73,7 @@ TEST_F(ChangedYamlTest, RefusesFieldsThatCannotExist) {
   };
   refuses("effects[1].eta", "effects has no item [1]");
   refuses("effects.eta", "effects is not a mapping");
+  refuses("bar[+]", "bar is not a list");
   refuses("scan.x", "scan is not a mapping");
   refuses("again.x", "again is shared by several places");
   refuses("bar..size", "is not a field name");
