@@ -22,7 +22,16 @@ int RunPlanCommand(const PlanArguments& arguments, const OutputOptions& output) 
   if (!arguments.protocols.empty()) protocols = arguments.protocols;
   const PlanRecord plan = RunPlan(arguments.run, protocols, &progress);
   if (output.json) PrintRecord(PlanFile(arguments.run));
-  if (output.PrintsText()) fmt::print("{}", output.verbose ? PlanReport(plan) : PlanSummary(plan));
+  if (output.PrintsText()) {
+    fmt::print("{}", output.verbose ? PlanReport(plan) : PlanSummary(plan));
+    if (!plan.outcomes.empty() && !plan.outcomes.front().experiment.empty()) {
+      const std::filesystem::path experiment =
+          PlanFile(arguments.run).parent_path() / plan.outcomes.front().experiment;
+      fmt::print("\nThe recording is described in {}.\nOnce it is made: lacuna fit {}\n",
+                 (experiment.parent_path() / "predicted/recording.yaml").string(),
+                 experiment.string());
+    }
+  }
   return 0;
 }
 

@@ -15,8 +15,10 @@ namespace lacuna {
 std::filesystem::path PlanFile(const std::filesystem::path& run);
 
 // Plays the stock protocols (protocol.h), those of the file `protocols` (protocol_reader.h), or
-// both, and writes plan.json. Throws InputError when the run is not fitted or not diagnosed, when
-// nothing is left to be decided, and for errors in `protocols`; Interrupted.
+// both (one of the file replaces a stock one of its name), and writes plan.json and the files of
+// the best one (planned_experiment.h). The reason why a protocol of the file cannot be played
+// begins with its position there. Throws InputError when the run is not fitted or not diagnosed,
+// when nothing is left to be decided, and for errors in `protocols`; Interrupted.
 PlanRecord RunPlan(const std::filesystem::path& run,
                    const std::optional<std::filesystem::path>& protocols, Progress* progress);
 

@@ -297,6 +297,56 @@ PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& 
   return planned;
 }
 
+namespace {
+
+// Curves of three components over time; none where nothing changes and all is 0.
+void AddCurves(const std::string& what, const std::string& unit, const Eigen::Matrix3Xd& values,
+               ProtocolPicture* picture) {
+  if (values.isZero(0)) return;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::VectorXd row = values.row(axis);
+    picture->curves.push_back({what, std::string(1, "xyz"[axis]), unit, {row.begin(), row.end()}});
+  }
+}
+
+}  // namespace
+
+ProtocolPicture PictureOf(const PlannedRecording& planned, const TetMesh& mesh,
+                          const Eigen::Vector3d& hold) {
+  constexpr Eigen::Index kPoints = 241;
+  const PredictedRecording& item = planned.item;
+  const RecordedObject& object = item.recording.object;
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(kPoints, item.recording.times.front(),
+                                                           item.recording.times.back());
+  ProtocolPicture picture;
+  picture.times.assign(times.begin(), times.end());
+  if (item.hold) picture.release = item.hold->release;
+  Eigen::Matrix3Xd path(3, kPoints), turn(3, kPoints), force(3, kPoints);
+  for (const RecordedGrip& grip : object.grips) {
+    if (grip.motion != GripMotion::kGiven) continue;
+    const Eigen::Vector3d middle =
+        mesh.nodes(Eigen::all, NodesOf(grip.region, mesh)).rowwise().mean();
+    turn.col(0).setZero();
+    for (Eigen::Index k = 0; k < kPoints; ++k) {
+      const Eigen::Isometry3d motion = MotionAt(grip, times[k]);
+      path.col(k) = motion * middle - middle;
+      turn.col(k) = RotationVectorNear(motion.linear(), turn.col(std::max<Eigen::Index>(k - 1, 0)));
+    }
+    AddCurves("path of " + grip.region.name, "m", path, &picture);
+    AddCurves("rotation of " + grip.region.name, "rad", turn, &picture);
+  }
+  for (const MeasuredForce& known : object.forces) {
+    for (Eigen::Index k = 0; k < kPoints; ++k) force.col(k) = ForceAt(known, times[k]);
+    AddCurves(known.name, "N", force, &picture);
+  }
+  if (item.hold) {
+    for (Eigen::Index k = 0; k < kPoints; ++k)
+      force.col(k) = (times[k] < item.hold->release ? 1.0 : 0.0) * hold;
+    AddCurves("force that holds", "N", force, &picture);
+  }
+  return picture;
+}
+
 Eigen::Vector3d PlannedHoldForce(const Protocol& protocol, const Eigen::Vector3d& before) {
   return protocol.pull * (RotationBy(protocol.turn) * before);
 }

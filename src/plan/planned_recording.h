@@ -8,6 +8,7 @@
 #include "geometry/tet_mesh.h"
 #include "plan/protocol.h"
 #include "prediction/prediction_study.h"
+#include "record/plan_record.h"
 
 namespace lacuna {
 
@@ -29,6 +30,11 @@ struct PlannedRecording {
 // pulls, a mass outside the object, a clamp that moves through a plane of contact.
 PlannedRecording PlanRecording(const Protocol& protocol, const PredictionStudy& study,
                                const TetMesh& mesh);
+
+// The paths and turns of the grips that move, the known forces and, with the force `hold` (N), that
+// of the hand, over time.
+ProtocolPicture PictureOf(const PlannedRecording& planned, const TetMesh& mesh,
+                          const Eigen::Vector3d& hold);
 
 // The force that holds the object until the release, N, given that of the recording `before`.
 Eigen::Vector3d PlannedHoldForce(const Protocol& protocol, const Eigen::Vector3d& before);

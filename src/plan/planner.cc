@@ -37,6 +37,7 @@ struct Influence {
   std::string message;  // why the model cannot play the protocol
   PlannedColumns columns;
   double seconds = 0;
+  ProtocolPicture picture;
 };
 
 class Planner {
@@ -129,12 +130,16 @@ Eigen::VectorXd Planner::ValuesOf(const CalibrationProblem& planned,
 
 Influence Planner::InfluenceOf(const Protocol& protocol) const {
   Influence influence;
-  PlannedRecording planned = PlanRecording(protocol, study_, run_.fitted.mesh);
+  const PlannedRecording planned = PlanRecording(protocol, study_, run_.fitted.mesh);
   influence.seconds = planned.Seconds();
   PredictionStudy study = study_;
-  study.recordings = {std::move(planned.item)};
+  study.recordings = {planned.item};
   const CalibrationProblem problem(study, run_.fitted.mesh);
   const Eigen::VectorXd values = ValuesOf(problem, protocol);
+  const Eigen::Vector3d hold = planned.item.hold
+                                   ? Eigen::Vector3d(problem.NuisanceOf(0, values).head<3>())
+                                   : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  influence.picture = PictureOf(planned, run_.fitted.mesh, hold);
 
   std::vector<MisfitDirection> directions;
   for (const WeighedHypothesis& hypothesis : now_.hypotheses) {
@@ -251,6 +256,7 @@ PlannedOutcome Planner::Play(const Protocol& protocol) const {
   }
   outcome.seconds = influence.seconds;
   outcome.message = influence.message;
+  outcome.picture = std::move(influence.picture);
   if (outcome.IsPlayable()) Predict(JoinedSpace(now_, influence.columns), &outcome);
   return outcome;
 }

@@ -18,6 +18,18 @@ constexpr int kSchemaVersion = 1;
 // Recordings whose probabilities of a right name differ by less count as equally good.
 constexpr double kNoticeable = 0.05;
 
+json PictureToJson(const ProtocolPicture& picture) {
+  json curves = json::array();
+  for (const ProtocolCurve& curve : picture.curves)
+    curves.push_back({{"what", curve.what},
+                      {"component", curve.component},
+                      {"unit", curve.unit},
+                      {"values", curve.values}});
+  return {{"times_s", picture.times},
+          {"release_s", picture.release ? json(*picture.release) : json()},
+          {"curves", curves}};
+}
+
 json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival>& rivals) {
   json named = json::object(), pairs = json::array(), sizes = json::array();
   for (size_t k = 0; k < outcome.named.size(); ++k) named[rivals[k].effect] = outcome.named[k];
@@ -41,6 +53,7 @@ json OutcomeToJson(const PlannedOutcome& outcome, const std::vector<PlannedRival
           {"probability", outcome.probability},
           {"pairs", pairs},
           {"sizes", sizes},
+          {"protocol", PictureToJson(outcome.picture)},
           {"experiment", outcome.experiment}};
 }
 

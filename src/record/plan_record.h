@@ -8,6 +8,7 @@
 #define LACUNA_RECORD_PLAN_RECORD_H_
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,19 @@ struct PlannedSize {
   double value = 0, half_width_now = 0, half_width_then = 0;
 };
 
+// What is done to the object over time.
+struct ProtocolCurve {
+  std::string what;       // "path of the clamp", "force of the hand"
+  std::string component;  // "x"; empty for a scalar
+  std::string unit;       // SI
+  std::vector<double> values;
+};
+struct ProtocolPicture {
+  std::vector<double> times;      // s; empty: nothing is known to change
+  std::optional<double> release;  // s
+  std::vector<ProtocolCurve> curves;
+};
+
 // What a planned recording would tell.
 struct PlannedOutcome {
   std::string name;                // of the protocol
@@ -45,6 +59,7 @@ struct PlannedOutcome {
   double probability = 0;          // of the right name, rivals weighted by their probability
   std::vector<PlannedPair> pairs;  // of rivals
   std::vector<PlannedSize> sizes;
+  ProtocolPicture picture = {};
   std::string experiment;  // the YAML file that was written, relative to plan.json
 
   bool IsPlayable() const { return message.empty(); }

@@ -46,6 +46,38 @@ std::string Question(const PlanRecord& plan) {
   return text;
 }
 
+std::string WhyNot(const PlanRecord& plan) {
+  std::string reasons;
+  for (const PlannedOutcome& outcome : plan.outcomes)
+    if (!outcome.IsPlayable())
+      reasons +=
+          "\n" + Wrapped(fmt::format("\"{}\" cannot be made: {}", outcome.name, outcome.message),
+                         "", "  ");
+  return reasons;
+}
+
+// The pairs of rivals that no recording tells apart, with the largest λ that one reaches.
+std::string Inseparable(const PlanRecord& plan) {
+  std::vector<std::string> pairs;
+  const std::vector<PlannedPair>& all = plan.outcomes.front().pairs;
+  const auto title = [&](const std::string& effect) {
+    for (const PlannedRival& rival : plan.rivals)
+      if (rival.effect == effect) return rival.title;
+    return effect;
+  };
+  for (size_t k = 0; k < all.size(); ++k) {
+    double largest = 0;
+    for (const PlannedOutcome& outcome : plan.outcomes)
+      if (outcome.IsPlayable()) largest = std::max(largest, outcome.pairs[k].lambda_then);
+    if (largest < kSeparableLambda)
+      pairs.push_back(fmt::format("{} and {} (λ at most {:.2g})", title(all[k].first),
+                                  title(all[k].second), largest));
+  }
+  if (pairs.empty()) return "";
+  return fmt::format(" None of them tells apart {}; λ = {:g} is needed.", Joined(pairs),
+                     kSeparableLambda);
+}
+
 std::string Advice(const PlanRecord& plan) {
   if (plan.outcomes.empty() || !plan.outcomes.front().IsPlayable())
     return "The model can play none of these recordings.";
@@ -57,9 +89,9 @@ std::string Advice(const PlanRecord& plan) {
   if (best.probability < kWorthMaking)
     return fmt::format(
         "None of the {} recordings that were tried is likely to decide it. The best, "
-        "{} ({:.2g} s), would lead to the right name in {} of cases: {}.",
-        plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability),
-        Joined(named));
+        "{} ({:.2g} s), would lead to the right name in {} of cases: {}.{}",
+        plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability), Joined(named),
+        Inseparable(plan));
   return fmt::format(
       "Record next: {} ({:.2g} s). With it the right name is expected in {} of "
       "cases: {}.",
@@ -98,7 +130,15 @@ std::string Sizes(const PlannedOutcome& best) {
 }  // namespace
 
 std::string PlanSummary(const PlanRecord& plan) {
-  return Wrapped(Question(plan), "", "") + Wrapped(Advice(plan), "", "");
+  std::string text = Wrapped(Question(plan), "", "") + Wrapped(Advice(plan), "", "");
+  if (plan.outcomes.empty() || !plan.outcomes.front().IsPlayable()) return text + WhyNot(plan);
+  const auto failed = std::count_if(plan.outcomes.begin(), plan.outcomes.end(),
+                                    [](const auto& outcome) { return !outcome.IsPlayable(); });
+  if (failed > 0)
+    text += Wrapped(fmt::format("{} of {} recordings cannot be made; --verbose says why.", failed,
+                                plan.outcomes.size()),
+                    "", "");
+  return text;
 }
 
 std::string PlanReport(const PlanRecord& plan) {
@@ -113,11 +153,8 @@ std::string PlanReport(const PlanRecord& plan) {
     text +=
         "\nExpected 95 % intervals with the best recording, if the effect is the missing one:\n" +
         Sizes(plan.outcomes.front());
-  for (const PlannedOutcome& outcome : plan.outcomes)
-    if (!outcome.IsPlayable())
-      text += "\n" + Wrapped(fmt::format("{} cannot be made: {}", outcome.name, outcome.message),
-                             "", "  ");
-  return text;
+  const bool are_said = plan.outcomes.empty() || !plan.outcomes.front().IsPlayable();
+  return are_said ? text : text + WhyNot(plan);
 }
 
 }  // namespace lacuna

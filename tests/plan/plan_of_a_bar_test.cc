@@ -12,6 +12,8 @@
 #include "diagnosis/diagnosis_run.h"
 #include "plan/plan_run.h"
 #include "plan/planner.h"
+#include "prediction/played_recording.h"
+#include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "report/plan_report.h"
 #include "support/held_bar.h"
@@ -22,6 +24,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 ProgressOptions Silent() {
   ProgressOptions silent;
@@ -61,6 +64,50 @@ class PlanOfABar : public ::testing::Test {
     protocol.name = name;
     protocol.recording = OpenRun(Run()).study.recordings.front().name;
     return protocol;
+  }
+
+  // The files of the best recording: it can be played, and the fit takes it once it is there.
+  void ExpectPlayable(const PlanRecord& plan) const {
+    const std::filesystem::path experiment =
+        PlanFile(Run()).parent_path() / plan.outcomes.front().experiment;
+    const std::filesystem::path folder = experiment.parent_path();
+    const PredictionStudy protocol = ReadPredictionStudy(Config::Load(folder / "protocol.yaml"));
+    ASSERT_EQ(protocol.recordings.size(), 1u);
+    const PredictedRecording& item = protocol.recordings.front();
+    const TetMesh mesh = MakeReferenceBody(protocol).mesh;
+    EXPECT_EQ(mesh.nodes, OpenRun(Run()).mesh.nodes);
+    const auto body = std::make_shared<const Body>(MakeBody(mesh, protocol.density));
+    const RecordingModel model(protocol, item, mesh, body, {});
+    const PlayedRecording played = Play(model, PlayedNuisances(model));
+    ASSERT_TRUE(played.summary.IsUsable());
+    for (size_t f = 0; f < played.markers.size(); ++f)  // written with nine decimals
+      EXPECT_LT((played.markers[f] - item.recording.markers.positions[f]).norm(), 1e-7) << f;
+
+    EXPECT_THAT([&] { ReadPredictionStudy(Config::Load(experiment)); },
+                ThrowsMessage<InputError>(HasSubstr("measured")));
+    std::filesystem::copy(folder / "predicted", folder / "measured");
+    const PredictionStudy joint = ReadPredictionStudy(Config::Load(experiment));
+    ASSERT_EQ(joint.recordings.size(), 2u);
+    EXPECT_EQ(joint.recordings[1].name, plan.outcomes.front().name);
+    EXPECT_EQ(joint.name, "bar+" + plan.outcomes.front().name);
+    EXPECT_EQ(std::filesystem::weakly_canonical(joint.output),
+              std::filesystem::weakly_canonical(folder_ / joint.name));
+    EXPECT_EQ(joint.recordings[0].name, OpenRun(Run()).study.recordings.front().name);
+  }
+
+  // A mass beside the object.
+  void ExpectFailuresAreSaid() const {
+    std::ofstream(folder_ / "bad.yaml")
+        << "schema_version: 1\nstock: false\nprotocols:\n"
+           "  - {name: away, weight: {mass: 1 g, place: [1 m, 0 m, 0 m], radius: 1 cm}}\n";
+    Progress silent(Silent());
+    const PlanRecord plan = RunPlan(Run(), folder_ / "bad.yaml", &silent);
+    ASSERT_EQ(plan.outcomes.size(), 1u);
+    EXPECT_THAT(plan.outcomes[0].message, HasSubstr("bad.yaml:4:"));
+    EXPECT_THAT(plan.outcomes[0].message, HasSubstr("away from the object"));
+    EXPECT_EQ(plan.outcomes[0].experiment, "");
+    EXPECT_THAT(PlanSummary(plan), HasSubstr("The model can play none of these recordings."));
+    EXPECT_THAT(PlanSummary(plan), HasSubstr("away from the object"));
   }
 
   TemporaryFolder folder_;
@@ -126,6 +173,9 @@ TEST_F(PlanOfABar, PrefersWhatPartsTheRivals) {
   EXPECT_THAT(text, HasSubstr("The diagnosis cannot tell apart"));
   EXPECT_THAT(text, HasSubstr("3 times the pull"));
   EXPECT_THAT(text, HasSubstr("least λ"));
+
+  ExpectPlayable(kept);
+  ExpectFailuresAreSaid();
 }
 
 }  // namespace

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "plan/planned_bar.h"
+#include "report/plan_report.h"
 
 namespace lacuna {
 namespace {
@@ -57,6 +60,27 @@ TEST(MakePlan, SaysThatNothingIsLeftToBeDecided) {
   } catch (const InputError& problem) {
     EXPECT_THAT(problem.what(), HasSubstr("has left no rivals"));
   }
+}
+
+// Two recordings of which neither separates the rivals.
+TEST(PlanSummary, NamesRivalsThatNoRecordingSeparates) {
+  PlanRecord plan;
+  plan.rivals = {{"one", "the first loss", 0.6, 0.01}, {"two", "the second loss", 0.4, 0.01}};
+  for (const double lambda : {3.25, 1.5}) {
+    PlannedOutcome& outcome = plan.outcomes.emplace_back();
+    outcome.what = "\"bar\" once more";
+    outcome.named = {0.1, 0.2};
+    outcome.probability = 0.14;
+    outcome.pairs = {{"one", "two", 0.5, lambda}};
+  }
+  EXPECT_FALSE(plan.IsSeparable());
+  std::string text = PlanSummary(plan);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  EXPECT_THAT(text, HasSubstr("None of them tells apart the first loss and the second loss (λ at "
+                              "most 3.2); λ = 12 is needed."));
+  plan.outcomes.back().pairs[0].lambda_then = 15;
+  EXPECT_TRUE(plan.IsSeparable());
+  EXPECT_THAT(PlanSummary(plan), ::testing::Not(HasSubstr("None of them tells")));
 }
 
 }  // namespace
