@@ -168,6 +168,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.errors = ErrorsOf(problem, fitted, &ranking.misfit);
   diagnosis.scored = ranking.variants;
   diagnosis.untried = std::move(ranking.untried);
+  diagnosis.agreement = ranking.agreement;
 
   const BaselineModel model{problem,          fitted,       ranking.misfit,
                             setting.progress, setting.kept, ranking.noise};

@@ -11,6 +11,7 @@
 #include "diagnosis/decision_input.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/effect_refit.h"
+#include "record/agreement_record.h"
 #include "record/decision_record.h"
 #include "record/verdict.h"
 
@@ -56,6 +57,7 @@ struct Diagnosis : Conclusion {
   int scored = 0;  // number of effects and variants
   DecisionInput decision_input;
   DecisionRecord decision;
+  AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the baseline model, and of the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;

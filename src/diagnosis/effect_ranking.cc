@@ -11,6 +11,7 @@
 
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
+#include "diagnosis/recording_agreement.h"
 #include "diagnosis/thresholds.h"
 #include "diagnosis/unknown_force.h"
 
@@ -97,6 +98,7 @@ class HypothesisRanking {
     return SelectionPenalty(entry.variants.size()) + SelectionPenalty(entries_.size());
   }
 
+  const CalibrationProblem& problem_;
   const Eigen::VectorXd values_;
   const Eigen::Index known_;  // number of the problem's parameters
   const DecidedBase* const decided_;
@@ -116,7 +118,8 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
                                      const Eigen::VectorXd& values,
                                      const std::vector<std::string>& without,
                                      const SceneColumns& known, const DecidedBase* decided)
-    : values_(values),
+    : problem_(problem),
+      values_(values),
       known_(static_cast<Eigen::Index>(problem.parameters().size())),
       decided_(decided) {
   const PredictionStudy study = problem.StudyAt(values);  // candidates take moduli from its effects
@@ -355,6 +358,8 @@ EffectRanking HypothesisRanking::Rank() && {
   ranking_.tried = Tried();
   ranking_.space = SpaceBeside(misfit_, hypotheses_.columns(Eigen::all, base_), PriorsOfBase(),
                                ranking_, "", ranking_.noise);
+  ranking_.agreement =
+      CompareRecordings(problem_, values_, misfit_, ranking_.adopted, ranking_.noise);
   misfit_.jacobian.resize(0, 0);
   ranking_.misfit = std::move(misfit_);
   return std::move(ranking_);

@@ -26,6 +26,7 @@
 #include "diagnosis/pilot_hypotheses.h"
 #include "diagnosis/scene_columns.h"
 #include "diagnosis/scored_effect.h"
+#include "record/agreement_record.h"
 
 namespace lacuna {
 
@@ -48,6 +49,7 @@ struct EffectRanking {
   HypothesisSpace space;          // of all hypotheses beside the parameters and adopted nuisances
   int variants = 0;               // number of variants scored
   SceneColumns scene;             // for further rankings
+  AgreementRecord agreement;      // of the recordings, along the fitted motion
 };
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of

@@ -61,6 +61,7 @@ DiagnosisRecord RecordOf(const Diagnosis& diagnosis) {
                   diagnosis.noise_level.variance};
   record.time_step = diagnosis.time_step;
   record.decision = diagnosis.decision;
+  record.agreement = diagnosis.agreement;
   record.baseline_rms_over_sigma = diagnosis.baseline_rms_over_sigma;
   record.best_rms_over_sigma = diagnosis.best_rms_over_sigma;
   record.errors = diagnosis.errors;

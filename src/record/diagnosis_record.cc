@@ -178,6 +178,7 @@ json ToJson(const DiagnosisRecord& record) {
               {"noise_variance_factor", record.noise.variance_factor},
               {"time_step_s", record.time_step},
               {"decision", DecisionToJson(record.decision)},
+              {"agreement", AgreementToJson(record.agreement)},
               {"baseline_rms_over_sigma", record.baseline_rms_over_sigma},
               {"best_rms_over_sigma", record.best_rms_over_sigma},
               {"has_held_out", record.errors.has_held_out},
@@ -201,6 +202,8 @@ DiagnosisRecord FromJson(const json& value) {
                   value.at("noise_correlation_time_s"), value.at("noise_variance_factor")};
   record.time_step = value.at("time_step_s");
   record.decision = DecisionFromJson(value.at("decision"));
+  if (value.contains("agreement"))  // diagnoses of earlier versions have none
+    record.agreement = AgreementFromJson(value.at("agreement"));
   record.baseline_rms_over_sigma = value.at("baseline_rms_over_sigma");
   record.best_rms_over_sigma = value.at("best_rms_over_sigma");
   const bool has_held_out = value.at("has_held_out");

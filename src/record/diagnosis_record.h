@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "record/agreement_record.h"
 #include "record/decision_record.h"
 #include "record/model_errors.h"
 #include "record/verdict.h"
@@ -98,8 +99,9 @@ struct RecordedAlternatives {
 
 struct DiagnosisRecord : Conclusion {
   RecordedNoise noise;
-  double time_step = 0;     // s, of the simulations
-  DecisionRecord decision;  // what the verdict follows from
+  double time_step = 0;       // s, of the simulations
+  DecisionRecord decision;    // what the verdict follows from
+  AgreementRecord agreement;  // of the recordings about the parameters of the fitted model
   // Over all frames, with the adopted nuisances at their best: of the model as it is, and of the
   // best hypothesis.
   double baseline_rms_over_sigma = 0, best_rms_over_sigma = 0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/text_layout.h"
+#include "report/agreement_text.h"
 #include "report/verdict_text.h"
 
 namespace lacuna {
@@ -196,6 +197,11 @@ std::string PowerTable(const DecisionRecord& decision) {
   return text;
 }
 
+std::string AgreementLines(const AgreementRecord& agreement) {
+  if (agreement.recordings.empty()) return "";
+  return "\n" + AgreementTable(agreement) + Paragraph(ExplainAgreement(agreement));
+}
+
 std::string DetectableTable(const DiagnosisRecord& diagnosis) {
   std::string text = "\n  Smallest size that these recordings would reveal\n";
   for (const RecordedEffect& effect : diagnosis.ranking) {
@@ -245,6 +251,7 @@ std::string DiagnosisReport(const DiagnosisRecord& diagnosis, const std::filesys
   text += NuisanceTable(diagnosis);
   text += AlternativesTable(diagnosis);
   text += PowerTable(diagnosis.decision);
+  text += AgreementLines(diagnosis.agreement);
   if (diagnosis.verdict == Verdict::kAdequate || diagnosis.verdict == Verdict::kNoPower)
     text += DetectableTable(diagnosis);
   const std::string next = WhatNext(diagnosis, run);

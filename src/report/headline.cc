@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "record/ledger.h"
+#include "report/agreement_text.h"
 #include "report/quantity_text.h"
 #include "report/verdict_text.h"
 
@@ -195,6 +196,11 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     const bool is_last = k + 1 == models.size();
     if (!verdict.empty() && (is_last || models[k].diagnosis)) sentences.push_back(verdict);
   }
+  const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
+    return model.diagnosis.has_value();
+  });
+  if (last != models.rend() && last->diagnosis->agreement.Disagree())
+    sentences.push_back(ExplainAgreement(last->diagnosis->agreement));
   return sentences;
 }
 

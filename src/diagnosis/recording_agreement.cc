@@ -1,0 +1,169 @@
+#include "diagnosis/recording_agreement.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "analysis/agreement.h"
+
+namespace lacuna {
+namespace {
+
+bool HaveSameMarkers(const PredictedRecording& a, const PredictedRecording& b) {
+  const Markers &first = a.recording.markers, &second = b.recording.markers;
+  return a.scans == nullptr && b.scans == nullptr && first.names == second.names &&
+         first.places.cols() == second.places.cols() && first.places == second.places;
+}
+
+// Whether the markers of another fitted recording sit where those of `r` do.
+bool SharesMarkers(const CalibrationProblem& problem, size_t r) {
+  const std::vector<RecordingModel>& models = problem.models();
+  if (models[r].Markers() == nullptr || models[r].PointCount() > kMostSharedMarkers) return false;
+  for (size_t other = 0; other < models.size(); ++other)
+    if (other != r && models[other].item().fitted &&
+        HaveSameMarkers(models[r].item(), models[other].item()))
+      return true;
+  return false;
+}
+
+// The errors of the markers' places as columns: for each place, in each of its rows the deformation
+// gradient of the frame. Recordings with the same markers have the same columns.
+struct PlaceErrors {
+  Eigen::MatrixXd columns;
+  std::vector<LinearPrior> priors;
+};
+
+PlaceErrors ErrorsOfPlaces(const CalibrationProblem& problem, LinearisedMisfit* misfit) {
+  PlaceErrors errors;
+  std::vector<std::pair<size_t, Eigen::Index>> groups;  // a recording of each, its first column
+  errors.columns.resize(misfit->residual.size(), 0);
+  for (LinearisedMisfit::Part& part : misfit->parts) {
+    if (!part.IsOfPoints() || part.errors.common == 0 || !SharesMarkers(problem, part.recording))
+      continue;
+    const Eigen::Index components = part.layout.series;
+    Eigen::Index first = -1;
+    for (const auto& [recording, column] : groups)
+      if (HaveSameMarkers(problem.models()[recording].item(),
+                          problem.models()[part.recording].item()))
+        first = column;
+    if (first < 0) {
+      first = errors.columns.cols();
+      groups.emplace_back(part.recording, first);
+      errors.columns.conservativeResize(Eigen::NoChange, first + components);
+      errors.columns.rightCols(components).setZero();
+      errors.priors.insert(errors.priors.end(), static_cast<size_t>(components),
+                           {0, part.errors.common, false});
+    }
+    for (size_t frame = 0; frame < part.layout.times.size(); ++frame) {
+      for (Eigen::Index point = 0; point < components / 3; ++point) {
+        const size_t at = frame * static_cast<size_t>(components / 3) + static_cast<size_t>(point);
+        if (part.layout.count[3 * at] == 0) continue;
+        const Eigen::Index row = part.first_row + 3 * static_cast<Eigen::Index>(at);
+        errors.columns.block<3, 3>(row, first + 3 * point) = part.layout.deformation.empty()
+                                                                 ? Eigen::Matrix3d::Identity()
+                                                                 : part.layout.deformation[at];
+      }
+    }
+    part.errors.common = 0;
+  }
+  return errors;
+}
+
+// A change of a parameter, in its own unit, that would matter to the user.
+Eigen::VectorXd TypicalChanges(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                               Eigen::Index of_model) {
+  Eigen::VectorXd typical(of_model);
+  for (Eigen::Index k = 0; k < of_model; ++k) {
+    const CalibratedParameter& parameter = problem.parameters()[static_cast<size_t>(k)];
+    typical[k] = parameter.typical * (parameter.log_scale ? values[k] : 1);
+  }
+  return typical;
+}
+
+// The columns of the problem's parameters that belong to this recording alone.
+std::vector<Eigen::Index> OwnParameters(const CalibrationProblem& problem, size_t recording) {
+  Eigen::Index next = static_cast<Eigen::Index>(problem.study().fitted.size());
+  for (size_t r = 0; r < problem.models().size(); ++r) {
+    if (!problem.models()[r].item().fitted) continue;
+    std::vector<Eigen::Index> own;
+    for (size_t k = 0; k < problem.models()[r].nuisances().size(); ++k) own.push_back(next++);
+    if (r == recording) return own;
+  }
+  return {};
+}
+
+}  // namespace
+
+AgreementRecord CompareRecordings(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                                  const LinearisedMisfit& linearised,
+                                  const AdoptedNuisances& nuisances, const NoiseLevel& noise) {
+  AgreementRecord record;
+  const Eigen::Index of_model = static_cast<Eigen::Index>(problem.study().fitted.size());
+  std::vector<size_t> fitted;
+  for (size_t r = 0; r < problem.models().size(); ++r)
+    if (problem.models()[r].item().fitted) fitted.push_back(r);
+  if (fitted.size() < 2 || of_model == 0) return record;
+
+  LinearisedMisfit misfit;
+  misfit.residual = linearised.residual;
+  misfit.parts = linearised.parts;
+  const PlaceErrors places = ErrorsOfPlaces(problem, &misfit);
+  const auto whiten = [&](const Eigen::MatrixXd& rows) {
+    return WhitenedRows(rows, misfit, noise.correlation_time, /*fitted_only=*/true);
+  };
+  const Eigen::VectorXd residual = whiten(misfit.residual);
+  const Eigen::MatrixXd parameters =
+      whiten(linearised.jacobian.leftCols(static_cast<Eigen::Index>(problem.parameters().size())));
+  Eigen::MatrixXd shared(residual.size(), nuisances.columns.cols() + places.columns.cols());
+  shared << nuisances.columns, places.columns;
+  shared = whiten(shared);
+  std::vector<LinearPrior> shared_priors = nuisances.priors;
+  shared_priors.insert(shared_priors.end(), places.priors.begin(), places.priors.end());
+  const std::vector<LinearPrior> priors = PriorsAbout(problem.parameters(), values);
+
+  std::vector<RecordingRows> recordings;
+  for (const size_t r : fitted) {
+    std::vector<Eigen::Index> rows;
+    for (const LinearisedMisfit::Part& part : misfit.parts)
+      if (part.recording == r)
+        for (Eigen::Index row = 0; row < part.layout.Rows(); ++row)
+          rows.push_back(part.first_row + row);
+    const std::vector<Eigen::Index> own = OwnParameters(problem, r);
+    RecordingRows& recording = recordings.emplace_back();
+    recording.residual = residual(rows);
+    recording.parameters = parameters.leftCols(of_model)(rows, Eigen::all);
+    recording.own = parameters(rows, own);
+    for (const Eigen::Index column : own)
+      recording.own_priors.push_back(priors[static_cast<size_t>(column)]);
+    recording.shared = shared(rows, Eigen::all);
+    record.recordings.push_back(problem.models()[r].item().name);
+  }
+  const AgreementTest test = TestAgreement(
+      recordings, shared_priors, TypicalChanges(problem, values, of_model), noise.variance);
+  record.chi_square = test.chi_square;
+  record.degrees_of_freedom = test.degrees_of_freedom;
+  record.p_value = test.p_value;
+  for (Eigen::Index k = 0; k < of_model; ++k) {
+    const CalibratedParameter& prior = problem.parameters()[static_cast<size_t>(k)];
+    ParameterOfRecordings parameter;
+    parameter.name = prior.name;
+    parameter.unit = problem.UnitOf(static_cast<size_t>(k));
+    parameter.p_value = test.p_values[k];
+    for (Eigen::Index i = 0; i < test.change.cols(); ++i) {
+      const double change = test.change(k, i);
+      const double factor = prior.log_scale ? std::exp(change / values[k]) : 1;
+      parameter.values.push_back(prior.log_scale ? values[k] * factor : values[k] + change);
+      parameter.deviations.push_back(test.deviation(k, i) * factor);
+    }
+    if (fitted.size() > 2) {
+      Eigen::Index odd = 0;
+      test.odd.row(k).maxCoeff(&odd);
+      parameter.odd_recording = record.recordings[static_cast<size_t>(odd)];
+    }
+    record.parameters.push_back(std::move(parameter));
+  }
+  return record;
+}
+
+}  // namespace lacuna
