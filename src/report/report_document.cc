@@ -99,6 +99,7 @@ json ModelDocument(const ReportedModel& model, size_t index) {
           {"calibration", file(true, "calibration/calibration.json")},
           {"comparison", file(model.comparison.has_value(), "comparison/comparison.json")},
           {"diagnosis", file(model.diagnosis.has_value(), "diagnosis/diagnosis.json")},
+          {"plan", file(fs::exists(model.folder / "plan/plan.json"), "plan/plan.json")},
           {"scenes", SceneDocuments(model)}};
 }
 

@@ -268,6 +268,31 @@ function decision(isSecond) {
   };
 }
 
+function agreement(isSecond) {
+  return {
+    recordings: ['recording 1', 'recording 2'], chi_square: isSecond ? 1.3 : 21.4, degrees_of_freedom: 2, p_value: isSecond ? 0.52 : 2.2e-5,
+    parameters: [{ name: 'young_modulus', unit: 'Pa', values: [1.09e5, isSecond ? 1.095e5 : 1.21e5], deviations: [900, 1100], p_value: isSecond ? 0.6 : 6e-6, odd_recording: '' },
+                 { name: 'poisson_ratio', unit: '', values: [0.42, 0.46], deviations: [0.01, null], p_value: 1, odd_recording: '' }],
+  };
+}
+
+// A plan in which a shaken clamp decides between two losses.
+function plan() {
+  const rival = (effect, title, probability) => ({ effect, title, probability, named_now: 0.02 });
+  const times = Array.from({ length: 61 }, (_, k) => 0.01 * k);
+  const curve = (component, values) => ({ what: 'path of clamp', component, unit: 'm', values });
+  const protocol = { times_s: times, release_s: 0.1037, curves: [curve('x', times.map(() => 0)), curve('z', times.map((t) => (t > 0.1037 ? 0.0025 * Math.sin(60 * (t - 0.1037)) ** 2 : 0))),
+    { what: 'force that holds', component: 'y', unit: 'N', values: times.map((t) => (t < 0.1037 ? 0.05 : 0)) }] };
+  const outcome = (name, what, drag, mass, lambda, seconds) => ({ name, what, seconds, message: '', named: { drag, mass_damping: mass }, probability: 0.52 * drag + 0.48 * mass, protocol, experiment: '',
+    pairs: [{ first: 'drag', second: 'mass_damping', lambda_now: 0.1, lambda_then: lambda }], sizes: [{ effect: 'drag', parameter: 'coefficient', unit: 'kg/m', value: 0.4, half_width_now: 0.3, half_width_then: 0.06 }] });
+  return {
+    schema_version: 1, run: 'bar', verdict: 'ambiguous', rivals: [rival('drag', 'drag of the surrounding medium', 0.52), rival('mass_damping', 'mass-proportional damping', 0.48)],
+    also_left: [], not_predicted: ['plane_contact'], is_separable: true,
+    outcomes: [outcome('shake along z', '"bar" with clamp shaken by 2.546 mm along z at 19.4 Hz', 1, 0.99, 25.9, 0.25), outcome('repeat', '"bar" once more', 0.02, 0, 0.12, 0.25),
+      { name: 'turn about x', what: '', seconds: 0, message: 'at 0 s clamp would be 2 mm behind the plane of contact', named: {}, probability: 0, pairs: [], sizes: [], protocol: { times_s: [], release_s: null, curves: [] }, experiment: '' }],
+  };
+}
+
 function diagnosis(isSecond, errors) {
   const ranking = isSecond ? [effect('strain_stiffening', 'Strain stiffening', 12, 2e3, 'Pa', { refit: { evidence: 14.5, heldOut: 2.02e-4, ratio: 1.2 }, expected: 1.2 })] : [
     effect('viscoelastic_branch', 'Viscoelastic branch (Maxwell element of a Prony series)', 8459.7, 2.85e4, 'Pa', { absorbed: 0.96, expected: 1.4, variant: 'τ = 0.08 s', experiment: 'Hold a constant strain: the force of a branch relaxes', refit: { evidence: 9357, heldOut: 2.37e-4, ratio: 1.2, others: [{ parameter: 'relaxation_time', unit: 's', ...interval(0.0428, 0.0017) }] } }),
@@ -284,7 +309,7 @@ function diagnosis(isSecond, errors) {
     nuisances: [{ nuisance: 'mesh', what: 'elements that are too coarse', advice: 'refine the mesh', evidence: 10958.3, refitted_evidence: null, explained_share: 0.46, adopted: true, evidence_uncertainty: 3 },
                 { nuisance: 'time_jitter', what: 'the times of single frames of recording 1', advice: 'check the clock', evidence: 3314.1, refitted_evidence: 120, explained_share: 0.37, adopted: false, evidence_uncertainty: 0 },
                 { nuisance: 'clock', what: 'the clock of recording 1', advice: 'check the clock', evidence: -2, refitted_evidence: null, explained_share: 0, adopted: false, evidence_uncertainty: 0 }],
-    ranking, untried: [{ effect: 'plane_contact', why: 'the predicted body crosses no plane that the measured one stays behind' }], alternatives: { effects: [], nuisances_evidence: 0, rms_over_sigma_without_both: 0 },
+    agreement: agreement(isSecond), ranking, untried: [{ effect: 'plane_contact', why: 'the predicted body crosses no plane that the measured one stays behind' }], alternatives: { effects: [], nuisances_evidence: 0, rms_over_sigma_without_both: 0 },
   };
 }
 
@@ -292,7 +317,7 @@ function makeModel(name, motion, isSecond, options) {
   const scenes = (options.recordings ?? ['recording 1', 'recording 2']).map((recording, k) => makeScene(recording, { ...motion, frequency: motion.frequency + 0.05 * k }, { ...options, seed: k + 1 }));
   const errors = errorsOf(scenes);
   return { name, added: isSecond ? 'viscoelastic_branch' : '', label: isSecond ? 'with viscoelastic_branch' : 'the model as it is', errors,
-           calibration: calibration(isSecond), comparison: comparison(scenes, isSecond), diagnosis: diagnosis(isSecond, errors), scenes };
+           calibration: calibration(isSecond), comparison: comparison(scenes, isSecond), diagnosis: diagnosis(isSecond, errors), plan: isSecond ? null : plan(), scenes };
 }
 
 function withoutMeasures(data) {
@@ -356,6 +381,8 @@ export function hostileReport() {
     model.diagnosis.decision.probabilities[0].names = [HOSTILE];
     model.diagnosis.decision.separations[0].first = HOSTILE;
     model.diagnosis.nuisances[0].what = HOSTILE;
+    model.diagnosis.agreement.recordings[0] = model.diagnosis.agreement.parameters[0].name = HOSTILE;
+    if (model.plan) model.plan.outcomes[0].what = model.plan.rivals[0].title = model.plan.outcomes[0].protocol.curves[0].what = HOSTILE;
     model.comparison.notes = [HOSTILE];
     model.comparison.recordings[0].name = HOSTILE;
     model.comparison.recordings[0].point_names[0] = HOSTILE;

@@ -277,10 +277,10 @@ test('parts without data are left out', async () => {
 
 test('every part is there when its data is', async () => {
   const full = await open(fixture('full'));
-  for (const id of ['errors', 'force', 'physics', 'parameters', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);
+  for (const id of ['errors', 'force', 'physics', 'plan', 'parameters', 'agreement', 'validation', 'provenance']) assert.equal(await full.page.locator(`#${id}`).count(), 1, id);
   const text = await full.page.locator('main').textContent();
   for (const part of ['Error over time', 'Position of', 'Load against displacement', 'Against speed', 'Against distance from the grip', 'Torque', 'Power', 'Effects that were tried', 'Which pairs these recordings can separate',
-                      'What such recordings would have said', 'traded off with young_modulus', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
+                      'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
   await full.close();
   const study = await open(fixture('study'));
   for (const id of ['reconstruction', 'table1', 'ablation', 'trials']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);
