@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "record/effect_card.h"
 #include "record/ledger.h"
 #include "report/agreement_text.h"
 #include "report/quantity_text.h"
@@ -17,6 +18,8 @@ namespace {
 
 // A statement that is at least this probable is more likely true than not.
 constexpr double kLikely = 0.5;
+// A fall of the error that is not rounded to 0 %.
+constexpr double kSmallestFall = 0.005;
 
 std::string Lengths(const ModelErrors& errors) {
   return fmt::format("{}, {:.1f} times the noise", Millimetres(errors.held_out_rms),
@@ -46,6 +49,11 @@ WorstPart FindWorst(const ComparisonRecord& comparison, bool held_out) {
   return worst;
 }
 
+// "recording 1", or "recording fast" of one that is called "fast".
+std::string Recording(const ComparedRecording& recording) {
+  return (recording.name.starts_with("recording") ? "" : "recording ") + recording.name;
+}
+
 // Where and when the error is largest, after a semicolon; empty where it was not compared.
 std::string WhereAndWhen(const ReportedModel& model) {
   if (!model.comparison || model.errors.rms_over_sigma < kBeyondNoise) return "";
@@ -58,7 +66,7 @@ std::string WhereAndWhen(const ReportedModel& model) {
                                                               : std::to_string(point));
   if (const auto& period = worst.part->worst_period)
     text += fmt::format(" and from {:.3g} s to {:.3g} s", period->from, period->to);
-  if (model.comparison->recordings.size() > 1) text += " of " + worst.recording->name;
+  if (model.comparison->recordings.size() > 1) text += " of " + Recording(*worst.recording);
   return text;
 }
 
@@ -75,11 +83,18 @@ std::string NextStep(const DiagnosisRecord& diagnosis) {
   return steps.empty() ? "" : " To decide: " + steps + (steps.ends_with('.') ? "" : ".");
 }
 
-// The probability that exactly this is what is missing; NaN where the record has none.
-double ProbabilityOf(const DecisionRecord& decision, const std::vector<std::string>& names) {
+// The hypothesis that exactly this is what is missing; null where the record has none.
+const HypothesisProbability* FindHypothesis(const DecisionRecord& decision,
+                                            const std::vector<std::string>& names) {
   for (const HypothesisProbability& one : decision.probabilities)
-    if (one.names == names) return one.probability;
-  return kNotMeasured;
+    if (one.names == names) return &one;
+  return nullptr;
+}
+
+// Its probability; NaN where the record has none.
+double ProbabilityOf(const DecisionRecord& decision, const std::vector<std::string>& names) {
+  const HypothesisProbability* found = FindHypothesis(decision, names);
+  return found == nullptr ? kNotMeasured : found->probability;
 }
 
 std::string WithProbability(const DiagnosisRecord& diagnosis, const std::string& name) {
@@ -89,12 +104,16 @@ std::string WithProbability(const DiagnosisRecord& diagnosis, const std::string&
 }
 
 std::string MissingSentence(const DiagnosisRecord& diagnosis) {
-  const double probability = ProbabilityOf(diagnosis.decision, diagnosis.effects);
-  std::vector<std::string> titles;
+  std::vector<std::string> titles, details;
   for (const std::string& name : diagnosis.effects) titles.push_back(ShortTitle(diagnosis, name));
-  return fmt::format(
-      "What it lacks: {}{}.", fmt::join(titles, " and "),
-      std::isnan(probability) ? "" : fmt::format(" (probability {})", PercentText(probability)));
+  if (const HypothesisProbability* found = FindHypothesis(diagnosis.decision, diagnosis.effects)) {
+    if (found->kind == HypothesisProbability::Kind::kEffect &&
+        found->family != EffectFamily::kOther)
+      details.push_back(FamilyTitle(found->family));
+    details.push_back("probability " + PercentText(found->probability));
+  }
+  return fmt::format("What it lacks: {}{}.", fmt::join(titles, " and "),
+                     details.empty() ? "" : fmt::format(" ({})", fmt::join(details, "; ")));
 }
 
 std::string AmbiguousSentence(const DiagnosisRecord& diagnosis) {
@@ -166,13 +185,17 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
   if (!model.calibration.usable)
     return fmt::format("The model with {} could not be fitted: {}.", title,
                        model.calibration.message);
-  return fmt::format("With {} the error is {}.", title, Lengths(model.errors));
+  const double fall = 1 - model.errors.held_out_rms / before.errors.held_out_rms;
+  if (!(fall >= kSmallestFall))
+    return fmt::format("With {}, the error is {}.", title, Lengths(model.errors));
+  return fmt::format("With {}, the error falls by {:.0f} % to {}.", title, 100 * fall,
+                     Lengths(model.errors));
 }
 
 std::string NamedInVain(const ReportedModel& before, const ReportedModel& after) {
   return fmt::format(
-      "A further diagnosis names {}, but in a model with it its size may be zero: it does not "
-      "count.",
+      "A further diagnosis names {}, but once it is fitted, its size may be zero, so that it does "
+      "not count.",
       WithProbability(*before.diagnosis, after.added));
 }
 

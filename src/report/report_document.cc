@@ -14,6 +14,7 @@
 #include "core/json_number.h"
 #include "record/csv_table.h"
 #include "record/json_vector.h"
+#include "record/ledger.h"
 #include "record/library_versions.h"
 #include "record/run_directory.h"
 #include "record/run_record.h"
@@ -21,6 +22,7 @@
 #include "report/reported_run.h"
 #include "report/run_differences.h"
 #include "report/scene_document.h"
+#include "report/verdict_text.h"
 
 namespace lacuna {
 namespace {
@@ -79,7 +81,35 @@ std::vector<std::string> FitCommands(const ReportedRun& run, const fs::path& fol
   return commands;
 }
 
-json ModelDocument(const ReportedModel& model, size_t index) {
+// "initial model", "with viscoelastic branch", "and with drag".
+std::string LabelOf(const std::vector<ReportedModel>& models, size_t index) {
+  if (index == 0) return "initial model";
+  const std::string& added = models[index].added;
+  const std::optional<DiagnosisRecord>& before = models[index - 1].diagnosis;
+  return (index == 1 ? "with " : "and with ") + (before ? ShortTitle(*before, added) : added);
+}
+
+// Whether the model could be fitted and the size of each effect that was added to the first one is
+// known not to be zero.
+bool Counts(const std::vector<ReportedModel>& models, size_t index) {
+  for (size_t k = 1; k <= index; ++k)
+    if (models[k - 1].diagnosis &&
+        SizeMayBeZero(models[k].calibration, *models[k - 1].diagnosis, models[k].added))
+      return false;
+  return models[index].calibration.usable;
+}
+
+// A comparison without the correlations of all pairs of points: hundreds of points have millions of
+// bytes of them, and a page shows none.
+json WithoutPairs(json comparison) {
+  if (comparison.is_null()) return comparison;
+  for (json& recording : comparison.at("recordings"))
+    for (json& part : recording.at("parts")) part.at("space_correlation").erase("pairs");
+  return comparison;
+}
+
+json ModelDocument(const std::vector<ReportedModel>& models, size_t index) {
+  const ReportedModel& model = models[index];
   const auto file = [&](bool exists, const char* name) {
     return exists ? ReadJsonFile(model.folder / name) : json();
   };
@@ -88,16 +118,16 @@ json ModelDocument(const ReportedModel& model, size_t index) {
   const auto if_usable = [&](double value) { return usable ? json(value) : json(); };
   return {{"name", model.name},
           {"added", model.added},
-          {"label", index == 0   ? "initial model"
-                    : index == 1 ? "with " + model.added
-                                 : "and with " + model.added},
+          {"label", LabelOf(models, index)},
+          {"counts", Counts(models, index)},
           {"errors",
            {{"in_fit", if_usable(errors.in_fit_rms)},
             {"held_out", if_usable(errors.held_out_rms)},
             {"held_out_over_sigma", if_usable(errors.rms_over_sigma)},
             {"has_held_out", errors.has_held_out}}},
           {"calibration", file(true, "calibration/calibration.json")},
-          {"comparison", file(model.comparison.has_value(), "comparison/comparison.json")},
+          {"comparison",
+           WithoutPairs(file(model.comparison.has_value(), "comparison/comparison.json"))},
           {"diagnosis", file(model.diagnosis.has_value(), "diagnosis/diagnosis.json")},
           {"plan", file(fs::exists(model.folder / "plan/plan.json"), "plan/plan.json")},
           {"scenes", SceneDocuments(model)}};
@@ -116,7 +146,7 @@ GatheredRun GatherFit(const fs::path& folder) {
   const ReportedModel& first = run.models.front();
   const Manifest manifest = LoadManifest(first.folder / "manifest.json");
   json models = json::array();
-  for (size_t k = 0; k < run.models.size(); ++k) models.push_back(ModelDocument(run.models[k], k));
+  for (size_t k = 0; k < run.models.size(); ++k) models.push_back(ModelDocument(run.models, k));
   GatheredRun gathered;
   gathered.sentences = Headline(run.models);
   gathered.comparable = {first.name, manifest, {}};
@@ -177,13 +207,27 @@ std::vector<std::string> Table1Headline(const json& table) {
   for (const json& row : table.at("rows")) {
     const json& drop = row.at("drop_from_max").at("median");
     if (drop.is_null()) continue;
-    std::string sentence = fmt::format("The search over {} lowers the residual by {:.1f} %",
+    std::string sentence = fmt::format("The search \"{}\" lowers the residual by {:.1f} %",
                                        row.at("name").get<std::string>(), 100 * drop.get<double>());
     if (row.contains("paper_drop"))
-      sentence += fmt::format(", {} the paper's {:.1f} %",
-                              drop >= row.at("paper_drop") ? "at least" : "less than",
-                              100 * row.at("paper_drop").get<double>());
+      sentence +=
+          fmt::format("; the paper's by {:.1f} %", 100 * row.at("paper_drop").get<double>());
     sentences.push_back(sentence + ".");
+  }
+  return sentences;
+}
+
+// How often verdicts were right, one sentence for each kind of truth.
+std::vector<std::string> TrialsHeadline(const json& trials) {
+  std::vector<std::string> sentences;
+  if (trials.is_null()) return sentences;
+  std::string truth;
+  for (const json& rate : trials.value("rates", json::array())) {
+    if (rate.at("of") == 0 || rate.at("truth") == truth) continue;
+    truth = rate.at("truth");
+    sentences.push_back(fmt::format("In {} of {} cases in which {}, {}.",
+                                    rate.at("cases").get<int>(), rate.at("of").get<int>(), truth,
+                                    rate.at("what").get<std::string>()));
   }
   return sentences;
 }
@@ -226,6 +270,14 @@ GatheredRun GatherStudy(const fs::path& folder) {
     throw InputError({(folder / "table1.json").string()},
                      std::string("is not a Table 1: ") + problem.what());
   }
+  const json trials = FindTrials(folder);
+  try {
+    for (const std::string& sentence : TrialsHeadline(trials))
+      gathered.sentences.push_back(sentence);
+  } catch (const json::exception& problem) {
+    throw InputError({(folder / "report.json").string()},
+                     std::string("is not a report of sealed cases: ") + problem.what());
+  }
   gathered.comparable.name = name;
   gathered.document = {
       {"name", name},
@@ -237,7 +289,7 @@ GatheredRun GatherStudy(const fs::path& folder) {
       {"reconstruction", nullptr},
       {"table1", table},
       {"ablation", has_ablation ? ReadJsonFile(folder / "ablation.json") : json()},
-      {"trials", FindTrials(folder)},
+      {"trials", trials},
       {"notes", json::array()},
       {"provenance", {{"program", "Lacuna " + ProgramVersion()}, {"commands", json::array()}}}};
   return gathered;

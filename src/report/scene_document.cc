@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -60,6 +61,21 @@ std::vector<std::string> PointNames(const ReportedModel& model, size_t recording
 
 json PackPoints(const Eigen::MatrixXd& points) {
   return PackFrames(points, {static_cast<int>(points.rows() / 3), 3});
+}
+
+// Points from which the page computes: rounded to less than their noise of standard deviation
+// `sigma` in any case, since the steps of 16-bit numbers may exceed the noise of precise
+// measurements.
+json PackSeries(const Eigen::MatrixXd& points, double sigma) {
+  constexpr double kLargestStep = 0.05;  // in sigma; smaller: less rounding, larger files
+  constexpr double kSteps = 65534;       // of a 16-bit number (record/packed_array.h)
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : points.reshaped()) {  // NaN: not observed
+    low = std::fmin(low, value);
+    high = std::fmax(high, value);
+  }
+  if (high - low <= kSteps * kLargestStep * sigma) return PackPoints(points);
+  return PackFloats(points, {static_cast<int>(points.rows() / 3), 3});
 }
 
 json SeriesOf(const RecordedResiduals& residuals, double sigma) {
@@ -173,8 +189,8 @@ json SceneOf(const ReportedModel& model, size_t r, const RecordedResiduals& resi
           {"points_series",
            {{"time_s", VectorToJson(residuals.times)},
             {"names", names},
-            {"measured", PackPoints(residuals.measured)},
-            {"model", PackPoints(modelled)}}},
+            {"measured", PackSeries(residuals.measured, sigma)},
+            {"model", PackSeries(modelled, sigma)}}},
           {"force", ForceOf(forces, r)},
           {"load", load},
           {"notes", motion ? json(motion->notes) : json::array()}};

@@ -67,6 +67,7 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
   Compare(&before);
   before.diagnosis = Diagnosis(Verdict::kMissing, {"viscoelastic_branch"});
   Believe(&*before.diagnosis, {"viscoelastic_branch"}, 0.992);
+  before.diagnosis->decision.probabilities[0].family = EffectFamily::kLossInside;
   ReportedModel after = Model(1.9e-4, 1.2);
   after.added = "viscoelastic_branch";
   after.diagnosis = Diagnosis(Verdict::kAdequate, {});
@@ -76,8 +77,8 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
       ElementsAre(
           "The model misses the markers by 0.870 mm, 5.1 times the noise, in frames that it was "
           "not fitted to; the error is largest at marker tip and from 0.3 s to 0.4 s.",
-          "What it lacks: viscoelastic branch (probability 99 %).",
-          "With viscoelastic branch the error is 0.190 mm, 1.2 times the noise.",
+          "What it lacks: viscoelastic branch (loss inside the body; probability 99 %).",
+          "With viscoelastic branch, the error falls by 78 % to 0.190 mm, 1.2 times the noise.",
           "No further effect is needed (probability that nothing is missing: 78 %): the error that "
           "is left is that of the noise, or no larger than the error of any model."));
 }
@@ -97,11 +98,23 @@ TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
   after.calibration.parameters[0].name = "drag.coefficient";
   after.calibration.parameters[0].estimate.low = 0;
   after.calibration.parameters[0].estimate.high = 3;
-  EXPECT_EQ(Headline({before, after}).back(),
-            "A further diagnosis names drag (98 %), but in a model with it its size "
-            "may be zero: it does not count.");
+  EXPECT_EQ(
+      Headline({before, after}).back(),
+      "A further diagnosis names drag (98 %), but once it is fitted, its size may be zero, so "
+      "that it does not count.");
   after.calibration.parameters[0].estimate.low = 1;
-  EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag the error is"));
+  EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag, the error falls by 5 % to"));
+  after.errors.held_out_rms = 2.1e-4;
+  EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag, the error is 0.210 mm"));
+}
+
+TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  Compare(&model);
+  model.comparison->recordings.push_back(model.comparison->recordings[0]);
+  EXPECT_THAT(Headline({model}).at(0), HasSubstr("from 0.3 s to 0.4 s of recording swing."));
+  model.comparison->recordings[0].name = "recording 1";
+  EXPECT_THAT(Headline({model}).at(0), HasSubstr("from 0.3 s to 0.4 s of recording 1."));
 }
 
 // An error of coarse elements is not called noise.

@@ -51,7 +51,7 @@ TEST(ReportDocument, ShowsTheModelsOfTheLedger) {
   EXPECT_NEAR(run.at("noise").get<double>(), std::sqrt(3.0) * 1e-4, 1e-12);
   EXPECT_THAT(run.at("notes"), IsEmpty());
   EXPECT_THAT(document.at("sentences").at(0).get<std::string>(),
-              HasSubstr("at marker tip and from 0.31 s to 0.35 s of a"));
+              HasSubstr("at marker tip and from 0.31 s to 0.35 s of recording a."));
   const std::vector<std::string> commands = run.at("provenance").at("commands");
   EXPECT_THAT(commands, testing::Contains(HasSubstr("diagnose")));
   EXPECT_EQ(run.at("provenance").at("inputs").at("a/markers.csv"), "1f2e3d");

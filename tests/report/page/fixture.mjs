@@ -316,7 +316,7 @@ function diagnosis(isSecond, errors) {
 function makeModel(name, motion, isSecond, options) {
   const scenes = (options.recordings ?? ['recording 1', 'recording 2']).map((recording, k) => makeScene(recording, { ...motion, frequency: motion.frequency + 0.05 * k }, { ...options, seed: k + 1 }));
   const errors = errorsOf(scenes);
-  return { name, added: isSecond ? 'viscoelastic_branch' : '', label: isSecond ? 'with viscoelastic_branch' : 'the model as it is', errors,
+  return { name, added: isSecond ? 'viscoelastic_branch' : '', label: isSecond ? 'with viscoelastic branch' : 'initial model', counts: true, errors,
            calibration: calibration(isSecond), comparison: comparison(scenes, isSecond), diagnosis: diagnosis(isSecond, errors), plan: isSecond ? null : plan(), scenes };
 }
 
@@ -346,6 +346,18 @@ const SENTENCES = [
 
 export function fullReport(options = {}) {
   return withoutMeasures({ schema: 1, program: 'Lacuna 0.1.0', title: 'hidden_effect', sentences: SENTENCES, runs: [makeRun('hidden_effect', options)] });
+}
+
+// A third model, whose effect has a size that may be zero.
+export function inVainReport() {
+  const data = fullReport();
+  const [run] = data.runs;
+  const third = structuredClone(run.models[1]);
+  Object.assign(third, { name: `${third.name}+strain_stiffening`, added: 'strain_stiffening', label: 'and with strain stiffening', counts: false, diagnosis: null, comparison: null });
+  Object.assign(run.models[1].diagnosis, { verdict: 'missing', effects: ['strain_stiffening'] });
+  run.models.push(third);
+  run.ledger.ending.reason = 'may_be_zero';
+  return data;
 }
 
 export function twoRuns() {
@@ -460,7 +472,7 @@ export function table1Report() {
 }
 
 export const kinds = {
-  full: fullReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
+  full: fullReport, 'in-vain': inVainReport, scans: scansReport, 'two-runs': twoRuns, minimal: minimalReport, hostile: hostileReport, study: () => withoutMeasures(studyReport()),
   table1: table1Report, '10k': () => largeReport(10000, 30), '100k': () => largeReport(100000, 100),
 };
 

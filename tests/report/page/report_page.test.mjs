@@ -114,7 +114,36 @@ test('the validation metric of known errors', () => {
   assert.equal(validationMetric([[]], 1, 1), null);
 });
 
-for (const [label, makeFile] of [['full', () => fixture('full')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['table1', () => fixture('table1')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
+test('the validation metric is that of the equations of Dvurecenska et al. 2018', () => {
+  // As the paper has them: e_k = |P_k − M_k| / max |M|, w_k = e_k / Σ e, the threshold is the
+  // expanded uncertainty over max |M|, and the metric is the sum of the weights below it.
+  const metricOfPaper = (predicted, measured, uncertainty) => {
+    const largest = Math.max(...measured.map(Math.abs));
+    const error = measured.map((value, k) => Math.abs((predicted[k] - value) / largest));
+    const sum = error.reduce((a, b) => a + b, 0);
+    const weight = error.map((value) => (100 * value) / sum);
+    return weight.reduce((metric, value, k) => (error[k] < uncertainty / largest ? metric + value : metric), 0);
+  };
+  let state = 7;
+  const random = () => { state = (Math.imul(state, 1664525) + 1013904223) >>> 0; return state / 4294967296 - 0.5; };
+  const sigma = 0.05;
+  for (let repeat = 0; repeat < 20; ++repeat) {
+    const measured = Array.from({ length: 60 }, () => 3 * random());
+    const predicted = measured.map((value) => value + (0.2 + 0.2 * repeat) * random() * random());
+    const errors = measured.map((value, k) => Math.abs(predicted[k] - value));
+    const frames = [0, 1, 2].map((f) => errors.slice(20 * f, 20 * f + 20));
+    const largest = Math.max(...measured.map(Math.abs));
+    const found = validationMetric(frames, largest, sigma);
+    // The rest is rounding in sums of 60 numbers.
+    assert.ok(Math.abs(100 * found.metric - metricOfPaper(predicted, measured, 2 * sigma)) < 1e-9);
+    assert.ok(Math.abs(found.thresholdShare - (2 * sigma) / largest) < 1e-15);
+  }
+  // All errors below the uncertainty: 100 %; all above: 0.
+  assert.equal(validationMetric([[0.01, 0.02]], 1, sigma).metric, 1);
+  assert.equal(validationMetric([[0.2, 0.3]], 1, sigma).metric, 0);
+});
+
+for (const [label, makeFile] of [['full', () => fixture('full')], ['in-vain', () => fixture('in-vain')], ['scans', () => fixture('scans')], ['study', () => fixture('study')], ['table1', () => fixture('table1')], ['minimal', () => fixture('minimal')], ['two-runs', () => fixture('two-runs')],
                                 ...givenFiles.map((file) => [basename(file), () => file])]) {
   test(`${label}: opens without an error or a request, and without empty boxes`, async () => {
     const { page, problems, close } = await open(makeFile());
@@ -258,6 +287,23 @@ test('two runs stand side by side', async () => {
   assert.match(await page.locator('.view-label').last().textContent(), /^stiff/);
   assert.match(await page.locator('#runs').textContent(), /material\.young_modulus.*0\.12 MPa.*0\.2 MPa/);
   assert.equal(await page.locator('.bars').count(), 2);
+  // The cameras are linked: turning moves the pixels of both halves.
+  const halves = () => page.evaluate(async () => {
+    const { view } = window.lacunaReport.motion;
+    await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+    const gl = view.renderer.getContext();
+    const width = Math.floor(gl.drawingBufferWidth / 2), bytes = new Uint8Array(4 * width * gl.drawingBufferHeight);
+    return [0, gl.drawingBufferWidth - width].map((x) => {
+      gl.readPixels(x, 0, width, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+      return bytes.reduce((sum, byte, k) => (sum * 31 + byte * (k % 251)) >>> 0, 7);
+    });
+  });
+  const before = await halves();
+  await page.locator('canvas.view-canvas').focus();
+  await page.keyboard.press('ArrowLeft');
+  const turned = await halves();
+  assert.notEqual(turned[0], before[0]);
+  assert.notEqual(turned[1], before[1]);
   const both = await picture(page);
   await page.getByRole('button', { name: 'Side by side' }).click();
   await page.waitForTimeout(200);
@@ -274,6 +320,51 @@ test('parts without data are left out', async () => {
   assert.equal(await page.locator('canvas').count(), 0);
   await close();
 });
+
+// Optional parts that are taken away from the full report and from the study, named by their paths;
+// those of one line together, since they belong to different parts of the page.
+const OPTIONAL_PARTS = {
+  full: [
+    ['sentences', 'runs.0.noise', 'runs.0.models.*.diagnosis.decision', 'runs.0.models.*.scenes.*.series'],
+    ['runs.0.ledger', 'runs.0.models.*.errors', 'runs.0.models.*.scenes.*.surface', 'runs.0.models.*.scenes.*.force'],
+    ['runs.0.provenance', 'runs.0.models.*.calibration', 'runs.0.models.*.scenes.*.surface.fields', 'runs.0.models.*.scenes.*.points_series'],
+    ['runs.0.models.*.comparison', 'runs.0.models.*.scenes.*.points.residual', 'runs.0.models.*.scenes.*.load'],
+    ['runs.0.models.*.diagnosis', 'runs.0.models.*.scenes.*.points.model', 'runs.0.models.*.scenes.*.fitted'],
+    ['runs.0.models.*.scenes.*.points'],
+    ['runs.0.models.*.scenes'],
+  ],
+  study: [
+    ['runs.0.reconstruction', 'runs.0.ablation'],
+    ['runs.0.reconstruction.frames', 'runs.0.table1'],
+    ['runs.0.reconstruction.trace', 'runs.0.trials', 'runs.0.models'],
+  ],
+};
+
+function without(data, path) {
+  const keys = path.split('.');
+  const remove = (value, depth) => {
+    if (value === null || value === undefined) return;
+    if (depth === keys.length - 1) delete value[keys[depth]];
+    else for (const child of keys[depth] === '*' ? value : [value[keys[depth]]]) remove(child, depth + 1);
+  };
+  remove(data, 0);
+  return data;
+}
+
+for (const [kind, lines] of Object.entries(OPTIONAL_PARTS)) {
+  test(`${kind}: any part may be missing, and leaves no empty box`, async () => {
+    const found = [];
+    for (const paths of lines) {
+      const file = join(folder, 'without.html');
+      writeReport(paths.reduce(without, kinds[kind]({ vertices: 60, frames: 8 })), file);
+      const { page, problems, close } = await open(file);
+      await readAll(page);
+      for (const problem of [...problems, ...await emptyBoxes(page)]) found.push(`without ${paths}: ${problem}`);
+      await close();
+    }
+    assert.deepEqual(found, []);
+  });
+}
 
 test('every part is there when its data is', async () => {
   const full = await open(fixture('full'));
@@ -358,6 +449,63 @@ test('a report of 100 000 vertices and 100 frames opens', async () => {
   const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready));
   const step = await page.evaluate(() => window.lacunaReport.motion.view.measureStep([50]));
   console.log(`100 000 vertices × 100 frames: ${(statSync(file).size / 1e6).toFixed(1)} MB, ready after ${(ready / 1e3).toFixed(1)} s, one step ${step.toFixed(0)} ms`);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
+test('an effect whose size may be zero is not shown as the result', async () => {
+  const { page, problems, close } = await open(fixture('in-vain'));
+  assert.deepEqual(await page.locator('.view-label').allTextContents(), ['initial model', 'with viscoelastic branch']);
+  assert.match(await page.locator('.bar-row.tried').last().textContent(), /size may be 0/);
+  assert.match(await page.locator('.verdict.in-vain').textContent(), /does not count.*strain_stiffening/);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
+// The share of dark pixels in the picture of a page.
+async function darkShare(page) {
+  const png = (await page.screenshot()).toString('base64');
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let dark = 0;
+    for (let k = 0; k < data.length; k += 4) if (data[k] + data[k + 1] + data[k + 2] < 240) ++dark;
+    return (4 * dark) / data.length;
+  }, png);
+}
+
+test('a dark page prints dark on light, and is dark again afterwards', async () => {
+  const { page, problems, close } = await open(fixture('full'), { colorScheme: 'dark' });
+  await readAll(page);
+  assert.ok(await darkShare(page) > 0.5);
+  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await page.waitForTimeout(300);
+  // The background of the 3D view, and the share of dark pixels in the first chart, whose held-out
+  // span is filled.
+  const drawn = await page.evaluate(() => {
+    const pixels = (canvas) => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    const chart = pixels(document.querySelector('.chart canvas'));
+    let dark = 0;
+    for (let k = 0; k < chart.length; k += 4) if (chart[k + 3] > 200 && chart[k] + chart[k + 1] + chart[k + 2] < 240) ++dark;
+    return { view: [...pixels(document.querySelector('canvas.view-print')).slice(0, 3)], chart: (4 * dark) / chart.length };
+  });
+  assert.deepEqual(drawn.view, [255, 255, 255]);
+  assert.ok(drawn.chart < 0.05, `${drawn.chart}`);
+  const height = await page.evaluate(() => document.documentElement.scrollHeight);
+  await page.setViewportSize({ width: 720, height: Math.min(height, 8000) });
+  await page.waitForTimeout(300);
+  // Text, lines and the colours of the drawings; a dark background would be nearly everything.
+  assert.ok(await darkShare(page) < 0.1);
+  await page.emulateMedia({ media: 'screen', colorScheme: 'dark' });
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.setViewportSize(LAPTOP);
+  await page.waitForTimeout(300);
+  assert.ok(await darkShare(page) > 0.5);
   assert.deepEqual(problems, []);
   await close();
 });

@@ -21,10 +21,11 @@ function start(element) {
   draw();
 }
 
-addEventListener('beforeprint', () => {
+// Printing changes the theme and the width: see print.js.
+export function drawAllCharts() {
   for (const element of [...waiting.keys()]) start(element);
-  for (const chart of live) chart.resize();
-});
+  for (const chart of [...live]) chart.resize();
+}
 onThemeChange(() => {
   for (const chart of live) chart.recolour();
 });
@@ -33,7 +34,8 @@ const FONT = '12px system-ui, sans-serif';
 
 function axis(label, isVertical, size) {
   return {
-    label, labelSize: 20, labelFont: FONT, font: FONT, labelGap: 0, size: isVertical ? size : 34, gap: 4,
+    label, labelSize: 20, labelFont: FONT, font: FONT, labelGap: 0, size: isVertical ? (plot, labels) => Math.max(size, 14 + 7 * Math.max(0, ...(labels ?? []).map((text) => text.length))) : 34, gap: 4,
+    space: isVertical ? 36 : (plot, _, low, high, length) => (length < 420 ? 52 : 80),
     stroke: () => themeColour('muted'), grid: { stroke: () => themeColour('faint'), width: 1 }, ticks: { stroke: () => themeColour('rule'), width: 1, size: 4 },
     values: (_, splits) => splits.map((value) => (value === null ? '' : String(Number(value.toPrecision(6))).replace('-', '−'))),
   };
@@ -46,7 +48,7 @@ function seriesOptions(one) {
     label: one.label, stroke: colour, width: isDots ? 0 : one.width ?? 1.8, dash: one.dash ? [5, 4] : undefined, spanGaps: false,
     paths: isDots ? () => null : undefined,
     points: isDots || one.style === 'line-dots' ? { show: true, size: one.size ?? 5, fill: colour, stroke: colour, width: 0 } : { show: false },
-    value: (_, value) => (value === null || value === undefined ? '–' : number(value)),
+    value: (_, value) => (value === null || value === undefined ? '' : number(value)),
   };
 }
 
@@ -134,7 +136,7 @@ class Chart {
         y: { range: rangeOf(options.yRange, options.includesZero ?? true) },
       },
       axes: [axis(options.x, false), axis(options.y, true, options.axisSize ?? 52)],
-      series: [{ label: options.x, value: (_, value) => (value === null ? '–' : number(value)) }, ...options.series.map(seriesOptions)],
+      series: [{ label: options.x, value: (_, value) => (value === null || value === undefined ? '' : number(value)) }, ...options.series.map(seriesOptions)],
       hooks: { drawClear: draw, ready: [(plot) => this.addMarker(plot)], setSize: [() => this.showTime()] },
       cursor: { y: false, points: { size: 7 }, drag: { x: true, y: false } },
       legend: { show: options.legend ?? true, live: true, markers: { width: 0, fill: (_, k) => themeColour(options.series[k - 1]?.colour ?? 'muted') } },

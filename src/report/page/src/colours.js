@@ -44,4 +44,5 @@ export function modelColourName(index, count) {
 
 const listeners = new Set();
 export function onThemeChange(listener) { listeners.add(listener); }
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => listeners.forEach((call) => call()));
+export function changeTheme() { listeners.forEach((call) => call()); }
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changeTheme);

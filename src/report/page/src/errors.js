@@ -16,7 +16,7 @@ function scenesOf(choices, recording) {
   return choices.map((choice) => ({ choice, scene: sceneOf(choice, recording) })).filter(({ scene }) => scene);
 }
 
-function errorOverTime({ choices, store }, state) {
+export function errorOverTime({ choices, store }, state) {
   const all = scenesOf(choices, state.recording).filter(({ scene }) => scene.series?.rms_m?.length > 0);
   if (all.length === 0) return null;
   const { scene } = all[0];
@@ -97,12 +97,12 @@ function trends({ choices }, state) {
       }
     }
     for (const one of series) if (!shown.some((other) => other.label === one.label)) shown.push(one);
-    return chart({ legend: false, title: `Against ${title}`, explain: ranks.length > 0 ? `Rank correlation of the ${compared.length > 1 ? 'first model' : 'model'}: ${ranks.join(', ')}.` : null,
+    return chart({ legend: false, title: `Against ${title}`, explain: ranks.length > 0 ? `Rank correlation${compared.length > 1 ? ` of the ${compared[0].choice.label.slice(0, 60)}` : ''}: ${ranks.join(', ')}.` : null,
       x: unit ? `${title}, ${unit}` : title, y: 'rms residual, mm', height: 190, series });
   }).filter(Boolean);
   if (charts.length === 0) return null;
   return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, 'What the error depends on'),
-    h('p', { class: 'explain' }, 'Frames (for the distance from the grip: points) in bins of about equal size. An error that grows with speed suggests a missing loss; with strain, a wrong elasticity law.')), sharedLegend(shown), grid(charts));
+    h('p', { class: 'explain' }, 'Frames (for the distance from the grip: points) in bins of about equal size. An error that grows with speed suggests a missing loss; with strain, a wrong elasticity law.')), sharedLegend(shown), grid(charts, 'small'));
 }
 
 function load({ choices }, state) {
@@ -121,7 +121,7 @@ function errorTable(choices) {
     const compared = choice.model.comparison?.recordings ?? [];
     for (const recording of compared) {
       for (const part of recording.parts ?? []) {
-        rows.push([name(choice.label), name(recording.name), part.part, fixed(part.frames, 0), millimetres(part.rms_m), sigmas(part.rms_over_sigma), sigmas(part.rms_over_floor), millimetres(part.largest_m),
+        rows.push([name(choice.label), name(recording.name), part.part, fixed(part.frames, 0), millimetres(part.rms_m), sigmas(part.rms_over_sigma), isNumber(part.rms_over_floor) ? fixed(part.rms_over_floor, 1) : '–', millimetres(part.largest_m),
           fixed(part.time_correlation?.lag_one_correlation, 2), name(recording.point_names?.[part.worst_point] ?? '–')]);
       }
     }
@@ -133,7 +133,7 @@ function errorTable(choices) {
       }
     }
   }
-  return table('Plain errors', [['model'], ['recording'], ['part'], ['frames', true], ['rms', true], ['rms / σ', true, 'relative to the noise that the fit assumes'], ['rms / floor', true, 'relative to the noise that the recording itself shows'], ['largest', true], ['lag-1 corr.', true, 'correlation of the errors of neighbouring frames; near 0 for noise'], ['worst point']], rows);
+  return table('Plain errors', [['model'], ['recording'], ['part'], ['frames', true], ['rms', true], ['rms / σ', true, 'relative to the noise that the fit assumes'], ['rms / floor', true, 'relative to the noise that the recording itself shows'], ['largest', true], ['correlation in time', true, 'of the errors of neighbouring frames; near 0 for noise'], ['worst point']], rows);
 }
 
 export function errorSection(context) {
@@ -145,7 +145,7 @@ export function errorSection(context) {
   const scenes = choices.flatMap((choice) => choice.model.scenes ?? []);
   return section('errors', 'Errors', 'Where and when the models err',
     'Residual is predicted minus measured. 1 σ means as good as the measurement allows.',
-    scenes.some((scene) => scene.series?.rms_m?.length > 0) && following(store, ['recording'], (state) => errorOverTime(context, state)),
+    !context.hasErrorsFirst && scenes.some((scene) => scene.series?.rms_m?.length > 0) && following(store, ['recording'], (state) => errorOverTime(context, state)),
     hasScenes && scenes.some((scene) => scene.points_series?.model || scene.points?.model) && following(store, ['recording', 'point'], (state) => pointPlots(context, state)),
     scenes.some((scene) => scene.load?.displacement_m?.length > 0) && following(store, ['recording'], (state) => load(context, state)),
     hasTrends && following(store, ['recording'], (state) => trends(context, state)),

@@ -22,12 +22,12 @@ function charts(scene, store) {
     const all = lists.flatMap((list) => list ?? []).filter(isNumber);
     if (all.length === 0) return null;
     const shown = displayUnit(unit, all.reduce((largest, value) => Math.max(largest, Math.abs(value)), 0));
-    return chart({ title, store, spans, x: 'time, s', y: `${title.toLowerCase()}, ${shown.unit}`, height: 220, lines: [{ y: 0, colour: 'rule' }], explain: deviations ? 'The tint is one standard deviation.' : null,
+    return chart({ title, store, spans, x: 'time, s', y: `${title.toLowerCase()}, ${shown.unit}`, height: 220, lines: [{ y: 0, colour: 'rule' }], explain: deviations ? 'The tint is one standard deviation.' : title === 'Torque' ? 'About the centroid of the undeformed object.' : 'Below zero, the force takes energy from the body.',
       areas: (deviations ?? []).map((deviation, k) => areaAround(force.time_s, lists[k], deviation, shown.factor, AXIS_COLOURS[k])),
       series: lists.map((list, k) => ({ label: labels[k], x: force.time_s, y: Array.from(list ?? [], (value) => (isNumber(value) ? value * shown.factor : NaN)), colour: AXIS_COLOURS[k] })) });
   };
-  return grid(build('Force', 'N', force.force_N ?? [], ['x', 'y', 'z'], force.force_deviation_N), build('Torque', 'N m', force.torque_N_m ?? [], ['x', 'y', 'z']),
-    build('Power', 'W', force.power_W ? [force.power_W] : [], ['power']));
+  return grid([build('Force', 'N', force.force_N ?? [], ['x', 'y', 'z'], force.force_deviation_N), build('Torque', 'N m', force.torque_N_m ?? [], ['x', 'y', 'z']),
+    build('Power', 'W', force.power_W ? [force.power_W] : [], ['power'])]);
 }
 
 function summary(record) {
@@ -60,6 +60,6 @@ export function forceSection(context) {
       const scene = sceneOf(choice, state.recording);
       const record = choice.model.comparison?.recordings?.find((one) => one.name === state.recording)?.unexplained_force;
       const shown = [scene ? charts(scene, store) : null, summary(record)].filter(Boolean);
-      return shown.length > 0 ? [h('p', { class: 'explain' }, `Of ${choice.label.slice(0, 120)}, ${String(state.recording).slice(0, 80)}.`), ...shown] : null;
+      return shown.length > 0 ? [h('p', { class: 'explain' }, `Model: ${choice.label.slice(0, 120)}. Recording: ${String(state.recording).slice(0, 80)}.`), ...shown] : null;
     }));
 }

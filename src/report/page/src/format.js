@@ -23,10 +23,13 @@ export function fixed(value, decimals) {
   return isNumber(value) ? minus(value.toFixed(decimals)) : NONE;
 }
 
-// A length in m, in mm.
-export const millimetres = (metres) => (isNumber(metres) ? `${number(1e3 * metres)} mm` : NONE);
+// A length in m, in mm or µm.
+export const millimetres = (metres) => (!isNumber(metres) ? NONE : metres !== 0 && Math.abs(metres) < 1e-5 ? `${number(1e6 * metres)} µm` : `${number(1e3 * metres)} mm`);
 export const sigmas = (ratio) => (isNumber(ratio) ? `${ratio >= 100 ? ratio.toFixed(0) : ratio.toFixed(1)} σ` : NONE);
 export const seconds = (time) => (isNumber(time) ? `${minus(time.toFixed(3))} s` : NONE);
+
+// The same without needless zeros.
+export const shortSeconds = (time) => (isNumber(time) ? `${minus(String(Number(time.toFixed(3))))} s` : NONE);
 
 export function percent(share) {
   if (!isNumber(share)) return NONE;
@@ -82,3 +85,9 @@ export function directionText(vector) {
   if (!(length > 0)) return '';
   return axes[0].size < 0.866 * length ? `${axes[0].name} and ${axes[1].name}` : axes[0].name;
 }
+
+// An error relative to the noise.
+export const timesNoise = (ratio) => (isNumber(ratio) ? `${ratio >= 100 ? ratio.toFixed(0) : ratio.toFixed(1)} × noise` : NONE);
+
+// "1 frame", "2 frames", "3 patches".
+export const counted = (count, thing) => `${count} ${count === 1 ? thing : thing.endsWith('ch') ? `${thing}es` : `${thing}s`}`;

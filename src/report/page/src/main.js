@@ -2,8 +2,9 @@
 import { h } from './dom.js';
 import { createStore } from './store.js';
 import { choicesOf, Motion } from './motion.js';
+import { preparePrinting } from './print.js';
 import { modelLabel } from './text.js';
-import { hasShortStory, overview } from './overview.js';
+import { lengthOfStory, overview } from './overview.js';
 import { sections, lateSections } from './sections.js';
 
 function readData() {
@@ -14,13 +15,17 @@ function recordingsOf(choices) {
   return [...new Set(choices.flatMap((choice) => (choice.model.scenes ?? []).map((scene) => scene.recording)))];
 }
 
-// The first model and the last one, or the last ones of the first two runs.
+// The first model and the last one that counts, or those last ones of the first two runs.
 function firstChoices(choices, data) {
-  if ((data.runs?.length ?? 0) > 1) {
-    const lastOf = (run) => choices.findLastIndex((choice) => choice.runIndex === run);
-    return [Math.max(0, lastOf(0)), Math.max(0, lastOf(1))];
-  }
-  return [0, Math.max(0, choices.length - 1)];
+  const lastOf = (run) => Math.max(0, choices.findLastIndex((choice) => choice.runIndex === run && choice.counts));
+  return (data.runs?.length ?? 0) > 1 ? [lastOf(0), lastOf(1)] : [0, lastOf(0)];
+}
+
+// The recording in which the first model errs most, among those with held-out frames if there are any.
+function firstRecording(choices, recordings) {
+  const errors = (part) => (choices[0]?.model.calibration?.recordings ?? []).filter((one) => recordings.includes(one.name) && one[part]?.frames > 0)
+    .map((one) => ({ name: one.name, rms: one[part].rms_m })).sort((a, b) => b.rms - a.rms);
+  return [...errors('held_out'), ...errors('in_fit')][0]?.name ?? recordings[0] ?? null;
 }
 
 async function build(data) {
@@ -29,8 +34,8 @@ async function build(data) {
   const choices = choicesOf(data, modelLabel);
   const recordings = recordingsOf(choices);
   const [first, second] = firstChoices(choices, data);
-  const store = createStore({ recording: recordings[0] ?? null, time: null, point: null, mode: 'both', colouring: 'residual',
-                              first, second, isCompared: choices.length > 1 });
+  const store = createStore({ recording: firstRecording(choices, recordings), time: null, point: null, mode: 'both', colouring: 'residual',
+                              first, second, isCompared: first !== second });
   let motion = null, problem = null;
   if (recordings.length > 0) {
     try {
@@ -40,7 +45,7 @@ async function build(data) {
     }
   }
   const context = { data, choices, recordings, store, motion };
-  context.isShort = hasShortStory(context);
+  Object.assign(context, lengthOfStory(context));
   const parts = sections(context);
   page.append(
     h('header', { class: 'top' }, h('div', { class: 'inner' },
@@ -50,6 +55,7 @@ async function build(data) {
     h('main', { id: 'main', tabindex: -1 }, overview(context, problem), parts.map((part) => part.root)),
     h('footer', {}, h('p', {}, `Written by ${data.program ?? 'Lacuna'}. This file needs no network and nothing beside it.`)));
   if (motion) await motion.reload();
+  preparePrinting(motion);
   window.lacunaReport = { store, motion };
   await nextFrame();
   document.documentElement.dataset.ready = String(Math.round(performance.now()));

@@ -17,7 +17,7 @@ function explain(scenes) {
   const has = (key) => scenes.some((data) => data?.[key]);
   const parts = [];
   if (has('measured') && has('model')) parts.push(`Filled dots are measured, rings${has('positions') ? ' and the surface' : ''} are predicted.`);
-  else if (has('measured') && has('positions')) parts.push('Dots are the scan, the surface is the model.');
+  else if (has('measured') && has('positions')) parts.push('Red dots are the scan, the surface is the model.');
   else if (has('positions')) parts.push('The surface is the model.');
   parts.push('Drag to turn', has('model') && has('measured') ? '; click a dot to plot it below.' : '.');
   return parts.join(' ').replace(' ;', ';').replace(' .', '.');
@@ -75,7 +75,7 @@ export class Motion {
       this.edges = !this.edges;
       this.restyle();
     } }, 'Mesh');
-    this.all = h('button', { type: 'button', class: 'toggle', title: KEYBOARD_HELP, onclick: () => this.view.orbit.showAll() }, 'Show all');
+    this.all = h('button', { type: 'button', class: 'toggle', title: KEYBOARD_HELP, onclick: () => this.view.orbit.showAll() }, 'Reset view');
     return h('div', { class: 'controls', role: 'group', 'aria-label': 'Display' },
       this.mode.root, this.colour.root, this.arrows.root, this.edgesButton, this.all);
   }
@@ -143,10 +143,11 @@ export class Motion {
     }
   }
 
-  // The first time shown is that of the largest error, where before and after differ most.
+  // The first time shown is that of the largest error, where before and after differ most; of a
+  // reconstruction, the end.
   firstTime(data, items) {
     const largest = items.filter((item) => item.time !== null && item.point !== undefined).sort((a, b) => b.value - a.value)[0];
-    return largest?.time ?? data?.times[0] ?? 0;
+    return largest?.time ?? data?.times.at(-1) ?? 0;
   }
 
   offerColourings(scenes) {
@@ -163,26 +164,29 @@ export class Motion {
   // The range of the colour scale, shared by all panes and by measured, model and difference.
   rangeOf(colouring) {
     if (colouring.key === 'none') return { low: 0, high: 1 };
-    let low = Infinity, high = -Infinity;
+    let low = Infinity, high = -Infinity, isCut = false;
     for (const data of this.data) {
       if (!data) continue;
       if (colouring.ofPoints) {
         const unit = colouring.key === 'residual_sigma' ? data.noise ?? Infinity : 1;
         low = 0;
         high = Math.max(high, data.residualScale() / unit);
+        isCut ||= data.largestResidual < data.extremeResidual;
       } else {
-        const field = fieldOf(data.scene, colouring);
-        if (!field) continue;
-        low = Math.min(low, field.low ?? 0);
-        high = Math.max(high, field.high ?? 1);
+        const range = data.fieldRanges.get(colouring.name);
+        if (!range) continue;
+        low = Math.min(low, range.low);
+        high = Math.max(high, range.high);
+        isCut ||= range.isCut;
       }
     }
+    if (!colouring.diverging && low > 0 && low < 0.3 * high) low = 0;
     if (!(low < high)) return { low: Number.isFinite(low) ? low : 0, high: (Number.isFinite(low) ? low : 0) + 1 };
     if (colouring.diverging) {
       const size = Math.max(Math.abs(low), Math.abs(high));
-      return { low: -size, high: size };
+      return { low: -size, high: size, isCut };
     }
-    return { low, high };
+    return { low, high, isCut };
   }
 
   async restyle() {
@@ -190,6 +194,8 @@ export class Motion {
     const state = this.store.get();
     const token = (this.styling = {});
     const colouring = this.colourings.find((one) => one.key === state.colouring) ?? this.colourings[0];
+    await Promise.all(this.data.map((one) => one?.measureField(colouring)));
+    if (token !== this.styling) return;
     const range = this.rangeOf(colouring);
     this.mode.set(state.mode, false);
     this.colour.select.value = colouring.key;
@@ -204,7 +210,8 @@ export class Motion {
   drawScale(colouring, range) {
     this.scale.hidden = colouring.key === 'none';
     if (this.scale.hidden) return;
-    const text = (share) => number(colouring.factor * (range.low + share * (range.high - range.low)), 2);
+    const end = (share) => (!range.isCut ? '' : share === 1 ? '≥ ' : share === 0 && colouring.diverging ? '≤ ' : '');
+    const text = (share) => `${end(share)}${number(colouring.factor * (range.low + share * (range.high - range.low)), 2)}`;
     this.scale.setAttribute('aria-label', `Colour scale of ${colouring.label} in ${colouring.unit || 'its unit'}, from ${text(0)} to ${text(1)}`);
     this.scale.replaceChildren(
       h('span', { class: 'scale-name' }, `${colouring.label.slice(0, 60)}${colouring.unit ? `, ${colouring.unit}` : ''}`),
@@ -226,8 +233,8 @@ export class Motion {
     this.view.marked = [...new Set(items.map((item) => item.point).filter((point) => point !== undefined))];
     this.worst.hidden = items.length === 0;
     this.worst.replaceChildren(
-      h('h3', {}, `Where ${shown.length > 1 ? 'the left model' : 'the model'} is worst`),
-      h('ul', { class: 'worst-list' }, items.map((item) => h('li', {},
+      h('h3', {}, `Where the ${shown[0].label === 'reconstruction' ? 'reconstruction' : shown.length > 1 ? 'left model' : 'model'} is worst`),
+      h('ul', { class: 'worst-list', 'data-columns': items.length % 3 === 0 ? 3 : 4 }, items.map((item) => h('li', {},
         h('button', { type: 'button', class: 'worst-item', onclick: () => this.goTo(item) },
           h('span', { class: 'worst-title' }, item.title.slice(0, 120)),
           h('span', { class: 'worst-detail muted' }, item.detail || NONE),
@@ -251,10 +258,14 @@ export class Motion {
 // All models of all runs, each with a label and a colour.
 export function choicesOf(data, labelOf) {
   const runs = data.runs ?? [];
-  const count = runs.reduce((sum, run) => sum + (run.models?.length ?? 0), 0);
-  let index = 0;
+  const all = runs.flatMap((run) => run.models ?? []);
+  const colours = new Map();
+  const counted = all.filter((model) => model.counts !== false);
+  for (const model of [...counted, ...all.filter((one) => !counted.includes(one))]) {
+    colours.set(model, colours.size < counted.length ? modelColourName(colours.size, counted.length) : 'series-4');
+  }
   return runs.flatMap((run, r) => (run.models ?? []).map((model, m) => ({
-    run, model, runIndex: r, modelIndex: m, colour: modelColourName(index++, count),
-    label: runs.length > 1 ? `${run.name}: ${labelOf(model, m)}` : labelOf(model, m),
+    run, model, runIndex: r, modelIndex: m, colour: colours.get(model),
+    label: runs.length > 1 ? `${run.name}: ${labelOf(model, m)}` : labelOf(model, m), counts: model.counts !== false,
   })));
 }

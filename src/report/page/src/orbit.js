@@ -3,6 +3,7 @@ import { PerspectiveCamera, Vector3 } from 'three';
 
 const FIELD_OF_VIEW = 30;
 const STEP = Math.PI / 24;
+const SMALLEST_VIEW = 0.55;  // share of the largest face that is seen at least
 
 export class OrbitCamera {
   constructor(element, onChange) {
@@ -10,8 +11,7 @@ export class OrbitCamera {
     this.target = new Vector3();
     this.onChange = onChange;
     this.home = { centre: [0, 0, 0], radius: 1 };
-    this.azimuth = -0.95;
-    this.elevation = 0.38;
+    this.azimuth = this.elevation = 0;
     this.distance = 4;
     this.basis = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
     this.listen(element);
@@ -29,11 +29,25 @@ export class OrbitCamera {
   }
 
   showAll() {
-    this.azimuth = -0.95;
-    this.elevation = 0.38;
+    const [x, y, z] = this.homeDirection();
+    this.azimuth = Math.atan2(y, x);
+    this.elevation = Math.asin(z);
     this.target.set(...this.home.centre);
     this.distance = this.fitting(this.home.radius);
     this.onChange();
+  }
+
+  // From the side and a little above; of a sheet, which would be seen edge-on from there, more of
+  // its face.
+  homeDirection() {
+    const { low, high } = this.home;
+    const usual = new Vector3(0.54, -0.755, 0.371).normalize();
+    const sizes = this.basis.map((axis) => ['x', 'y', 'z'].reduce((sum, one, k) => sum + Math.abs(axis[one]) * ((high?.[k] ?? 1) - (low?.[k] ?? 0)), 0));
+    const faces = [sizes[1] * sizes[2], sizes[2] * sizes[0], sizes[0] * sizes[1]];
+    const seen = usual.toArray().reduce((sum, one, k) => sum + Math.abs(one) * faces[k], 0);
+    const largest = faces.indexOf(Math.max(...faces));
+    if (seen < SMALLEST_VIEW * faces[largest]) usual.setComponent(largest, 2.2 * Math.sign(usual.getComponent(largest))).normalize();
+    return usual.toArray();
   }
 
   lookAt(place, share = 0.45) {

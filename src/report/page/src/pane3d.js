@@ -73,7 +73,8 @@ export class Pane {
       this.addSurface(false);
     }
     if (data.pointCount > 0) {
-      const size = data.pointCount > 2000 ? 4 : data.pointCount > 300 ? 6 : 11;
+      const isCloud = !data.model && Boolean(data.positions);  // a scan about a surface
+      const size = isCloud ? 3 : data.pointCount > 2000 ? 4 : data.pointCount > 300 ? 6 : 11;
       this.measured = this.add(pointCloud(data.pointCount, false, size));
       if (data.model) this.model = this.add(pointCloud(data.pointCount, true, size + 2));
       if (data.model && data.measured) this.arrows = this.add(arrowSet(data.pointCount));
@@ -172,7 +173,7 @@ export class Pane {
       const values = new Float32Array(data.pointCount).fill(NO_VALUE);
       const unit = colouring.key === 'residual_sigma' ? data.noise ?? NaN : 1;
       if (colouring.ofPoints) for (let k = 0; k < values.length; ++k) values[k] = share(residual[k] / unit);
-      this.showPoints(this.measured, data.measured, frame, values, mode !== 'model', view.theme.measured, view);
+      this.showPoints(this.measured, data.measured, frame, values, mode !== 'model', this.model || !this.surface ? view.theme.measured : view.theme.scan, view);
       if (this.model) this.showPoints(this.model, data.model, frame, values, mode === 'model' || mode === 'both', view.theme.model, view);
       if (this.arrows) this.showArrows(frame, values, mode, view);
     }

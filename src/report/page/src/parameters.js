@@ -48,12 +48,11 @@ export function parameterSection({ choices }) {
         whisker(entries[k], axis), h('span', { class: `pin pin-${(parameter.verdict ?? '').replaceAll(' ', '-')}`, title: PARAMETER_VERDICTS[parameter.verdict] }, verdictText(parameter).slice(0, 200))]);
     });
   }
-  const conflicts = fitted.reduce((sum, choice) => sum + (choice.model.calibration.prior_conflicts?.length ?? 0), 0);
   const used = [...new Set(fitted.flatMap((choice) => choice.model.calibration.parameters.map((one) => one.verdict)))].filter((one) => PARAMETER_VERDICTS[one]);
   return section('parameters', 'Parameters', 'Parameters',
     'Fitted values with 95 % intervals. A wrong model makes its parameters compensate, so intervals of different models need not overlap.',
-    table(null, [['parameter'], ['model'], ['value', true], ['95 % interval', true], ['unit'], ['interval, each on its own scale'], ['what the data says']], rows, (r) => (starts[r] ? 'group-start' : null)),
+    table(null, [['parameter'], ['model'], ['value', true], ['95 % interval', true], ['unit'], ['interval, each on its own scale'], ['what the data say']], rows, (r) => (starts[r] ? 'group-start' : null)),
     h('dl', { class: 'facts wide' }, used.map((one) => h('div', {}, h('dt', {}, one), h('dd', {}, PARAMETER_VERDICTS[one])))),
-    conflicts > 0 && h('p', { class: 'explain' }, `${conflicts} values conflict with what was known before the fit (more than three standard deviations from the prior).`),
-    h('p', { class: 'explain' }, fitted.map((choice) => choice.model.calibration).map((one, k) => `${fitted[k].label.slice(0, 80)}: time step ${quantity(one.time_step_s, 's')}, halving it would change the prediction by ${isNumber(one.step_error_over_sigma) ? `${number(one.step_error_over_sigma, 2)} σ` : NONE}.`).join(' ')));
+    table('The fits', [['model'], ['time step', true], ['change if it is halved', true, 'of the prediction'], ['values in conflict with priors', true, 'more than three standard deviations from what was known before the fit']],
+      fitted.map(({ label, model: { calibration } }) => [name(label), quantity(calibration.time_step_s, 's'), isNumber(calibration.step_error_over_sigma) ? `${number(calibration.step_error_over_sigma, 2)} σ` : NONE, String(calibration.prior_conflicts?.length ?? 0)])));
 }

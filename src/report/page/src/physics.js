@@ -1,26 +1,27 @@
 // Which effects were tried, how probable each is, and which of them these recordings can separate.
 import { cellColour } from './colours.js';
 import { h, labelledSelect } from './dom.js';
-import { fixed, isNumber, millimetres, NONE, number, percent, quantity, sigmas } from './format.js';
-import { name, section, table } from './section.js';
+import { displayUnit, fixed, isNumber, millimetres, NONE, number, percent, posterior, sigmas } from './format.js';
+import { foldRows, name, section, table } from './section.js';
 import { namesOf } from './text.js';
 
 const SEPARATES = 12;  // λ with which a decision is right in four cases of five
 
 const isUsable = (effect) => effect.refit && !effect.refit.message;
 
+// "28.7 [27.6, 29.7] kPa" where the effect was refitted, else "28.7 ± 0.9 kPa".
 function sizeText(size) {
   const found = size.refitted;
-  if (found) {
-    const side = (value, infinite) => (isNumber(value) ? quantity(value, size.unit) : infinite);
-    return `${quantity(found.value, size.unit)} [${side(found.low_95, '−∞')}, ${side(found.high_95, '∞')}]`;
-  }
-  return isNumber(size.deviation) ? `${quantity(size.expected, size.unit)} ± ${quantity(size.deviation, size.unit, 2)}` : quantity(size.expected, size.unit);
+  const value = found ? found.value : size.expected;
+  const { unit, factor } = displayUnit(size.unit, Math.abs(value ?? 0));
+  const text = (one, infinite, digits) => (isNumber(one) ? number(one * factor, digits) : infinite);
+  const range = found ? ` [${text(found.low_95, '−∞')}, ${text(found.high_95, '∞')}]` : isNumber(size.deviation) ? ` ± ${text(size.deviation, '', 2)}` : '';
+  return `${text(value, NONE)}${range}${unit ? ` ${unit}` : ''}`;
 }
 
 function probabilityCell(probability, isRefuted) {
   if (!isNumber(probability)) return NONE;
-  return h('span', { class: 'mini-bar-box' }, h('span', { class: 'mini-bar', style: { width: `${Math.round(56 * probability)}px` } }), isRefuted ? 'refuted' : percent(probability));
+  return h('span', { class: 'mini-bar-box' }, h('span', { class: 'mini-bar', style: { width: `${Math.round(56 * probability)}px` } }), isRefuted ? 'refuted' : posterior(probability));
 }
 
 function candidates(diagnosis) {
@@ -38,12 +39,14 @@ function candidates(diagnosis) {
       isNumber(effect.absorbed_share) ? percent(effect.absorbed_share) : NONE, effect.look_alikes?.length ? name(effect.look_alikes.join(', ')) : NONE,
     ];
   });
+  // The last row that says more than that the effect is improbable.
+  const fewest = Math.max(5, 1 + shown.findLastIndex((effect) => isUsable(effect) || diagnosis.effects?.includes(effect.effect) || byName(effect.effect)?.probability >= 0.005));
   const silent = (diagnosis.ranking ?? []).filter((effect) => !shown.includes(effect)).map((effect) => effect.effect);
   return rows.length === 0 && silent.length === 0 ? null : h('div', { class: 'block' },
     h('div', { class: 'block-head' }, h('h3', {}, 'Effects that were tried'),
-      h('p', { class: 'explain' }, 'Evidence is the log Bayes factor against the model without the effect, less a penalty for the number of effects; 5 is a factor of about 150. First order ranks, the refit decides. Grey errors are expected, not refitted; errors in σ leave out the contributions of mesh and time step.')),
-    table(null, [['effect'], ['probability', true], ['first-order evidence', true, 'from derivatives along the fitted motion'], ['evidence of the refit', true], ['size [95 %] or ± 1 σ'], ['held-out error', true], ['plain error', true], ['absorbed', true, 'share of the signature that the fitted parameters can imitate'], ['look-alikes', false, 'effects that these recordings cannot distinguish to first order']], rows,
-      (r) => (diagnosis.effects?.includes(shown[r].effect) ? 'named' : null)),
+      h('p', { class: 'explain' }, 'Evidence is the logarithm of the Bayes factor against the model without the effect, less a penalty for the number of effects that were tried; 5 is a factor of about 150. A first-order estimate ranks the effects, and a refit with the effect decides. Grey errors are estimates without a refit. Errors in σ leave out what mesh and time step contribute.')),
+    foldRows(table(null, [['effect'], ['probability', true], ['first-order evidence', true, 'from derivatives along the fitted motion'], ['evidence of the refit', true], ['size [95 %] or ± 1 σ'], ['held-out error', true], ['plain error', true], ['absorbed', true, 'share of the signature that the fitted parameters can imitate'], ['look-alikes', false, 'effects that these recordings cannot distinguish to first order']], rows,
+      (r) => (diagnosis.effects?.includes(shown[r].effect) ? 'named' : null)), fewest, 'effects'),
     silent.length > 0 ? h('p', { class: 'explain' }, `No evidence for: ${silent.join(', ').slice(0, 1500)}.`) : null,
     diagnosis.untried?.length ? h('p', { class: 'explain' }, `Not tried: ${diagnosis.untried.map((one) => `${one.effect} (${one.why})`).join('; ').slice(0, 1500)}.`) : null,
     experiments(diagnosis, shown));

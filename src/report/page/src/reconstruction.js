@@ -1,7 +1,7 @@
 // A reconstruction: how closely the model follows the scan in each frame, and the search that led there.
 import { chart } from './chart.js';
 import { h } from './dom.js';
-import { isNumber, millimetres, number, quantity } from './format.js';
+import { displayUnit, isNumber, millimetres, number, quantity } from './format.js';
 import { grid, section } from './section.js';
 
 const scaled = (values, factor) => Array.from(values ?? [], (value) => (isNumber(value) ? factor * value : NaN));
@@ -11,6 +11,7 @@ function best(values) {
   return values.map((value) => (least = Number.isFinite(value) ? Math.min(least, value) : least));
 }
 
+const PARAMETERS = { young_modulus_Pa: 'Young’s modulus', poisson_ratio: 'Poisson’s ratio', max_volume_m3: 'largest volume of a tetrahedron', radius_edge_ratio: 'ratio of radius to edge of a tetrahedron' };
 const LENGTHS = [['residual_mean_m', 'mean residual |D| per point', 'series-last'], ['surface_distance_mean_m', 'mean distance of the scan', 'series-2'], ['surface_distance_max_m', 'largest distance of the scan', 'series-first']];
 
 // The axis of the frames: their times, or else their numbers.
@@ -21,7 +22,7 @@ function axisOf(frames, store) {
 export function residualChart(frames, store) {
   const { values, ...axis } = axisOf(frames, store);
   if (values.length < 2) return null;
-  return chart({ ...axis, title: 'Residual of each frame', y: 'mm',
+  return chart({ ...axis, title: 'Residual of each frame', y: 'length, mm',
     explain: 'D is the displacement from the simulated surface to the recorded one. Fitted forces can make a wrong model follow: a small residual does not prove the physics.',
     series: LENGTHS.filter(([key]) => frames[key]).map(([key, label, colour]) => ({ label, x: values, y: scaled(frames[key], 1e3), colour })) });
 }
@@ -48,7 +49,9 @@ export function traceCharts(trace) {
   }
   for (const [key, values] of columns) {
     if (!/young_modulus|poisson_ratio|max_volume|radius_edge/.test(key)) continue;
-    charts.push(chart({ title: key.replaceAll('_', ' '), x: 'evaluation', y: '', height: 180, axisSize: 64, includesZero: false, series: [{ label: key, x: evaluation, y: scaled(values, 1), colour: 'series-1', style: 'dots' }] }));
+    const largest = Math.max(...values.filter(isNumber).map(Math.abs), 0);
+    const { unit, factor } = key.endsWith('_Pa') ? displayUnit('Pa', largest) : key.endsWith('_m3') ? { unit: 'mm³', factor: 1e9 } : { unit: '', factor: 1 };
+    charts.push(chart({ title: PARAMETERS[key] ?? key.replaceAll('_', ' '), x: 'evaluation', y: unit, height: 180, axisSize: 64, includesZero: false, legend: false, series: [{ label: key, x: evaluation, y: scaled(values, factor), colour: 'series-1', style: 'dots' }] }));
   }
   return grid(charts);
 }
@@ -72,7 +75,7 @@ function facts(record) {
 export function reconstructionSection({ data, store, isShort }) {
   const parts = (data.runs ?? []).filter((run) => run.reconstruction).map(({ reconstruction, name }) => [
     data.runs.length > 1 ? h('h3', {}, String(name).slice(0, 200)) : null,
-    grid(isShort ? null : residualChart(reconstruction.frames, store), forceChart(reconstruction.frames, store)), traceCharts(reconstruction.trace), facts(reconstruction.record),
+    grid([isShort ? null : residualChart(reconstruction.frames, store), forceChart(reconstruction.frames, store)]), traceCharts(reconstruction.trace), facts(reconstruction.record),
     reconstruction.record?.warnings?.length ? h('ul', { class: 'notes' }, reconstruction.record.warnings.map((warning) => h('li', {}, warning.slice(0, 500)))) : null]);
   return section('reconstruction', 'Reconstruction', 'Reconstruction', 'The model was made to follow the scan with fitted forces, frame by frame.', parts);
 }

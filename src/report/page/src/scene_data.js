@@ -2,7 +2,28 @@
 import { unpack } from './decode.js';
 import { displayUnit, isNumber } from './format.js';
 
+const USUAL_SHARE = 0.995;  // of the values that the colour scale distinguishes
+const CUT_BELOW = 0.9;      // share of the full range above which the scale is not shortened
+const MOST_SAMPLES = 100000;
+
 const loaded = new WeakMap();
+
+// Evenly spread values of an array of frames, without those that were not observed.
+function sampleOf(array) {
+  const every = Math.max(1, Math.floor((array.frames * array.stride) / MOST_SAMPLES));
+  const values = [];
+  let next = 0;
+  for (let f = 0; f < array.frames; ++f) {
+    if (next >= array.stride) {
+      next -= array.stride;
+      continue;
+    }
+    const frame = array.frame(f);
+    for (; next < array.stride; next += every) if (!Number.isNaN(frame[next])) values.push(frame[next]);
+    next -= array.stride;
+  }
+  return Float32Array.from(values);
+}
 
 export function loadScene(scene) {
   if (!loaded.has(scene)) loaded.set(scene, loadNow(scene));
@@ -30,6 +51,21 @@ export class SceneData {
     this.triangleCount = this.triangles ? this.triangles.shape[0] : 0;
     this.indices = this.triangles ? new Uint32Array(this.triangles.values) : null;
     this.noise = rmsOfNoise(scene.points?.sigma, scene.points?.is_scan);
+    this.fieldRanges = new Map();
+  }
+
+  // Finds the range of a field that is drawn: without its most extreme values, which would make all
+  // others look alike.
+  async measureField(colouring) {
+    const field = colouring.name && fieldOf(this.scene, colouring);
+    if (!field || this.fieldRanges.has(colouring.name)) return;
+    const values = sampleOf(await unpack(field.values));
+    const [low, high] = [field.low ?? 0, field.high ?? 1];
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    const sorted = values.map(Math.abs).sort();
+    const most = sorted.length > 0 ? sorted[Math.floor(USUAL_SHARE * (sorted.length - 1))] : size;
+    const limit = most > 0 && most < CUT_BELOW * size ? most : size;
+    this.fieldRanges.set(colouring.name, { low: Math.max(low, -limit), high: Math.min(high, limit), isCut: limit < size });
   }
 
   frameAt(time) {
@@ -68,7 +104,8 @@ export class SceneData {
         for (const value of this.residualLengths(frame)) if (value >= 0) all.push(value);
       }
       all.sort((a, b) => a - b);
-      this.largestResidual = all.length > 0 ? all[Math.min(all.length - 1, Math.floor(0.995 * all.length))] : 0;
+      this.largestResidual = all.length > 0 ? all[Math.min(all.length - 1, Math.floor(USUAL_SHARE * all.length))] : 0;
+      this.extremeResidual = all.at(-1) ?? 0;
     }
     return this.largestResidual;
   }
@@ -99,9 +136,11 @@ export function colourings(scenes) {
   const list = [];
   const points = scenes.some((scene) => scene?.points && (scene.points.residual || (scene.points.measured && scene.points.model)));
   if (points) {
-    list.push({ key: 'residual', label: 'residual', unit: 'mm', factor: 1e3, diverging: false, ofPoints: true });
+    const largest = Math.max(...scenes.map((scene) => (scene?.series?.rms_m ?? []).reduce((most, value) => Math.max(most, value ?? 0), 0)));
+    const shown = largest > 0 && largest < 1e-5 ? { unit: 'µm', factor: 1e6 } : { unit: 'mm', factor: 1e3 };
+    list.push({ key: 'residual', label: 'residual', ...shown, diverging: false, ofPoints: true });
     if (scenes.some((scene) => rmsOfNoise(scene?.points?.sigma, scene?.points?.is_scan))) {
-      list.push({ key: 'residual_sigma', label: 'residual', unit: 'σ', factor: 1, diverging: false, ofPoints: true });
+      list.push({ key: 'residual_sigma', label: 'residual', unit: 'times the noise', factor: 1, diverging: false, ofPoints: true });
     }
   }
   for (const scene of scenes) {

@@ -55,7 +55,7 @@ export const POINTS = {
       float outer = 0.5 * size - 0.5;
       if (radius > outer) discard;
       if (ring > 0.5 && radius < outer - 3.0) discard;
-      float edge = ring > 0.5 ? 0.0 : smoothstep(outer - 1.9, outer - 0.9, radius);
+      float edge = ring > 0.5 || size < 5.0 ? 0.0 : smoothstep(outer - 1.9, outer - 0.9, radius);
       gl_FragColor = vec4(mix(colourOf(vValue), outline, edge), 1.0);
     }`,
 };

@@ -2,7 +2,7 @@
 import { chart } from './chart.js';
 import { cellColour } from './colours.js';
 import { h, svg } from './dom.js';
-import { fixed, isNumber, millimetres, NONE, number, quantity, sigmas } from './format.js';
+import { counted, fixed, isNumber, millimetres, NONE, number, quantity, sigmas } from './format.js';
 import { grid, name, section, table } from './section.js';
 import { traceCharts } from './reconstruction.js';
 
@@ -23,15 +23,15 @@ function rangeBar(value, paper) {
 
 export function table1Section({ data }) {
   const runs = (data.runs ?? []).filter((run) => run.table1?.rows?.length > 0);
-  return section('table1', 'Table 1', 'Table 1: what the search of geometry and material gains', 'The reduction of the residual, as median and extremes over the seeds, beside the paper’s value (diamond).',
+  return section('table1', 'Table 1', 'Table 1: what the search of geometry and material gains', 'The reduction of the residual per point: median and extremes over the seeds, and the paper’s value (diamond). Each seed has scans, a start and meshes of its own.',
     runs.map(({ table1 }) => [
-      table(null, [['searched'], ['seeds', true], ['reduction', true], ['from 0 to 100 %'], ['paper', true], ['from the start', true], ['of the sum |D_anim|', true], ['best, per point', true], ['Young’s modulus', true], ['Poisson’s ratio', true]],
+      table(null, [['searched'], ['seeds', true], ['reduction', true, 'from the largest residual of the search to the smallest'], ['from 0 to 100 %'], ['paper', true], ['reduction from the start', true], ['reduction of the sum |D_anim|', true], ['smallest residual per point', true], ['Young’s modulus', true], ['Poisson’s ratio', true]],
         table1.rows.map((row) => [name(row.name), String(row.seeds), range(row.drop_from_max, share), rangeBar(row.drop_from_max, row.paper_drop), share(row.paper_drop), range(row.drop_from_start, share), range(row.sum_drop_from_max, share), range(row.best_per_point_m, millimetres), range(row.young_modulus_Pa, (value) => quantity(value, 'Pa')), range(row.poisson_ratio, (value) => number(value))])),
       h('p', { class: 'explain' }, [
         table1.truth ? `True values: ${quantity(table1.truth.young_modulus_Pa, 'Pa')} and ${number(table1.truth.poisson_ratio)}.` : '',
-        table1.last_is_best?.of > 0 ? `${table1.rows.at(-1).name} does at least as well as the better of the others in ${table1.last_is_best.seeds} of ${table1.last_is_best.of} seeds.` : '',
-        isNumber(table1.mesh_noise?.per_point) ? `Mesh noise: ${number(100 * table1.mesh_noise.per_point, 2)} % of the residual per point.` : ''].filter(Boolean).join(' ').slice(0, 1000)),
-      Object.entries(table1.traces ?? {}).map(([key, trace]) => [h('h3', {}, name(key)), traceCharts(trace)])]));
+        table1.last_is_best?.of > 0 ? `The search “${table1.rows.at(-1).name}” ends at least as low as the better one of the others in ${table1.last_is_best.seeds} of ${table1.last_is_best.of} seeds.` : '',
+        isNumber(table1.mesh_noise?.per_point) ? `Mesh noise: another mesh of the same size changes the residual per point by ${number(100 * table1.mesh_noise.per_point, 2)} %.` : ''].filter(Boolean).join(' ').slice(0, 1000)),
+      Object.entries(table1.traces ?? {}).map(([key, trace]) => [h('h3', {}, 'Search “', name(key), '”'), traceCharts(trace)])]));
 }
 
 export function ablationSection({ data }) {
@@ -40,7 +40,7 @@ export function ablationSection({ data }) {
     runs.map(({ ablation }) => [
       table(null, [['row'], ['varies'], ['against'], ['reduction', true], ['from 0 to 100 %'], ['best, per point', true], ['modulus / truth', true], ['Poisson’s ratio − truth', true], ['evaluations', true], ['what it shows']],
         ablation.rows.map((row) => [name(row.name), name(row.varies), name(row.against), range(row.drop, share), rangeBar(row.drop), range(row.best_per_point_m, millimetres), range(row.young_modulus_over_truth, (value) => number(value)), range(row.poisson_ratio_less_truth, (value) => number(value, 2)), range(row.evaluations, (value) => number(value)), h('div', { class: 'prose' }, name(row.shows))])),
-      isNumber(ablation.mesh_noise) ? h('p', { class: 'explain' }, `Mesh noise: ${number(100 * ablation.mesh_noise, 2)} % of the residual per point; smaller differences mean nothing.`) : null]));
+      isNumber(ablation.mesh_noise) ? h('p', { class: 'explain' }, `Mesh noise: another mesh of the same size changes the residual per point by ${number(100 * ablation.mesh_noise, 2)} %; smaller differences mean nothing.`) : null]));
 }
 
 function confusion(counts) {
@@ -48,7 +48,7 @@ function confusion(counts) {
   if (truths.length === 0) return null;
   const said = [...new Set(truths.flatMap((truth) => Object.keys(counts[truth])))].sort();
   return h('div', { class: 'block' }, h('div', { class: 'block-head' }, h('h3', {}, 'Confusion matrix'), h('p', { class: 'explain' }, 'Rows are what was hidden; columns are the effect that was named, or the verdict. The tint is the share of the row.')),
-    h('div', { class: 'table-box' }, h('table', { class: 'matrix' }, h('thead', {}, h('tr', {}, h('th', {}), said.map((one) => h('th', { scope: 'col' }, name(one))))),
+    h('div', { class: 'table-box' }, h('table', { class: `matrix${said.length > 7 ? ' many' : ''}` }, h('thead', {}, h('tr', {}, h('th', {}), said.map((one) => h('th', { scope: 'col' }, name(one))))),
       h('tbody', {}, truths.map((truth) => {
         const total = Object.values(counts[truth]).reduce((sum, value) => sum + value, 0);
         return h('tr', {}, h('th', { scope: 'row' }, name(truth)), said.map((one) => {
@@ -82,9 +82,10 @@ export function trialsSection({ data }) {
   const of = (part, whole) => (whole > 0 ? `${part} of ${whole}` : NONE);
   return section('trials', 'Sealed cases', 'Sealed cases', 'Synthetic recordings whose hidden effect the diagnosis does not read. They measure how often a verdict is right.',
     (data.runs ?? []).filter((run) => run.trials).map(({ trials }) => [
-      table(null, [['group'], ['cases', true], ['correct', true], ['top two', true], ['wrong', true], ['ranked first', true], ['at noise', true], ['size ± 15 %', true], ['in interval', true], ['before', true], ['after', true], ['verdicts']],
+      table(null, [['group'], ['cases', true], ['named', true, 'the hidden effect, and no other'], ['in the first two', true], ['another named', true], ['ranked first', true, 'the hidden effect, by evidence'], ['fit at the noise', true, 'with the hidden effect'], ['size within 15 %', true], ['in the 95 % interval', true, 'true values of parameters'], ['error before', true], ['and after', true], ['verdicts']],
         (trials.tallies ?? []).map((one) => [name(one.group), String(one.cases), String(one.top1), String(one.top2), String(one.wrong), String(one.ranked_first), of(one.at_noise, one.fitted), of(one.within_15_percent, one.fitted), of(one.covered, one.intervals), sigmas(one.median_error_before), one.fitted > 0 ? sigmas(one.median_error_after) : NONE,
           name(Object.entries(one.verdicts ?? {}).map(([verdict, count]) => `${count} ${verdict}`).join(', '))])),
+      h('p', { class: 'explain' }, 'Controls hide nothing; hard controls have a faulty measurement; a removed effect is not in the catalogue that the diagnosis tries. 1 rec and 2 rec are the numbers of recordings; 2 x is the size of the hidden effect relative to the detectable one. Errors are medians on held-out frames.'),
       rateTable(trials.rates), confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
-      trials.unfinished?.length ? h('p', { class: 'explain' }, `${trials.unfinished.length} cases have no outcome.`) : null]));
+      trials.unfinished?.length ? h('p', { class: 'explain' }, `${counted(trials.unfinished.length, 'case')} without an outcome.`) : null]));
 }

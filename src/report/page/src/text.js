@@ -1,4 +1,5 @@
 // Names and sentences of the page, in the words of docs/glossary.md.
+import { h } from './dom.js';
 
 export const FAMILIES = {
   other: 'other physics', steady_force: 'steady force', loss_outside: 'loss outside the body',
@@ -31,7 +32,16 @@ export const PARAMETER_VERDICTS = {
   'at its bound': 'The best value lies on a bound, so the interval has little meaning.',
 };
 
+// The title of an effect within a sentence, without what it has in brackets.
+export function shortTitle(title) {
+  const short = title.replace(/ \(.*/, '');
+  return /^[A-Z][a-z]/.test(short) ? short[0].toLowerCase() + short.slice(1) : short;
+}
+
 export const KEYBOARD_HELP = 'Arrow keys turn the view, shift with an arrow key moves it, plus and minus zoom, 0 shows everything.';
+
+// A text of the program, in which `backticks` enclose commands.
+export const sentence = (text) => String(text).split(/`([^`]{1,200})`/).map((part, k) => (k % 2 ? h('code', {}, part) : part));
 
 export const namesOf = (names) => (names?.length ? names.join(' with ') : 'nothing');
 

@@ -66,6 +66,14 @@ function summary(results) {
       isNumber(result.thresholdShare) ? `${number(100 * result.thresholdShare, 2)} %` : '–', isNumber(result.largestErrorShare) ? `${number(100 * result.largestErrorShare, 2)} %` : '–', String(result.count), String(result.frames)]));
 }
 
+// The metric of the best model in words, as the paper puts it.
+function statement(results) {
+  const best = results.reduce((a, b) => (b.result.metric > a.result.metric ? b : a));
+  const { metric, low, high, thresholdShare } = best.result;
+  return h('p', {}, h('strong', {}, `${percent(metric)} (${percent(low)} to ${percent(high)})`),
+    ` is the probability that the prediction of the ${/model$/.test(best.choice.label) ? '' : 'model '}${best.choice.label.slice(0, 120)} represents the measurement, for these conditions and a measurement uncertainty of ${number(100 * thresholdShare, 2)} % of the largest displacement. A perfect model would reach ${percent(METRIC_OF_NOISE)}.`);
+}
+
 function method() {
   return h('details', { class: 'method' }, h('summary', {}, 'How it is computed, and what it means'),
     h('ol', {},
@@ -93,7 +101,7 @@ export async function validationSection({ choices, store, recordings }) {
     following(store, ['recording'], async (state) => {
       const results = await assess(choices, state.recording);
       const judged = results.filter(({ result }) => result);
-      if (judged.length > 0) return [summary(judged), figure(judged)];
+      if (judged.length > 0) return [statement(judged), summary(judged), figure(judged)];
       if (results.length > 0) return h('p', { class: 'explain' }, `The positions in this file are rounded to ${millimetres(results[0].data.rounding)}, too coarse for a noise of ${millimetres(results[0].data.sigma)}: no metric is computed.`);
       return h('p', { class: 'explain' }, `${String(state.recording).slice(0, 80)} has no held-out frames.`);
     }), method());

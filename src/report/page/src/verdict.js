@@ -1,9 +1,10 @@
 // The verdict with its probabilities: of families of effects, and of their members.
 import { h } from './dom.js';
-import { posterior, probabilityText, sigmas, isNumber } from './format.js';
+import { isNumber, posterior, probabilityText, timesNoise } from './format.js';
 import { FAMILIES, VERDICTS, namesOf } from './text.js';
 
 const WORTH_NAMING = 0.01;
+const IN_VAIN = 'One effect is named, but does not count';
 
 // Hypotheses grouped by family, the most probable one first.
 export function probabilityGroups(decision) {
@@ -30,36 +31,39 @@ function probabilityRow(name, probability, isMember) {
     h('span', { class: 'probability-value' }, posterior(probability)));
 }
 
+// What remains of the error, once the most probable hypothesis has been added.
 function adequacyText(decision) {
   const adequacy = decision?.adequacy;
   if (!adequacy) return null;
-  const subject = adequacy.beside?.length ? `The model with ${namesOf(adequacy.beside)}` : 'The model as it is';
-  if (adequacy.is_adequate) return `${subject} leaves no more than noise (${probabilityText(adequacy.p)}).`;
-  const left = isNumber(adequacy.left_share) ? `, ${(100 * adequacy.left_share).toFixed(1)} % of what was explained` : '';
-  const size = `${probabilityText(adequacy.p)}, ${sigmas(adequacy.rms_over_sigma)} over all frames${left}`;
-  return adequacy.is_tolerated ? `${subject} leaves slightly more than noise (${size}): no more than the error of any model.`
-    : `Something unknown is left: ${subject.toLowerCase()} leaves more than noise (${size}).`;
+  const subject = adequacy.beside?.length ? `With ${namesOf(adequacy.beside)}, the error` : 'The error';
+  const size = `${timesNoise(adequacy.rms_over_sigma)} over all frames, ${probabilityText(adequacy.p)}`;
+  if (adequacy.is_adequate) return `${subject} is what noise alone would leave (${size}).`;
+  if (!adequacy.is_tolerated) return `Something unknown remains: ${subject[0].toLowerCase()}${subject.slice(1)} is more than noise alone would leave (${size}).`;
+  const left = isNumber(adequacy.left_share) ? ` The excess is ${(100 * adequacy.left_share).toFixed(1)} % of what was explained, which is tolerated.` : '';
+  return `${subject} is slightly more than noise alone would leave (${size}).${left}`;
 }
 
 // One line: the verdict on a model that came later, and its most probable hypotheses.
-function shortVerdict(diagnosis, subject, title, groups) {
-  return h('div', { class: `verdict short verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
-    h('p', { class: 'verdict-head' }, h('span', { class: 'muted' }, `${subject.slice(0, 200)}: `), h('span', { class: 'verdict-name' }, title), ' ',
+function shortVerdict(diagnosis, subject, title, groups, isInVain) {
+  return h('div', { class: `verdict short ${isInVain ? 'in-vain' : `verdict-${diagnosis.verdict.replaceAll(' ', '-')}`}` },
+    h('p', { class: 'verdict-head' }, h('span', { class: 'muted' }, `${subject.slice(0, 200)}: `), h('span', { class: 'verdict-name' }, isInVain ? IN_VAIN : title), ' ',
       (diagnosis.effects ?? []).map((effect) => [h('code', { class: 'clip' }, effect), ' ']),
-      h('span', { class: 'muted' }, groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${posterior(group.probability)}`).join(', '))));
+      h('span', { class: 'muted' }, isInVain ? 'Once fitted, its size may be 0.'
+        : groups.slice(0, 3).map((group) => `${group.title.slice(0, 60)} ${posterior(group.probability)}`).join(', '))));
 }
 
-export function verdictBox(diagnosis, subject, isFirst) {
+// `isInVain`: the effect that is named does not count once it is fitted.
+export function verdictBox(diagnosis, subject, isFirst, isInVain) {
   if (!diagnosis?.verdict) return null;
   const [title, meaning] = VERDICTS[diagnosis.verdict] ?? [diagnosis.verdict, ''];
   const effects = diagnosis.effects ?? [];
   const groups = probabilityGroups(diagnosis.decision).filter((group) => group.probability >= WORTH_NAMING).slice(0, 5);
-  if (!isFirst) return shortVerdict(diagnosis, subject, title, groups);
+  if (!isFirst) return shortVerdict(diagnosis, subject, title, groups, isInVain);
   return h('div', { class: `verdict verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
     h('p', { class: 'verdict-head' },
       subject ? h('span', { class: 'muted' }, `${subject}: `) : null,
-      h('span', { class: 'verdict-name' }, title), effects.length > 0 ? [' ', effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
-    h('p', { class: 'explain' }, meaning, ' ', adequacyText(diagnosis.decision)),
+      h('span', { class: 'verdict-name' }, isInVain ? IN_VAIN : title), effects.length > 0 ? [' ', effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
+    h('p', { class: 'explain' }, isInVain ? 'Once fitted, its size may be 0.' : meaning, ' ', adequacyText(diagnosis.decision)),
     groups.length > 0 ? h('div', { class: 'probabilities', role: 'list', 'aria-label': 'Probability of what is missing' },
       h('p', { class: 'small-head' }, 'How sure: probability of what is missing'),
       groups.map((group) => [probabilityRow(group.title, group.probability, false),

@@ -19,7 +19,8 @@ export class View3d {
     this.canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': `3D view. ${KEYBOARD_HELP}`, class: 'view-canvas' });
     this.overlay = svg('svg', { class: 'view-overlay', 'aria-hidden': 'true' });
     this.labels = h('div', { class: 'view-labels' });
-    this.root = h('div', { class: 'view' }, this.canvas, this.overlay, this.labels);
+    this.copy = h('canvas', { class: 'view-print', 'aria-hidden': 'true' });
+    this.root = h('div', { class: 'view' }, this.canvas, this.copy, this.overlay, this.labels);
     this.panes = [new Pane(), new Pane()];
     this.visiblePanes = 1;
     this.view = null;
@@ -39,7 +40,7 @@ export class View3d {
   readTheme() {
     this.theme = {
       background: themeColour('view'), surface: themeColour('view-surface'), measured: themeColour('view-measured'),
-      model: themeColour('view-model'), arrow: themeColour('view-arrow'), outline: themeColour('view-outline'), edges: themeColour('view-edges'),
+      model: themeColour('view-model'), arrow: themeColour('view-arrow'), scan: themeColour('view-scan'), outline: themeColour('view-outline'), edges: themeColour('view-edges'),
     };
   }
 
@@ -78,6 +79,15 @@ export class View3d {
       this.isScheduled = false;
       this.render();
     });
+  }
+
+  // Draws the view and copies it to where browsers print it from: of a WebGL canvas they print what
+  // was last on the screen.
+  renderForPrint() {
+    this.render();
+    this.copy.width = this.canvas.width;
+    this.copy.height = this.canvas.height;
+    this.copy.getContext('2d').drawImage(this.canvas, 0, 0);
   }
 
   layout() {

@@ -1,6 +1,6 @@
 // The places and periods in which the model is worst, from the comparison or, without one, from the
 // residuals of the shown frames.
-import { directionText, isNumber, millimetres, seconds, sigmas } from './format.js';
+import { directionText, isNumber, millimetres, shortSeconds, timesNoise } from './format.js';
 
 export function worstPlaces(model, scene, data) {
   const recording = model?.comparison?.recordings?.find((one) => one.name === scene?.recording);
@@ -15,7 +15,7 @@ function fromComparison(recording) {
   for (const part of recording.parts ?? []) {
     if (part.largest_point >= 0 && isNumber(part.largest_time_s)) {
       items.push({ point: part.largest_point, time: part.largest_time_s, part: part.part, value: part.largest_m,
-        title: `${kind} ${name(part.largest_point)} at ${seconds(part.largest_time_s)}`,
+        title: `${kind} ${name(part.largest_point)} at ${shortSeconds(part.largest_time_s)}`,
         detail: `largest error, ${millimetres(part.largest_m)}` });
     }
     if (part.worst_point >= 0 && part.worst_point !== part.largest_point) {
@@ -27,8 +27,8 @@ function fromComparison(recording) {
     if (period) {
       const toward = directionText(period.mean_difference_m);
       items.push({ from: period.from_s, to: period.to_s, time: (period.from_s + period.to_s) / 2, part: part.part, value: period.rms_m,
-        title: `${seconds(period.from_s)} to ${seconds(period.to_s)}`,
-        detail: `worst period, ${millimetres(period.rms_m)} rms${toward ? `, predicted too far toward ${toward}` : ''}` });
+        title: `${shortSeconds(period.from_s)} to ${shortSeconds(period.to_s)}`,
+        detail: `worst period, ${millimetres(period.rms_m)} rms${toward ? `, predicted too far in ${toward}` : ''}` });
     }
   }
   return items;
@@ -52,11 +52,11 @@ function fromResiduals(data) {
   if (!best) return [];
   const part = (frame) => (data.scene.fitted?.[frame] === false ? 'held out' : data.scene.fitted ? 'fitted' : '');
   const worst = frames.reduce((a, b) => (b.rms > a.rms ? b : a));
-  const over = data.noise ? `, ${sigmas(worst.rms / data.noise)}` : '';
+  const over = data.noise ? `, ${timesNoise(worst.rms / data.noise)}` : '';
   return [
     { point: best.point, time: data.times[best.frame], part: part(best.frame), value: best.value,
-      title: `${data.pointName(best.point)} at ${seconds(data.times[best.frame])}`, detail: `largest error, ${millimetres(best.value)}` },
+      title: `${data.pointName(best.point)} at ${shortSeconds(data.times[best.frame])}`, detail: `largest error, ${millimetres(best.value)}` },
     { time: data.times[worst.frame], part: part(worst.frame), value: worst.rms,
-      title: `frame at ${seconds(data.times[worst.frame])}`, detail: `worst frame, ${millimetres(worst.rms)} rms${over}` },
+      title: `frame at ${shortSeconds(data.times[worst.frame])}`, detail: `worst frame, ${millimetres(worst.rms)} rms${over}` },
   ];
 }
