@@ -1,6 +1,6 @@
 #include "prediction/predicted_states.h"
 
-#include <fmt/format.h>
+#include <iterator>
 
 #include <algorithm>
 #include <vector>
@@ -10,6 +10,7 @@
 #include "fem/element_strain.h"
 #include "fem/nodal_recovery.h"
 #include "geometry/thinned_surface.h"
+#include "record/thinning_notes.h"
 
 namespace lacuna {
 namespace {
@@ -118,12 +119,8 @@ MotionRecord ShownMotion(const RecordingModel& recording, const PredictedStates&
     if (force != nullptr)
       motion.fields[5].values.col(k) = LengthsAt(force->DensityAt(state.time), nodes);
   }
-  if (vertices < body.boundary.surface.vertices.cols())
-    motion.notes.push_back(fmt::format("The surface is drawn with {} of its {} vertices.", vertices,
-                                       body.boundary.surface.vertices.cols()));
-  const size_t frames = recording.item().frames.size();
-  if (static_cast<size_t>(count) < frames)
-    motion.notes.push_back(fmt::format("{} of {} frames are drawn.", count, frames));
+  motion.notes = NotesOnThinning(vertices, body.boundary.surface.vertices.cols(), count,
+                                 std::ssize(recording.item().frames));
   if (!predicted.summary.IsUsable())
     motion.notes.push_back("The prediction stops early: " + predicted.summary.message);
   return motion;

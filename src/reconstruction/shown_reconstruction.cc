@@ -1,10 +1,12 @@
 #include "reconstruction/shown_reconstruction.h"
 
-#include <fmt/format.h>
 #include <glog/logging.h>
+
+#include <iterator>
 
 #include "effects/gravity.h"
 #include "geometry/thinned_surface.h"
+#include "record/thinning_notes.h"
 
 namespace lacuna {
 namespace {
@@ -55,12 +57,8 @@ MotionRecord ShownReconstruction(const ReconstructionStudy& study,
     shown.fields[2].values.col(f) = lengths(frame.force, nodes);
     shown.scans.push_back(states[k].cloud.points);
   }
-  if (vertices < body.boundary.surface.vertices.cols())
-    shown.notes.push_back(fmt::format("The surface is drawn with {} of its {} vertices.", vertices,
-                                      body.boundary.surface.vertices.cols()));
-  if (chosen.size() < motion.frames.size())
-    shown.notes.push_back(
-        fmt::format("{} of {} frames are drawn.", chosen.size(), motion.frames.size()));
+  shown.notes = NotesOnThinning(vertices, body.boundary.surface.vertices.cols(), count,
+                                std::ssize(motion.frames));
   return shown;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "record/packed_array.h"
+#include "record/thinning_notes.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -77,6 +78,13 @@ TEST(MotionRecord, LargeScansAreThinnedWithANote) {
   const StoredMotion stored = ReadMotionFile(folder / "motion.json");
   EXPECT_EQ(Unpack(stored.points.at("measured")).shape[1], kMostShownPoints);
   EXPECT_THAT(stored.notes, testing::ElementsAre(testing::HasSubstr("at most 4000")));
+}
+
+TEST(MotionRecord, WhatIsNotShownIsNoted) {
+  EXPECT_THAT(NotesOnThinning(20, 20, 3, 3), testing::IsEmpty());
+  EXPECT_THAT(NotesOnThinning(20, 100, 3, 9),
+              testing::ElementsAre("The surface is drawn with 20 of its 100 vertices.",
+                                   "3 of 9 frames are drawn."));
 }
 
 TEST(MotionRecord, IsSmall) {

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# Opens reports in Chromium: page_test.sh SOURCES WORK [LACUNA]
+# Opens reports in Chromium: page_test.sh SOURCES WORK [LACUNA [LARGE_RUN]]
 # Runs the tests of tests/report/page, with their dependencies installed in WORK. With the program
 # LACUNA, a coarse model is fitted to the bundled recording and compared with it, and the tests that
-# suit any report open the report that was written. Ends with 77 (skipped) where a tool is absent.
+# suit any report open the report that was written. With LARGE_RUN (large_run.cc) too, the reports of
+# two large motions are written and opened, and what that takes is printed. Ends with 77 (skipped)
+# where a tool is absent.
 set -euo pipefail
 sources=$1
 work=$2
@@ -26,7 +28,14 @@ if ! cmp -s package-lock.json node_modules/.installed; then
   cp package-lock.json node_modules/.installed
 fi
 
-if (($# > 2)); then
+if (($# > 3)); then
+  for size in 10000x30 100000x100; do
+    "$4" "$work/$size" "${size%x*}" "${size#*x}"
+    "$3" report --quiet "$work/$size" --output "$work/report_of_$size.html"
+  done
+  export LACUNA_LARGE_REPORTS=$work/report_of_10000x30.html:$work/report_of_100000x100.html
+  only=(--test-name-pattern='a large report')
+elif (($# > 2)); then
   cat >"$work/coarse.yaml" <<EXPERIMENT
 use: $sources/experiments/hidden_effect.yaml
 output: run

@@ -2,6 +2,7 @@
 //
 //   CHROMIUM               the browser, /usr/bin/chromium unless given
 //   LACUNA_REPORT_FILES    report files, separated by colons, that the general tests open as well
+//   LACUNA_LARGE_REPORTS   report files of large motions, of which size and times are measured
 import assert from 'node:assert/strict';
 import { createHash } from 'node:crypto';
 import { mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
@@ -16,11 +17,13 @@ import { METRIC_OF_NOISE, validationMetric } from '../../../src/report/page/src/
 const here = dirname(fileURLToPath(import.meta.url));
 const pageFolder = join(here, '../../../src/report/page');
 const givenFiles = (process.env.LACUNA_REPORT_FILES ?? '').split(':').filter(Boolean);
+const largeFiles = (process.env.LACUNA_LARGE_REPORTS ?? '').split(':').filter(Boolean);
 const LAPTOP = { width: 1440, height: 900 }, PHONE = { width: 390, height: 844 };
 
-// The aims are 4 MB, 2 s and 100 ms on an idle machine with two cores; the limits of
-// the times leave room for one that many share.
-const LARGEST_FILE = 4e6, LONGEST_OPENING = 20000, LONGEST_STEP = 1000;
+// The aims are 4 MB, and on an idle machine with two cores 2 s to open and 100 ms for a step. Times on
+// a machine that many share say little: these limits of the processor time, in s, notice only what has
+// become several times slower. docs/report.md has times that were measured.
+const LARGEST_FILE = 4e6, LONGEST_OPENING = 15, LONGEST_STEP = 1.5;
 
 let browser, folder;
 
@@ -422,26 +425,65 @@ test('the keyboard alone reaches and works every control', async () => {
   await close();
 });
 
-test('a report of 10 000 vertices and 30 frames is small and quick', async () => {
-  const file = fixture('10k');
+// The processor time of each process of the browser, s, by its number.
+async function processorTimes() {
+  const session = await browser.newBrowserCDPSession();
+  const { processInfo } = await session.send('SystemInfo.getProcessInfo');
+  await session.detach();
+  return new Map(processInfo.map(({ id, cpuTime }) => [id, cpuTime]));
+}
+
+// What `action` returns, and the processor time that it takes.
+async function timed(action) {
+  const before = await processorTimes();
+  const value = await action();
+  const after = await processorTimes();
+  return { value, seconds: [...after].reduce((sum, [id, time]) => sum + time - (before.get(id) ?? 0), 0) };
+}
+
+const STEPS = 20;
+
+// Opens a report and steps through its frames, with the surface coloured by a field. Prints the size,
+// and how long opening and a step take.
+async function measure(title, file) {
   const size = statSync(file).size;
-  const opening = [], steps = [];
-  for (let k = 0; k < 2; ++k) {
-    const { page, problems, close } = await open(file);
-    opening.push(await page.evaluate(() => Number(document.documentElement.dataset.ready)));
-    if (k === 1) {
-      await page.getByLabel('Colour', { exact: true }).selectOption('field:strain');
-      steps.push(...await page.evaluate(() => Array.from({ length: 20 }, (_, f) => window.lacunaReport.motion.view.measureStep([(3 * f) % 30]))));
-    }
-    assert.deepEqual(problems, []);
-    await close();
-  }
-  const step = steps.sort((a, b) => a - b)[10];
-  console.log(`10 000 vertices × 30 frames: ${(size / 1e6).toFixed(2)} MB (aim 4), ready after ${opening.map((ms) => (ms / 1e3).toFixed(1)).join(' and ')} s (aim 2), median step ${step.toFixed(0)} ms (aim 100)`);
+  const { value: { page, problems, close }, seconds: opening } = await timed(() => open(file, { timeout: 300000 }));
+  const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready) / 1e3);
+  const note = await page.locator('.motion > .explain').textContent();
+  const frames = await page.evaluate(() => window.lacunaReport.motion.data[0].times.length);
+  const colour = page.getByLabel('Colour', { exact: true });
+  await colour.selectOption(await colour.locator('option[value^="field:"]').first().getAttribute('value'));
+  await page.waitForTimeout(500);
+  const { value: steps, seconds } = await timed(() => page.evaluate(([count, last]) => Array.from({ length: count }, (_, f) => window.lacunaReport.motion.view.measureStep([(7 * f) % last])), [STEPS, frames]));
+  const step = steps.sort((a, b) => a - b)[STEPS / 2] / 1e3;
+  console.log(`${title}: ${(size / 1e6).toFixed(2)} MB; opened in ${ready.toFixed(1)} s, with ${opening.toFixed(1)} s of processor time; a step in ${step.toFixed(3)} s, with ${(seconds / STEPS).toFixed(3)} s`);
+  assert.deepEqual(problems, []);
+  await close();
+  return { size, opening, step: seconds / STEPS, note, frames };
+}
+
+test('a report of 10 000 vertices and 30 frames is small and quick', async () => {
+  const { size, opening, step } = await measure('10 000 vertices × 30 frames', fixture('10k'));
   assert.ok(size <= LARGEST_FILE);
-  assert.ok(Math.min(...opening) <= LONGEST_OPENING);
+  assert.ok(opening <= LONGEST_OPENING);
   assert.ok(step <= LONGEST_STEP);
 });
+
+for (const file of largeFiles) {
+  test(`${basename(file)}: a large report opens`, async () => {
+    const { size, opening, step, note, frames } = await measure(basename(file), file);
+    const [, vertices, recorded] = /(\d+)x(\d+)/.exec(file).map(Number);
+    assert.equal(frames, recorded);
+    if (vertices > 20000) {
+      assert.match(note, /The surface is drawn with \d+ of its \d+ vertices\./);
+    } else {
+      assert.equal(note, '');
+      assert.ok(size <= LARGEST_FILE);
+      assert.ok(opening <= LONGEST_OPENING);
+      assert.ok(step <= LONGEST_STEP);
+    }
+  });
+}
 
 test('a report of 100 000 vertices and 100 frames opens', async () => {
   const file = fixture('100k');
