@@ -66,6 +66,83 @@ TEST(ReportDocument, AnAddedModelIsShownAfterTheOneThatItWasMadeFrom) {
   EXPECT_EQ(run.at("models").at(1).at("added"), "drag");
 }
 
+TEST(ReportDocument, AModelWhoseAddedEffectMayBeZeroDoesNotCount) {
+  const TemporaryFolder folder;
+  Ledger ledger = SmallLedger();
+  DiagnosisRecord diagnosis = *ledger.models[0].diagnosis;
+  diagnosis.ranking[0].title = "Drag (of air)";
+  diagnosis.ranking[0].sizes = {{"coefficient", "kg/m^3"}};
+  WriteSmallFit(folder / "bar", {}, ledger.models[0].record);
+  WriteSmallDiagnosis(folder / "bar", diagnosis);
+  CalibrationRecord record = ledger.models[1].record;
+  ParameterEstimate& estimate = record.parameters[1].estimate;
+  const auto second = [&](double low) {
+    estimate.low = low;
+    estimate.high = 5;
+    WriteSmallFit(folder / "bar+drag", {.name = "bar+drag"}, record);
+    return ReportDocument({folder / "bar+drag"}).at("runs").at(0).at("models").at(1);
+  };
+  EXPECT_EQ(second(1).at("label"), "with drag");
+  EXPECT_EQ(second(1).at("counts"), true);
+  EXPECT_EQ(second(-1).at("counts"), false);
+}
+
+TEST(ReportDocument, SeriesOfPointsAreExactWhereTheNoiseIsSmall) {
+  const TemporaryFolder folder;
+  CalibrationRecord record = SmallLedger().models[0].record;
+  const auto series = [&](double noise) {
+    record.noise = noise;
+    WriteSmallFit(folder / "bar", {}, record);
+    return ReportDocument({folder / "bar"})
+        .at("runs")
+        .at(0)
+        .at("models")
+        .at(0)
+        .at("scenes")
+        .at(0)
+        .at("points_series")
+        .at("measured");
+  };
+  // The positions span 0.06 m, so that a 16-bit step is 0.9 µm.
+  EXPECT_EQ(series(1e-4).at("type"), "int16");
+  const json precise = series(1e-6);
+  EXPECT_EQ(precise.at("type"), "float32");
+  // The second marker in frame 7: 0.06, 0.002, 0.007 m.
+  EXPECT_NEAR(Unpack(precise).values(3, 7), 0.06, 4e-9);
+  EXPECT_NEAR(Unpack(precise).values(5, 7), 0.007, 4e-9);
+}
+
+TEST(ReportDocument, CorrelationsOfAllPairsOfPointsAreLeftOut) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const json comparison =
+      ReportDocument({folder / "bar"}).at("runs").at(0).at("models").at(0).at("comparison");
+  const json& space = comparison.at("recordings").at(0).at("parts").at(0).at("space_correlation");
+  EXPECT_TRUE(space.contains("mean_correlation"));
+  EXPECT_FALSE(space.contains("pairs"));
+}
+
+TEST(ReportDocument, SealedCasesHaveOneSentenceForEachKindOfTruth) {
+  const TemporaryFolder folder;
+  const auto rate = [](const char* truth, const char* what, int cases, int of) {
+    return json{{"truth", truth}, {"what", what}, {"cases", cases}, {"of", of}, {"predicted", {}}};
+  };
+  json report = {{"tallies", json::array()},
+                 {"rates",
+                  {rate("nothing is missing", "an effect is named", 0, 17),
+                   rate("nothing is missing", "several are named", 0, 17),
+                   rate("two effects are missing", "both are named", 0, 0),
+                   rate("one effect is missing", "it is named, and no other", 11, 18)}}};
+  std::ofstream(folder / "report.json") << report;
+  EXPECT_THAT(ReportDocument({folder.Path()}).at("sentences"),
+              ElementsAre("In 0 of 17 cases in which nothing is missing, an effect is named.",
+                          "In 11 of 18 cases in which one effect is missing, it is named, and no "
+                          "other."));
+  report["rates"][0].erase("of");
+  std::ofstream(folder / "report.json") << report;
+  EXPECT_THAT(WhyRefused({folder.Path()}), HasSubstr("report.json"));
+}
+
 TEST(ReportDocument, ScenesHaveTheFramesOfTheMotionAndAllFramesAsSeries) {
   const TemporaryFolder folder;
   WriteSmallChain(folder.Path());

@@ -60,6 +60,7 @@ export function forceSection(context) {
       const scene = sceneOf(choice, state.recording);
       const record = choice.model.comparison?.recordings?.find((one) => one.name === state.recording)?.unexplained_force;
       const shown = [scene ? charts(scene, store) : null, summary(record)].filter(Boolean);
-      return shown.length > 0 ? [h('p', { class: 'explain' }, `Model: ${choice.label.slice(0, 120)}. Recording: ${String(state.recording).slice(0, 80)}.`), ...shown] : null;
+      const subject = `Model: ${choice.label.slice(0, 120)}. Recording: ${String(state.recording).slice(0, 80)}.`;
+      return shown.length > 0 ? [h('p', { class: 'explain' }, subject), ...shown] : h('p', { class: 'explain' }, `${subject} No such force was computed for it; choose another one above.`);
     }));
 }

@@ -106,7 +106,7 @@ export class Motion {
       const main = data.find(Boolean);
       if (main && (this.homeOf !== main.scene.recording)) {
         this.homeOf = main.scene.recording;
-        this.view.orbit.setHome(main.bounds(), main.up);
+        this.view.orbit.setHome({ ...main.bounds(), normals: main.normals() }, main.up);
         this.chooseArrowScale(data, main.bounds().radius);
         this.edges = main.triangleCount > 0 && main.triangleCount <= LARGEST_WITH_EDGES;
       }

@@ -3,7 +3,9 @@ import { PerspectiveCamera, Vector3 } from 'three';
 
 const FIELD_OF_VIEW = 30;
 const STEP = Math.PI / 24;
-const SMALLEST_VIEW = 0.55;  // share of the largest face that is seen at least
+const SMALLEST_VIEW = 0.6;  // share of the largest visible surface that is seen at least
+
+const directionAt = (azimuth, elevation) => [Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation)];
 
 export class OrbitCamera {
   constructor(element, onChange) {
@@ -37,17 +39,20 @@ export class OrbitCamera {
     this.onChange();
   }
 
-  // From the side and a little above; of a sheet, which would be seen edge-on from there, more of
-  // its face.
+  // From the side and a little above; a sheet, which might be seen edge-on from there, from where
+  // more of its surface is visible.
   homeDirection() {
-    const { low, high } = this.home;
-    const usual = new Vector3(0.54, -0.755, 0.371).normalize();
-    const sizes = this.basis.map((axis) => ['x', 'y', 'z'].reduce((sum, one, k) => sum + Math.abs(axis[one]) * ((high?.[k] ?? 1) - (low?.[k] ?? 0)), 0));
-    const faces = [sizes[1] * sizes[2], sizes[2] * sizes[0], sizes[0] * sizes[1]];
-    const seen = usual.toArray().reduce((sum, one, k) => sum + Math.abs(one) * faces[k], 0);
-    const largest = faces.indexOf(Math.max(...faces));
-    if (seen < SMALLEST_VIEW * faces[largest]) usual.setComponent(largest, 2.2 * Math.sign(usual.getComponent(largest))).normalize();
-    return usual.toArray();
+    const toWorld = ([x, y, z]) => this.basis.reduce((sum, axis, k) => sum.addScaledVector(axis, [x, y, z][k]), new Vector3());
+    const area = (direction) => {
+      const { normals } = this.home, { x, y, z } = toWorld(direction);
+      let sum = 0;
+      for (let k = 0; k < (normals?.length ?? 0); k += 3) sum += Math.abs(normals[k] * x + normals[k + 1] * y + normals[k + 2] * z);
+      return sum;
+    };
+    const usual = directionAt(-0.95, 0.38);
+    const others = [0.38, 0.85].flatMap((elevation) => Array.from({ length: 12 }, (_, k) => directionAt(-0.95 + (k * Math.PI) / 6, elevation)));
+    const best = others.reduce((a, b) => (area(b) > area(a) ? b : a));
+    return area(usual) < SMALLEST_VIEW * area(best) ? best : usual;
   }
 
   lookAt(place, share = 0.45) {

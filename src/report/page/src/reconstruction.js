@@ -11,7 +11,7 @@ function best(values) {
   return values.map((value) => (least = Number.isFinite(value) ? Math.min(least, value) : least));
 }
 
-const PARAMETERS = { young_modulus_Pa: 'Young’s modulus', poisson_ratio: 'Poisson’s ratio', max_volume_m3: 'largest volume of a tetrahedron', radius_edge_ratio: 'ratio of radius to edge of a tetrahedron' };
+const PARAMETERS = { young_modulus_Pa: 'Young’s modulus', poisson_ratio: 'Poisson’s ratio', max_volume_m3: 'Largest volume of a tetrahedron', radius_edge_ratio: 'Ratio of radius to edge of a tetrahedron' };
 const LENGTHS = [['residual_mean_m', 'mean residual |D| per point', 'series-last'], ['surface_distance_mean_m', 'mean distance of the scan', 'series-2'], ['surface_distance_max_m', 'largest distance of the scan', 'series-first']];
 
 // The axis of the frames: their times, or else their numbers.
@@ -44,16 +44,16 @@ export function traceCharts(trace) {
   if (measure) {
     const factor = measure.endsWith('_m') ? 1e3 : 1;
     const values = scaled(trace[measure], factor);
-    charts.push(chart({ title: 'Trace of the search', explain: 'Each dot is one reconstruction with other parameters; the line is the best so far.', x: 'evaluation', y: `${measure.replace(/_m$/, '').replaceAll('_', ' ')}${factor === 1e3 ? ', mm' : ''}`,
+    charts.push(chart({ title: 'Trace of the search', explain: 'Each dot is one reconstruction; the line is the best so far.', height: 180, x: 'evaluation', y: `${measure.replace(/_m$/, '').replaceAll('_', ' ')}${factor === 1e3 ? ', mm' : ''}`,
       series: [{ label: 'evaluations', x: evaluation, y: values, colour: 'noise', style: 'dots' }, { label: 'best so far', x: evaluation, y: best(values), colour: 'series-last' }] }));
   }
   for (const [key, values] of columns) {
-    if (!/young_modulus|poisson_ratio|max_volume|radius_edge/.test(key)) continue;
+    if (!/young_modulus|poisson_ratio|max_volume|radius_edge/.test(key) || new Set(values).size < 2) continue;  // not searched
     const largest = Math.max(...values.filter(isNumber).map(Math.abs), 0);
     const { unit, factor } = key.endsWith('_Pa') ? displayUnit('Pa', largest) : key.endsWith('_m3') ? { unit: 'mm³', factor: 1e9 } : { unit: '', factor: 1 };
     charts.push(chart({ title: PARAMETERS[key] ?? key.replaceAll('_', ' '), x: 'evaluation', y: unit, height: 180, axisSize: 64, includesZero: false, legend: false, series: [{ label: key, x: evaluation, y: scaled(values, factor), colour: 'series-1', style: 'dots' }] }));
   }
-  return grid(charts);
+  return grid(charts, 'small');
 }
 
 function facts(record) {

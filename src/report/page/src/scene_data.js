@@ -110,6 +110,19 @@ export class SceneData {
     return this.largestResidual;
   }
 
+  // Normals of some triangles in the first frame, as long as twice the area of each.
+  normals() {
+    if (!this.positions) return [];
+    const places = this.positions.frame(0), { indices } = this, normals = [];
+    const every = 3 * Math.max(1, Math.floor(this.triangleCount / 2000));
+    for (let t = 0; t + 2 < indices.length; t += every) {
+      const [a, b, c] = [0, 1, 2].map((k) => places.subarray(3 * indices[t + k], 3 * indices[t + k] + 3));
+      const [u, v] = [b, c].map((one) => [0, 1, 2].map((k) => one[k] - a[k]));
+      normals.push(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+    }
+    return normals;
+  }
+
   // Centre and radius of everything that is drawn.
   bounds() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];

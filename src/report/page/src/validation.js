@@ -70,7 +70,8 @@ function summary(results) {
 function statement(results) {
   const best = results.reduce((a, b) => (b.result.metric > a.result.metric ? b : a));
   const { metric, low, high, thresholdShare } = best.result;
-  return h('p', {}, h('strong', {}, `${percent(metric)} (${percent(low)} to ${percent(high)})`),
+  const band = percent(low) === percent(high) ? '' : ` (${percent(low)} to ${percent(high)})`;
+  return h('p', {}, h('strong', {}, `${percent(metric)}${band}`),
     ` is the probability that the prediction of the ${/model$/.test(best.choice.label) ? '' : 'model '}${best.choice.label.slice(0, 120)} represents the measurement, for these conditions and a measurement uncertainty of ${number(100 * thresholdShare, 2)} % of the largest displacement. A perfect model would reach ${percent(METRIC_OF_NOISE)}.`);
 }
 

@@ -65,7 +65,7 @@ export function verdictBox(diagnosis, subject, isFirst, isInVain) {
       h('span', { class: 'verdict-name' }, isInVain ? IN_VAIN : title), effects.length > 0 ? [' ', effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
     h('p', { class: 'explain' }, isInVain ? 'Once fitted, its size may be 0.' : meaning, ' ', adequacyText(diagnosis.decision)),
     groups.length > 0 ? h('div', { class: 'probabilities', role: 'list', 'aria-label': 'Probability of what is missing' },
-      h('p', { class: 'small-head' }, 'How sure: probability of what is missing'),
+      h('p', { class: 'small-head' }, 'How sure: the probability of each effect that could be missing'),
       groups.map((group) => [probabilityRow(group.title, group.probability, false),
         group.members.filter((member) => member.probability >= WORTH_NAMING).map((member) => probabilityRow(member.name, member.probability, true))])) : null);
 }

@@ -68,9 +68,9 @@ export function waterfall(choices, runs) {
   const endings = [...new Set(groups.map(({ run }) => ENDINGS[run.ledger?.ending?.reason]).filter(Boolean))];
   return h('figure', { class: 'waterfall' },
     h('figcaption', {}, h('h2', {}, `Error of each model on ${isHeldOut ? 'held-out' : 'fitted'} frames`),
-      h('p', { class: 'explain' }, isHeldOut ? 'Rms distance of prediction and measurement in frames that no parameter was fitted to.'
-        : 'Rms distance of prediction and measurement. Nothing was held out, so that a new recording would show a larger error.',
-        hasNoise ? ' A bar that ends at the dashed line is as good as the measurement allows.' : '')),
+      h('p', { class: 'explain' }, isHeldOut ? 'Rms distance from the measurement in frames that no parameter was fitted to.'
+        : 'Rms distance from the measurement. Nothing was held out, so that a new recording would show a larger error.',
+        hasNoise ? ' At the dashed line, a model is as good as the measurement allows.' : '')),
     groups.map(({ run, bars, noise }) => h('div', { class: 'bars', role: 'list', 'aria-label': `Errors of ${run.name ?? 'the run'}` },
       bars.map((bar) => barRow(bar, noise, share)))),
     hasNoise ? h('p', { class: 'key' }, h('span', { class: 'key-noise', 'aria-hidden': 'true' }), `noise of the measurement, ${millimetres(groups.find((group) => group.noise).noise)}`) : null,
