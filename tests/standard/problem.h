@@ -1,0 +1,108 @@
+// A standard problem: a body, its supports and loads, what is wanted, and the published value.
+//
+// The files in problems/ are in the format that ReadProblem describes; docs/verification.md says
+// how to run them. All numbers are in SI units.
+#ifndef LACUNA_STANDARD_PROBLEM_H_
+#define LACUNA_STANDARD_PROBLEM_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiment/model_reader.h"
+#include "fem/model.h"
+#include "fem/time_scheme.h"
+#include "geometry/axis_set.h"
+#include "standard/mapped_block.h"
+
+namespace lacuna {
+
+// A part that is held along some axes, at rest or with a motion: a rotation about the z axis
+// through `centre` and a translation, both multiplied by the profile.
+struct ProblemSupport {
+  std::string name;
+  BlockPart part;
+  AxisSet axes = AxisSet::All();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero(), centre = Eigen::Vector3d::Zero();
+  double angle = 0;
+  Profile profile;
+  bool Moves() const { return angle != 0 || !translation.isZero(0); }
+};
+
+struct ProblemLoad {
+  BlockPart part;                                      // faces of the block
+  Eigen::Vector3d traction = Eigen::Vector3d::Zero();  // Pa
+  Profile profile;
+};
+
+enum class ProblemKind {
+  kStatic,       // the equilibrium
+  kModes,        // natural frequencies at rest
+  kQuasiStatic,  // equilibria in steps from rest, with rate-dependent effects
+  kMotion        // steps with inertia from the rest shape and an initial velocity
+};
+
+// What is computed and compared with the published value, at the end of the motion.
+struct Wanted {
+  enum class Kind {
+    kDisplacement,  // of a point, along an axis, m
+    kStress,        // Cauchy, of a point, Pa
+    kVonMises,
+    kReaction,   // of a support, along an axis, N
+    kTorque,     // of a support, about the z axis through `centre`, N m
+    kFrequency,  // of a mode, Hz
+    kVelocity,   // of the centre of mass, along an axis, m/s
+    kEnergy      // kinetic and potential energy over that at the start
+  };
+  Kind kind = Kind::kDisplacement;
+  std::string name;   // "displacement_y"
+  int component = 0;  // axis, or of the stress xx, yy, zz, yz, xz, xy
+  BlockPart point;
+  std::string support;
+  int mode = 1;      // 1 is the lowest
+  double value = 0;  // published
+  double scale = 1;  // a value of the file's unit in SI units
+  std::string unit;
+};
+
+// The error that another program has on the same problem, with its source.
+struct PeerResult {
+  std::string program;
+  double value = 0;
+  size_t wanted = 0;  // index in Problem::wanted
+  std::string source;
+};
+
+struct ProblemMesh {
+  std::array<int, 3> cells = {1, 1, 1};
+  int steps = 1;  // of a motion
+};
+
+struct Problem {
+  std::string name, title, source, remark;
+  BlockMap map;
+  std::vector<int> orders;  // of the elements
+  EffectList effects;       // material first
+  double density = 1;
+  std::vector<ProblemSupport> supports;
+  std::vector<ProblemLoad> loads;
+  ProblemKind kind = ProblemKind::kStatic;
+  double duration = 0;
+  TimeScheme scheme = TimeScheme::kTwoStep;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  std::vector<Wanted> wanted;
+  std::vector<PeerResult> peers;
+  std::vector<ProblemMesh> meshes;  // each finer than the one before
+  int quick = 0;                    // so many of the meshes belong to the quick set
+  // Largest relative error on the last mesh of the quick set, for each order of elements.
+  std::vector<double> tolerances;
+};
+
+// Throws InputError with file, line and field.
+Problem ReadProblem(const std::filesystem::path& file);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_STANDARD_PROBLEM_H_
