@@ -116,8 +116,9 @@ TEST(RecordingAgreement, HasUniformPValuesWhereRecordingsShareEverything) {
 }
 
 TEST(RecordingAgreement, NamesTheParameterThatDiffers) {
-  const AgreementRecord same = FittedPair(1).Compare(FittedPair(1).misfit);
-  const ParameterOfRecordings& modulus = same.parameters.front();
+  const FittedPair same(1);
+  const AgreementRecord agreement = same.Compare(same.misfit);
+  const ParameterOfRecordings& modulus = agreement.parameters.front();
   ASSERT_EQ(modulus.name, "young_modulus");
   // Three standard deviations of the difference of both estimates.
   const double apart =
@@ -130,7 +131,8 @@ TEST(RecordingAgreement, NamesTheParameterThatDiffers) {
     named += record.MostDifferent()->name == "young_modulus" ? 1 : 0;
     found += record.Disagree() ? 1 : 0;
   }
-  std::printf("apart %.4f, named %d, found %d of %d\n", apart, named, found, kPairs);
+  RecordProperty("named", named);
+  RecordProperty("found", found);
   EXPECT_GE(named, 0.9 * kPairs);
   // A normal variable with the mean 3 exceeds 1.96 in 85 %; the test of three parameters together
   // has less power, the correlation of the estimates adds to it.
@@ -145,8 +147,6 @@ TEST(RecordingAgreement, EstimatesWhatAFitToOneRecordingFinds) {
     const FittedPair alone(1.01, r);
     for (size_t k = 0; k < together.parameters.size(); ++k) {
       const ParameterOfRecordings& parameter = together.parameters[k];
-      std::printf("%s: %g ± %g, alone %g\n", parameter.name.c_str(), parameter.values[r],
-                  parameter.deviations[r], alone.values[static_cast<Eigen::Index>(k)]);
       EXPECT_NEAR(parameter.values[static_cast<size_t>(r)],
                   alone.values[static_cast<Eigen::Index>(k)],
                   0.5 * parameter.deviations[static_cast<size_t>(r)])
