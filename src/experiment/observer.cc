@@ -5,15 +5,6 @@
 
 namespace lacuna {
 
-Eigen::MatrixXd ObservationMatrix::operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const {
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(Count(), nodal.cols());
-  for (Eigen::Index k = 0; k < nodal.cols(); ++k)
-    for (int row = 0; row < Count(); ++row)
-      for (int entry = begin[row]; entry < begin[row + 1]; ++entry)
-        product(row, k) += weight[entry] * nodal(column[entry], k);
-  return product;
-}
-
 MarkerObserver::MarkerObserver(const Recording& recording, const TetMesh& mesh)
     : recording_(recording), mesh_(mesh), places_(Embed(mesh, recording.markers.places)) {
   if (recording.instrument.subset > 0) {

@@ -7,22 +7,12 @@
 #include <memory>
 #include <vector>
 
+#include "experiment/observation_matrix.h"
 #include "geometry/embedding.h"
 #include "geometry/tet_mesh.h"
 #include "scan/recording.h"
 
 namespace lacuna {
-
-// The observation matrix W, in compressed rows: y = W x for node positions x (3n) or their Jacobian
-// (3n × k).
-struct ObservationMatrix {
-  std::vector<int> begin{0};   // for each row, index of its first entry; rows + 1 entries
-  std::vector<int> column;     // for each entry, 0 to 3n − 1
-  std::vector<double> weight;  // ∂y/∂x
-
-  int Count() const { return static_cast<int>(begin.size()) - 1; }
-  Eigen::MatrixXd operator*(const Eigen::Ref<const Eigen::MatrixXd>& nodal) const;
-};
 
 // The measurements of one frame. Predicted minus measured is W x − target, in m; row
 // components·i + c is component c of point i.

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "experiment/observer.h"
+#include "experiment/observation_matrix.h"
 #include "geometry/tet_mesh.h"
 #include "scan/instrument.h"
 

@@ -103,7 +103,7 @@ TEST(CommonError, IsOnTheUndeformedObject) {
                           Eigen::Scaling(1 + 0.01 * f));
     residual.segment<3>(3 * f) = deformation.back() * error;
   }
-  const std::vector<int> count(kFrames, 1);
+  const std::vector<double> count(kFrames, 1);
   const MeasurementErrors errors{1e-3, 1};  // the prior pulls by a part in 4e7
   EXPECT_LT(
       (CommonError(residual, count, 1, errors, std::vector<char>(kFrames, 1), deformation) - error)

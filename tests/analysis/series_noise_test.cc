@@ -10,7 +10,7 @@ namespace lacuna {
 namespace {
 
 SeriesLayout Irregular() {
-  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<int>(18, 1), {}};
+  SeriesLayout layout{3, {0, 0.1, 0.15, 0.4, 0.5, 0.55}, std::vector<double>(18, 1), {}};
   layout.count[3] = layout.count[7] = layout.count[17] = 0;
   layout.count[0] = 4;  // a mean of four measurements
   return layout;
@@ -38,7 +38,7 @@ TEST(SeriesNoise, WhitensItsCovariance) {
 
 // The offset of a marker is rotated and stretched with the object.
 TEST(SeriesNoise, WhitensOffsetsThatMoveWithTheObject) {
-  SeriesLayout layout{6, {0, 0.1, 0.15, 0.4}, std::vector<int>(24, 1), {}};
+  SeriesLayout layout{6, {0, 0.1, 0.15, 0.4}, std::vector<double>(24, 1), {}};
   for (const int hidden : {9, 10, 11}) layout.count[hidden] = 0;  // the second point in frame 1
   std::srand(1);
   for (int k = 0; k < 8; ++k)
