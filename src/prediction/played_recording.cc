@@ -27,8 +27,8 @@ MeasuredReaction PlayedReading(const MeasuredReaction& reading, const ReactionMi
   }
   const Eigen::Index count = static_cast<Eigen::Index>(covered.size());
   played.times = Eigen::Map<const Eigen::VectorXd>(covered.data(), count);
-  played.forces.resize(misfit.components, count);
-  for (Eigen::Index k = 0; k < count; ++k) played.forces.col(k) = forces[static_cast<size_t>(k)];
+  played.values.resize(misfit.components, count);
+  for (Eigen::Index k = 0; k < count; ++k) played.values.col(k) = forces[static_cast<size_t>(k)];
   return played;
 }
 
@@ -52,13 +52,13 @@ PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisanc
   CHECK(observer != nullptr) << model.item().name << " shows scans";
   const PredictedRecording& item = model.item();
   PredictionOptions options = model.Options(nuisance);
-  options.reactions = MeasuredGrips(model.Reactions());
+  options.reactions = MeasuredReactions(model.Reactions(), model.model());
   const double late = model.Delay(nuisance);
   const Eigen::Isometry3d registration = model.Registration(nuisance);
   std::vector<double> times;
   for (const int frame : item.frames) times.push_back(item.recording.times[frame] - late);
   PlayedRecording played;
-  std::vector<ReactionMisfit> reactions;
+  std::vector<ReactionMisfit> reactions(model.Reactions().size());
   played.summary =
       Predict(model.model(), options, times, {}, [&](int index, const PredictedState& state) {
         const Eigen::Index nodes = state.position.size() / 3;
@@ -68,8 +68,9 @@ PlayedRecording Play(const RecordingModel& model, const Eigen::VectorXd& nuisanc
         const Eigen::VectorXd seen = observer->rows() * state.position;
         const Eigen::Matrix3Xd markers = seen.reshaped(3, model.PointCount());
         played.markers.emplace_back(registration * markers);
-        AppendReactions(model.Reactions(), played.times.back(), state, options.start_time, {},
-                        &reactions);
+        for (size_t k = 0; k < reactions.size(); ++k)
+          AppendReaction(model.Reactions(), k, played.times.back(), state, options.start_time, {},
+                         &reactions[k]);
       });
   for (size_t k = 0; k < reactions.size(); ++k)
     played.reactions.push_back(PlayedReading(model.Reactions()[k], reactions[k], played.times));
@@ -91,8 +92,8 @@ MarkerRecording AsRecording(const PredictedRecording& item, const PlayedRecordin
           noise * Normal(RandomBits({seed, kMarkers, f, static_cast<uint64_t>(k)}));
   for (size_t r = 0; r < recording.object.reactions.size(); ++r) {
     MeasuredReaction& reading = recording.object.reactions[r];
-    for (Eigen::Index k = 0; k < reading.forces.size(); ++k)
-      reading.forces.reshaped()[k] +=
+    for (Eigen::Index k = 0; k < reading.values.size(); ++k)
+      reading.values.reshaped()[k] +=
           reading.deviation * Normal(RandomBits({seed, kForces, r, static_cast<uint64_t>(k)}));
   }
   return recording;

@@ -62,7 +62,9 @@ char FindDelimiter(std::string_view line) {
 // Whether `line` is a title above the names of the columns, which `rest` begins with.
 bool IsTitle(std::string_view line, std::string_view rest) {
   constexpr std::string_view kDelimiters = ";,\t";
-  if (line.find_first_of(kDelimiters) != std::string_view::npos) return false;
+  if (line.find_first_of(kDelimiters) != std::string_view::npos ||
+      AreNumbers(SplitFields(line, ' ')))
+    return false;
   const std::string_view next = Trim(rest.substr(0, rest.find('\n')));
   if (next.find_first_of(kDelimiters) == std::string_view::npos || next.front() == '#')
     return false;

@@ -12,17 +12,17 @@
 namespace lacuna {
 namespace {
 
-constexpr int kRows = 60, kParameters = 3, kOwn = 2, kShared = 2;
+constexpr int kAgreementRows = 60, kParameters = 3, kOwn = 2, kShared = 2;
 
 // Recordings whose rows depend on their parameters, own amounts and shared amounts linearly.
 class LinearRecordings {
  public:
   LinearRecordings(int count, unsigned seed) : random_(seed), rows_(static_cast<size_t>(count)) {
     for (RecordingRows& rows : rows_) {
-      rows.parameters = Random(kRows, kParameters);
-      rows.own = Random(kRows, kOwn);
+      rows.parameters = Random(kAgreementRows, kParameters);
+      rows.own = Random(kAgreementRows, kOwn);
       rows.own_priors.assign(kOwn, {0, 0.5, false});
-      rows.shared = Random(kRows, kShared);
+      rows.shared = Random(kAgreementRows, kShared);
     }
   }
   // The test of one draw, in which parameter `k` of recording `which` differs by `apart`.
@@ -33,7 +33,7 @@ class LinearRecordings {
       RecordingRows& rows = rows_[i];
       Eigen::VectorXd truth = common;
       if (i == which) truth[k] += apart;
-      rows.residual = Random(kRows, 1) - rows.parameters * truth -
+      rows.residual = Random(kAgreementRows, 1) - rows.parameters * truth -
                       0.5 * rows.own * Random(kOwn, 1) - rows.shared * shared;
     }
     return TestAgreement(rows_, std::vector<LinearPrior>(kShared, {0, 1, false}),

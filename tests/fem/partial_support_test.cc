@@ -89,7 +89,7 @@ TEST(PartialSupportReaction, IsTheForceThatTheSupportExerts) {
   Pull(force, &model);
   PredictionOptions options;
   options.step.scheme = TimeScheme::kQuasiStatic;
-  options.reactions = {0, 1, 2};
+  options.reactions = {{0, {}}, {1, {}}, {2, {}}};
   Eigen::VectorXd reaction;
   const PredictionSummary summary =
       Predict(model, options, {0}, {},
@@ -124,7 +124,7 @@ TEST(PartialSupportMotion, ComesWithExactDerivatives) {
   PredictionOptions options;
   options.step.scheme = TimeScheme::kQuasiStatic;
   options.step.relative_tolerance = 1e-12;
-  options.reactions = {3};
+  options.reactions = {{3, {}}};
   const PredictionSummary summary =
       Predict(model, options, {0}, perturbations, [&](int, const PredictedState& state) {
         const Eigen::Matrix3Xd moved =

@@ -26,6 +26,7 @@ class PlayingARecording : public ::testing::Test {
   PredictionStudy Study(const std::string& force) const {
     return ReadBarStudy(folder_.Path(), {{"young_modulus: 0.15 MPa", "young_modulus: 0.1 MPa"},
                                          {"alpha: 1 1/s", "alpha: 2 1/s"},
+                                         {"order: 2", "order: 2, preserve_surface: false"},
                                          {"      release:", force + "      release:"}});
   }
 

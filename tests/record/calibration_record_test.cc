@@ -30,8 +30,17 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.share_of_forces = 0.75;
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"a", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
-  record.recordings[0].reactions.push_back(
-      {"jaw", {"x", "z"}, 0.02, true, 0.1, {0.05, -0.03}, 3, {4, 8, 0.03, 0.06, 1.5}, {}});
+  record.recordings[0].reactions.push_back({"jaw",
+                                            true,
+                                            true,
+                                            {"x", "z"},
+                                            0.02,
+                                            true,
+                                            0.1,
+                                            {0.05, -0.03},
+                                            3,
+                                            {4, 8, 0.03, 0.06, 1.5},
+                                            {}});
   record.prior_conflicts = {NuisanceParameterConflict{"a.delay", 4},
                             MarkerConflict{"a", "tip", Eigen::Vector3d(1, 2, 3), 1e-4},
                             MarkerConflictCount{"a", 7, 8},
