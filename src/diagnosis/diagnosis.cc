@@ -56,19 +56,16 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   return found;
 }
 
-// There is evidence for an effect, and the unknown part of the step's error could be a part of it
-// that matters.
+// There is evidence for an effect, and the unknown part of the step's error could explain it.
 bool IsStepTooLong(const EffectRanking& ranking) {
-  const RefitThresholds& limits = kThresholds.refit;
-  const double evidence = ranking.effects.empty() ? 0 : ranking.effects.front().score.evidence;
   const auto step = std::find_if(ranking.nuisances.begin(), ranking.nuisances.end(),
                                  [](const ScoredNuisance& nuisance) {
                                    return nuisance.candidate.card.shrinks_with_time_step;
                                  });
   return step != ranking.nuisances.end() &&
-         step->uncertain_evidence >
-             std::max(limits.uncertain_step_evidence, limits.uncertain_step_share * evidence) &&
-         evidence > limits.least_evidence;
+         step->uncertain_evidence > kThresholds.refit.uncertain_step_evidence &&
+         !ranking.effects.empty() &&
+         ranking.effects.front().score.evidence > kThresholds.refit.least_evidence;
 }
 
 // The effects whose power is simulated: those that were refitted, the most probable first.

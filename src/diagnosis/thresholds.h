@@ -67,10 +67,9 @@ struct RefitThresholds {
   // Higher: the motion may have lost the phase already. Lower: less data.
   double early_share = 0.25;
   // A time step is halved, so many times at most, where the unknown part of its error could
-  // contribute this evidence and this share of it to the best effect. Higher: faster, and more
-  // doubt about small effects, or about the order of several strong ones.
+  // contribute this evidence to an effect. Higher: faster, and more doubt about small effects.
   int most_halvings = 3;
-  double uncertain_step_evidence = 1, uncertain_step_share = 0.05;
+  double uncertain_step_evidence = 1;
 
   // A refit that leaves a larger rms over σ is repeated from another start if the model was far
   // off. Higher: a refit may stay in a local minimum. Lower: every refit is made twice.

@@ -184,16 +184,21 @@ TEST(MeasuredForce, ItsRowsAndSensitivitiesAgreeWithDifferences) {
                                         problem.Linearise(at - shift, false, {}, &here).residual) /
                                        (2 * steps[k]);
     for (const LinearisedMisfit::Part* part : {&force, &torque}) {
+      // With these delays the last reading of the torque lies beyond the path of the grip, and its
+      // rate is the mean over a step across the end of the path.
+      const Eigen::Index beyond = part == &torque && (k == 2 || k == 3) ? 1 : 0;
       const auto rows = [&](const Eigen::VectorXd& all) {
-        return all.segment(part->first_row, part->layout.Rows());
+        return all.segment(part->first_row, part->layout.Rows() - beyond);
       };
       // Equilibria are known to 1e-6 of the forces. The rate, for the delays, is the mean over a
       // step between two frames, in which the curve bends by 1 %.
       const double tolerance = k == 2 || k == 3 ? 1e-2 : 1e-3;
-      const double least = part == &force ? 1e-9 : 1e-12;
+      // The delay of the torque changes at which times equilibria are sought before.
+      const double least = part == &torque ? 1e-12 : k == 3 ? 1e-6 : 1e-9;
       EXPECT_LT((rows(here.jacobian.col(k)) - rows(difference)).norm(),
                 tolerance * rows(difference).norm() + least)
-          << k;
+          << k << ": " << rows(here.jacobian.col(k)).transpose() << "\nagainst "
+          << rows(difference).transpose();
       // The registration of the markers does not concern the load cells, and the delay of one of
       // them not the other.
       if (k >= 4 || (k == 3 && part == &force)) {
