@@ -144,7 +144,7 @@ Problem ReadProblem(const std::filesystem::path& file) {
   problem.tolerances = config.Quantities("tolerances", kDimensionless, kPositive);
   if (problem.tolerances.size() != problem.orders.size())
     config.Fail("tolerances", "expected one for each of the orders");
-  problem.quick = config.Integer("quick", 0, static_cast<int>(problem.meshes.size()));
+  problem.quick = config.Integer("quick", 1, static_cast<int>(problem.meshes.size()));
   config.RefuseUnknownKeys();
   return problem;
 }

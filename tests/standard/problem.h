@@ -95,7 +95,7 @@ struct Problem {
   std::vector<Wanted> wanted;
   std::vector<PeerResult> peers;
   std::vector<ProblemMesh> meshes;  // each finer than the one before
-  int quick = 0;                    // so many of the meshes belong to the quick set
+  int quick = 1;                    // so many of the meshes belong to the quick set
   // Largest relative error on the last mesh of the quick set, for each order of elements.
   std::vector<double> tolerances;
 };

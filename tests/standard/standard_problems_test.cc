@@ -25,7 +25,6 @@ class StandardProblem : public testing::TestWithParam<std::filesystem::path> {};
 TEST_P(StandardProblem, HasThePublishedValue) {
   constexpr double kSmall = 0.05;
   const Problem problem = ReadProblem(GetParam());
-  if (problem.quick == 0) GTEST_SKIP() << "too slow for this test: run lacuna-standard";
   for (size_t k = 0; k < problem.orders.size(); ++k) {
     const RefinementStudy study = Refine(problem, problem.orders[k], problem.quick);
     const size_t last = study.solutions.size() - 1;
