@@ -80,7 +80,10 @@ std::string AgreementTable(const AgreementRecord& agreement) {
                                width);
     for (size_t k = 0; k < agreement.recordings.size(); ++k)
       text += PaddedLeft(Estimate(parameter, k), kColumn);
-    text += PaddedLeft(fmt::format("{:.2g}", parameter.p_value), 10) + "\n";
+    text +=
+        PaddedLeft(
+            parameter.p_value <= 0.001 ? "≤ 0.001" : fmt::format("{:.2g}", parameter.p_value), 10) +
+        "\n";
   }
   return text + Wrapped(
                     "p: the probability of such a difference by chance if only this parameter "

@@ -39,8 +39,8 @@ std::string ErrorTable(const LedgerModel& model, const std::string& margin) {
 std::string Move(const ParameterMove& move) {
   const std::string unit = move.unit.empty() ? "" : " " + move.unit;
   if (move.added)
-    return fmt::format("{} {:.4g}{} ({:.4g} … {:.4g}), new", move.name, move.after, unit, move.low,
-                       move.high);
+    return fmt::format("{} {:.4g}{}, with fine elements and steps {:.4g} … {:.4g}, new", move.name,
+                       move.after, unit, move.low, move.high);
   const double relative = move.before != 0 ? move.after / move.before - 1 : 0;
   return fmt::format("{} {:.4g} → {:.4g}{} ({:+.1f} %, {:+.1f} standard deviations)", move.name,
                      move.before, move.after, unit, 100 * relative, move.in_deviations);
