@@ -82,8 +82,8 @@ class RecordingModel {
     return dynamic_cast<const MarkerObserver*>(observer_.get());
   }
   // A nuisance parameter of the recording: a component of the force that holds the body, the clock,
-  // the delay of a load cell, or a component of the registration. It starts at 0 unless the force is
-  // given.
+  // the delay of a load cell, or a component of the registration. It starts at 0 unless the force
+  // is given.
   struct Nuisance {
     CalibratedParameter prior;
     MisfitDirection direction;
