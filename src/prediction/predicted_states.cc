@@ -1,8 +1,7 @@
 #include "prediction/predicted_states.h"
 
-#include <iterator>
-
 #include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include "effects/gravity.h"

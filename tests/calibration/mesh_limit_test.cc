@@ -1,4 +1,3 @@
-#include "calibration/known_errors.h"
 #include "calibration/mesh_limit.h"
 
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "calibration/calibration_fits.h"
+#include "calibration/known_errors.h"
 #include "calibration/linear_misfit.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
