@@ -40,8 +40,8 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     // `mesh` was compared with other parameters, chosen under a narrower prior than that of the
     // fit.
     const Eigen::VectorXd change = response(mesh->other - mesh->own - jacobian * mesh->change);
-    errors.at_mesh_limit = MovedBy(parameters, values, mesh->ToLimit() * change);
     to_limit = mesh->ToLimit() * change;
+    errors.at_mesh_limit = MovedBy(parameters, values, to_limit);
     add(mesh->DeviationOfLimit() * change);
   }
   if (const auto step = FindStepErrors(problem, values, misfit)) {

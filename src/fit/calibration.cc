@@ -14,7 +14,6 @@ namespace {
 
 using Verdict = ParameterEstimate::Verdict;
 
-constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
 // A typical change of a parameter that moves the residual vector by less than this many standard
 // deviations cannot be distinguished from no change.
 constexpr double kNoticeable = 2;

@@ -19,6 +19,10 @@
 
 namespace lacuna {
 
+// The reach of a 95 % interval in standard deviations: the 97.5 % quantile of a normal
+// distribution.
+inline constexpr double kNormalQuantile = 1.959963984540054;
+
 // Vectors and lists are in the order of the parameters given.
 struct Calibration {
   bool usable = false;

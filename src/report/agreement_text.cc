@@ -19,10 +19,6 @@ std::string Estimate(const ParameterOfRecordings& parameter, size_t recording) {
                      parameter.deviations[recording]);
 }
 
-std::string WithUnit(const std::string& text, const std::string& unit) {
-  return unit.empty() ? text : text + " " + unit;
-}
-
 // "young_modulus: 1.02e+05 ± 900 Pa from a, 9.8e+04 ± 1100 Pa from b"
 std::string EachEstimate(const AgreementRecord& agreement, const ParameterOfRecordings& parameter) {
   std::vector<std::string> estimates;

@@ -10,6 +10,7 @@
 
 #include "core/text_layout.h"
 #include "report/agreement_text.h"
+#include "report/quantity_text.h"
 #include "report/verdict_text.h"
 
 namespace lacuna {
@@ -26,10 +27,6 @@ std::string Percent(double share) { return fmt::format("{:.0f} %", 100 * share);
 
 std::string Millimetres(const ModelErrors& errors) {
   return fmt::format("{:.3f} mm", 1e3 * errors.held_out_rms);
-}
-
-std::string WithUnit(const std::string& text, const std::string& unit) {
-  return unit.empty() ? text : text + " " + unit;
 }
 
 std::string Sizes(const RecordedEffect& effect) {

@@ -24,6 +24,10 @@ std::string PercentText(double probability) {
   return fmt::format("{:.0f} %", 100 * probability);
 }
 
+std::string WithUnit(const std::string& text, const std::string& unit) {
+  return unit.empty() ? text : text + " " + unit;
+}
+
 std::string DirectionText(const Eigen::Vector3d& vector) {
   constexpr double kCosineOf30Degrees = 0.866;
   const Eigen::Vector3d unit = vector.normalized();

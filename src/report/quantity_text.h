@@ -1,4 +1,4 @@
-// Text of lengths, directions and probabilities in sentences.
+// Text of quantities, directions and probabilities in sentences.
 #ifndef LACUNA_REPORT_QUANTITY_TEXT_H_
 #define LACUNA_REPORT_QUANTITY_TEXT_H_
 
@@ -16,6 +16,9 @@ std::string ProbabilityText(double p_value);
 
 // A probability from 0 to 1 as "78 %", "< 1 %" or "> 99 %".
 std::string PercentText(double probability);
+
+// "12 Pa"; the text alone without a unit.
+std::string WithUnit(const std::string& text, const std::string& unit);
 
 // The axis nearest to a direction, as "+x". If the angle between them exceeds 30 degrees, the
 // second axis too: "−z and +x", the larger component first.

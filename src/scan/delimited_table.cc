@@ -17,12 +17,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-std::string_view Trim(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return text.substr(0, 0);
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
 std::string_view Unquote(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
     return Trim(text.substr(1, text.size() - 2));
@@ -109,6 +103,12 @@ void DoubtFirstRow(DelimitedTable* table) {
 }
 
 }  // namespace
+
+std::string_view Trim(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return text.substr(0, 0);
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
 
 std::vector<std::string_view> SplitLines(std::string_view content) {
   std::vector<std::string_view> lines;

@@ -44,6 +44,9 @@ std::optional<Eigen::Index> FindColumn(const DelimitedTable& table, const std::s
 // The same, but throws InputError listing the columns of the table when there is no such column.
 Eigen::Index RequireColumn(const DelimitedTable& table, const std::string& name);
 
+// Without blanks, tabs and line ends at both ends.
+std::string_view Trim(std::string_view text);
+
 // The lines of `content` without their ends, which may be those of Windows.
 std::vector<std::string_view> SplitLines(std::string_view content);
 

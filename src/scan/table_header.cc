@@ -16,12 +16,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
 
-std::string_view Trim(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
 // What follows the mark of a comment; nothing if the line is none.
 std::optional<std::string_view> CommentIn(std::string_view line) {
   line = Trim(line);

@@ -21,10 +21,12 @@
 #include "effects/catalogue.h"
 #include "effects/neo_hookean.h"
 #include "effects/stiffness_damping.h"
+#include "fit/calibration.h"
 #include "prediction/prediction_study_reader.h"
 #include "report/line_chart.h"
 #include "scan/random_bits.h"
 #include "trials/trial_simulation.h"
+#include "trials/trial_suite.h"
 
 namespace lacuna {
 namespace {
@@ -33,17 +35,7 @@ constexpr int kIntervalsVersion = 1;  // of intervals.json
 constexpr double kFinerTruth = 20;    // volume of the model's elements over that of the truth's
 constexpr double kTrueStep = 1e-3;    // s
 constexpr int kBins = 10;
-constexpr const char* kRadius = "radius";
-constexpr double kLastPlace = 0.95;                    // of the bar's length
-constexpr double kNormalQuantile = 1.959963984540054;  // of the 97.5 % quantile
 constexpr uint64_t kShapeStream = 70, kEffectStream = 71, kPriorStream = 72;
-
-std::vector<std::string> ReadTypes(const Config& config, const std::string& key) {
-  const std::vector<std::string> types = config.Texts(key);
-  for (const std::string& type : types)
-    if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
-  return types;
-}
 
 // "attached_mass.mass" → "attached_mass", "mass"; the type of a parameter of the material is that
 // of its law.
@@ -183,8 +175,8 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
   suite.recordings = config.Integer("recordings", 1, 2, suite.recordings);
   suite.element_volume =
       config.Quantity("element_volume", kVolume, kPositive, suite.element_volume);
-  suite.modelled = ReadTypes(config, "modelled");
-  suite.missing = ReadTypes(config, "missing");
+  suite.modelled = ReadEffectTypes(config, "modelled");
+  suite.missing = ReadEffectTypes(config, "missing");
   for (const Config& item : config.Items("priors"))
     suite.priors.push_back(ReadTrialPrior(item, suite));
   for (const auto& [key, types] :

@@ -215,6 +215,13 @@ std::string SizeAndSimulate(TrialCase* trial, const std::filesystem::path& folde
 
 }  // namespace
 
+std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key) {
+  std::vector<std::string> types = config.Texts(key);
+  for (const std::string& type : types)
+    if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
+  return types;
+}
+
 TrialSuite ReadTrialSuite(const Config& config) {
   TrialSuite suite;
   config.Integer("schema_version", 1, 1);
@@ -224,18 +231,10 @@ TrialSuite ReadTrialSuite(const Config& config) {
   suite.controls = config.Integer("controls", 0, kMost, 0);
   suite.hard_controls = config.Integer("hard_controls", 0, kMost, 0);
   suite.pairs = config.Integer("pairs", 0, kMost, 0);
-  const auto types = [&](const std::string& key) {
-    std::vector<std::string> chosen;
-    for (const std::string& type : config.Texts(key)) {
-      if (FindEntry(type) == nullptr) config.Fail(key, "no effect is called \"" + type + "\"");
-      chosen.push_back(type);
-    }
-    return chosen;
-  };
   suite.is_scanned =
       config.Choice<bool>("seen_by", {{"markers", false}, {"scanner", true}}, "markers");
-  suite.effects = types("effects");
-  suite.removed = types("removed");
+  suite.effects = ReadEffectTypes(config, "effects");
+  suite.removed = ReadEffectTypes(config, "removed");
   suite.factors = config.Integers("factors", 1);
   suite.recordings = config.Integers("recordings", 1);
   if (suite.factors.empty()) suite.factors = {1, 2, 4};

@@ -26,6 +26,10 @@ struct TrialSuite {
   std::vector<std::string> removed;     // hidden at the largest factor and removed from the library
   int pairs = 0;                        // number of cases with two effects, at the largest factor
 };
+// The types of effects listed under the key; none if it is absent. Throws InputError for an effect
+// that the catalogue does not have.
+std::vector<std::string> ReadEffectTypes(const Config& config, const std::string& key);
+
 // Throws InputError at the key that is wrong; also for an effect that the catalogue does not have.
 TrialSuite ReadTrialSuite(const Config& config);
 
