@@ -6,6 +6,7 @@
 
 #include "diagnosis/adequacy.h"
 #include "diagnosis/decision_rules.h"
+#include "diagnosis/thresholds.h"
 
 namespace lacuna {
 namespace {
@@ -120,6 +121,35 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
   for (const NamedEvidence& named : first_order)
     if (named.name == name) return {&input.baseline, input.baseline.hypotheses[named.best].columns};
   return {&input.baseline, {}};
+}
+
+// Adds to the columns of a hypothesis with an effect those of the nuisances that explain what the
+// effect leaves: a real clamp is never exactly where it was measured, and an effect that dwarfs the
+// error of its place must not hide that error. Each is more probable than no nuisance, and leads
+// over every further effect as a nuisance that enters the model does. Returns them.
+std::vector<NamedEvidence> TakeNuisancesBeside(TestedSpace* tested) {
+  std::vector<NamedEvidence> taken;
+  const HypothesisSpace& space = *tested->space;
+  for (int count = 0; count < kThresholds.ranking.most_adopted_nuisances; ++count) {
+    const ProjectedHypotheses beside(space, tested->columns);
+    const NamedEvidence* best = nullptr;
+    double effect = 0;
+    const std::vector<NamedEvidence> further =
+        SumVariants(space, beside.LogBayesFactors(beside.Project(space.model.toward())));
+    for (const NamedEvidence& named : further) {
+      if (named.kind == HypothesisKind::kEffect)
+        effect = std::max(effect, named.evidence);
+      else if (best == nullptr || named.evidence > best->evidence)
+        best = &named;
+    }
+    const double least = std::max(space.discretisation + std::log(kPriorNothing / kPriorNuisances),
+                                  effect + kThresholds.ranking.nuisance_lead);
+    if (best == nullptr || !(best->evidence > least)) break;
+    const std::vector<int>& columns = space.hypotheses[best->best].columns;
+    tested->columns.insert(tested->columns.end(), columns.begin(), columns.end());
+    taken.push_back(*best);
+  }
+  return taken;
 }
 
 // The log Bayes factor that the best effect exceeds in one of twenty recordings in which nothing is
@@ -282,10 +312,13 @@ Decision Decide(const DecisionInput& input) {
   TestedSpace tested = SpaceOf(input, first_order, best);
   for (const Pair& pair : pairs)
     if (pair.hypothesis.names == best.names) tested = pair.tested;
+  std::vector<std::string> beside = best.names.empty() ? input.adopted : best.names;
+  if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
+    for (const NamedEvidence& nuisance : TakeNuisancesBeside(&tested))
+      beside.push_back(nuisance.name);
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
-  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit,
-                             best.names.empty() ? input.adopted : best.names);
+  record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));
   record.chance = ChanceOf(input, beside_nothing);
 
   const Naming naming = NameFrom(record.probabilities);

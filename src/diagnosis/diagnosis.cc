@@ -56,14 +56,15 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   return found;
 }
 
-// There is evidence for an effect, and the unknown part of the step's error could explain it.
+// There is evidence for an effect, and the unknown part of the step's error could explain it. A step
+// whose unknown error is smaller than that of the elements is short enough: what remains unknown is
+// then that of the elements, however short the step.
 bool IsStepTooLong(const EffectRanking& ranking) {
-  const auto step = std::find_if(ranking.nuisances.begin(), ranking.nuisances.end(),
-                                 [](const ScoredNuisance& nuisance) {
-                                   return nuisance.candidate.card.shrinks_with_time_step;
-                                 });
-  return step != ranking.nuisances.end() &&
-         step->uncertain_evidence > kThresholds.refit.uncertain_step_evidence &&
+  double of_step = 0, of_others = 0;
+  for (const ScoredNuisance& nuisance : ranking.nuisances)
+    (nuisance.candidate.card.shrinks_with_time_step ? of_step : of_others) +=
+        nuisance.uncertain_evidence;
+  return of_step > std::max(kThresholds.refit.uncertain_step_evidence, of_others) &&
          !ranking.effects.empty() &&
          ranking.effects.front().score.evidence > kThresholds.refit.least_evidence;
 }

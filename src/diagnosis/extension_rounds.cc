@@ -19,16 +19,18 @@ LedgerEnding::Reason EndingOf(const DiagnosisRecord& diagnosis, const ExtensionO
   using Reason = LedgerEnding::Reason;
   const bool is_ambiguous = diagnosis.verdict == Verdict::kAmbiguous;
   if (is_ambiguous && !options.follow_best) return Reason::kUndecided;
-  if (!is_ambiguous && diagnosis.verdict != Verdict::kMissing) return Reason::kVerdict;
+  if (!is_ambiguous && diagnosis.verdict != Verdict::kMissing && !PartlyExplainedBy(diagnosis))
+    return Reason::kVerdict;
   return added == options.most_effects ? Reason::kMostEffects : Reason::kNone;
 }
 
-// The effect that the verdict names first.
-const RecordedEffect& Named(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+// The effect that is to be added: the one that explains most, or that the verdict names first.
+const RecordedEffect& ToAdd(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
+  const std::string name = PartlyExplainedBy(diagnosis).value_or(diagnosis.effects.front());
   for (const RecordedEffect& effect : diagnosis.ranking)
-    if (effect.type == diagnosis.effects.front()) return effect;
-  throw InputError(fmt::format("{}: its diagnosis names {}, which it does not rank", run.string(),
-                               diagnosis.effects.front()));
+    if (effect.type == name) return effect;
+  throw InputError(
+      fmt::format("{}: its diagnosis names {}, which it does not rank", run.string(), name));
 }
 
 }  // namespace
@@ -52,13 +54,13 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
     keep();
     if (ledger.HasEnded()) break;
 
-    const std::string effect = diagnosis.effects.front();
+    const RecordedEffect& effect = ToAdd(diagnosis, at);
     const std::filesystem::path file =
-        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, Named(diagnosis, at)));
+        WriteExtendedExperiment(fitted, at, DiagnosedEffect(fitted, at, effect));
     const PredictionStudy study = ReadPredictionStudy(Config::Load(file));
     const CalibrationRecord record = RunCalibration(study, progress);
     at = study.output;
-    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect));
+    ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect.type));
     if (!record.usable) {
       ledger.ending.reason = LedgerEnding::Reason::kNotFitted;
     } else if (ledger.models.back().gain <= options.least_gain) {

@@ -1,5 +1,6 @@
 #include "record/diagnosis_record.h"
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -220,6 +221,19 @@ DiagnosisRecord FromJson(const json& value) {
 }
 
 }  // namespace
+
+std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis) {
+  constexpr double kMost = 0.5;
+  if (diagnosis.verdict != Verdict::kNotInLibrary || diagnosis.reasons.empty()) return std::nullopt;
+  const auto* remains = std::get_if<ResidualRemains>(&diagnosis.reasons.front());
+  if (remains == nullptr || !(remains->share > kMost)) return std::nullopt;
+  double probability = 0;
+  for (const HypothesisProbability& one : diagnosis.decision.probabilities)
+    if (std::count(one.names.begin(), one.names.end(), remains->effect) > 0)
+      probability += one.probability;
+  if (probability < kStatedProbability) return std::nullopt;
+  return remains->effect;
+}
 
 void WriteDiagnosisFile(const DiagnosisRecord& record, const std::filesystem::path& file) {
   WriteFileAtomically(file, ToJson(record).dump(2) + "\n");

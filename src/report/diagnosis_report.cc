@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "core/text_layout.h"
@@ -223,6 +224,11 @@ std::string WhatNext(const DiagnosisRecord& diagnosis, const std::filesystem::pa
     return fmt::format(
         "lacuna add {0} {1}, or lacuna diagnose {0} --until-done; lacuna explain {1}", run.string(),
         diagnosis.effects.front());
+  if (const std::optional<std::string> part = PartlyExplainedBy(diagnosis))
+    return fmt::format(
+        "lacuna diagnose {0} --until-done adds {1} and diagnoses what is left; lacuna compare {0} "
+        "shows where and when the model fails",
+        run.string(), *part);
   if (!diagnosis.next_steps.empty()) {
     const std::string steps = DescribeNextSteps(diagnosis);
     return diagnosis.verdict == Verdict::kAmbiguous

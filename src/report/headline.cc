@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "record/effect_card.h"
 #include "record/ledger.h"
@@ -155,6 +156,17 @@ std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
                         : corrected);
 }
 
+std::string UnknownSentence(const DiagnosisRecord& diagnosis) {
+  const std::optional<std::string> part = PartlyExplainedBy(diagnosis);
+  if (!part) return "Something is missing that no effect of the catalogue explains.";
+  const auto& remains = std::get<ResidualRemains>(diagnosis.reasons.front());
+  return fmt::format(
+      "Of all effects of the catalogue, {} explains most: {:.0f} % of the squared error beyond the "
+      "noise. {:.1f} times the noise is left, which no effect explains: something else is missing, "
+      "beside it or in its place.",
+      ShortTitle(diagnosis, *part), 100 * remains.share, remains.rms_over_sigma);
+}
+
 std::string VerdictSentence(const ReportedModel& model) {
   if (!model.diagnosis)
     return model.errors.rms_over_sigma < kBeyondNoise
@@ -169,7 +181,7 @@ std::string VerdictSentence(const ReportedModel& model) {
     case Verdict::kNuisance:
       return NuisanceSentence(diagnosis);
     case Verdict::kNotInLibrary:
-      return "Something is missing that no effect of the catalogue explains.";
+      return UnknownSentence(diagnosis);
     case Verdict::kNoPower:
       return "These recordings could not show any effect of plausible size, so that nothing can be "
              "said about what is missing: more motion, other loads or less noise are needed.";

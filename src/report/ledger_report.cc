@@ -188,7 +188,7 @@ std::string LedgerSummary(const Ledger& ledger) {
     text += PaddedRight(name, 24) + value + "\n";
   };
   row(first.errors.has_held_out ? "held-out error before" : "error before", Total(first));
-  row("what was missing", AddedUpTo(ledger, best));
+  row("what was added", AddedUpTo(ledger, best));
   row(first.errors.has_held_out ? "held-out error after" : "error after", Total(best));
   return text;
 }

@@ -143,6 +143,25 @@ TEST(Decide, SaysThatSomethingUnknownIsLeft) {
   EXPECT_TRUE(Decide(input).record.adequacy.is_tolerated);
 }
 
+// What an effect leaves may be an error of the measurement. Then nothing unknown is left, and the
+// effect is named, not the error.
+TEST(Decide, TakesWhatANuisanceExplainsBesideAnEffectForNothingUnknown) {
+  const SyntheticSpace synthetic;
+  const Eigen::VectorXd residual =
+      SyntheticSpace::Noise(15) - 60 * synthetic.Of("fibres") - 15 * synthetic.Of("clock");
+  const Decision decision = Decide(InputOf(synthetic, residual));
+  EXPECT_EQ(decision.verdict, Verdict::kMissing);
+  EXPECT_THAT(decision.names, ElementsAre("fibres"));
+  EXPECT_THAT(decision.record.adequacy.beside, ElementsAre("fibres", "clock"));
+  EXPECT_TRUE(decision.record.adequacy.is_adequate);
+  EXPECT_LT(decision.record.adequacy.rms_over_sigma, 1.1);
+  // What neither of them explains is still unknown.
+  const Decision unknown =
+      Decide(InputOf(synthetic, residual + 12 * synthetic.unknown.rowwise().sum()));
+  EXPECT_EQ(unknown.verdict, Verdict::kNotInLibrary);
+  EXPECT_FALSE(unknown.record.adequacy.is_adequate);
+}
+
 // A refit replaces the first-order evidence, and its own residual is tested.
 TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   const SyntheticSpace synthetic;

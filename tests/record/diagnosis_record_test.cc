@@ -79,6 +79,30 @@ TEST(DiagnosisRecord, IsReadBackAsItWasWritten) {
   EXPECT_EQ(FileContent(folder / "again.json"), FileContent(folder / "diagnosis.json"));
 }
 
+TEST(DiagnosisRecord, TellsWhichEffectExplainsMostOfWhatTheCatalogueDoesNotHave) {
+  DiagnosisRecord diagnosis;
+  diagnosis.verdict = Verdict::kNotInLibrary;
+  diagnosis.reasons = {ResidualRemains{"drag", 0.9, 2}};
+  HypothesisProbability alone, with_gravity, gravity;
+  alone.names = {"drag"};
+  alone.probability = 0.6;
+  with_gravity.names = {"gravity", "drag"};
+  with_gravity.probability = 0.36;
+  gravity.names = {"gravity"};
+  gravity.probability = 0.04;
+  diagnosis.decision.probabilities = {alone, with_gravity, gravity};
+  EXPECT_EQ(PartlyExplainedBy(diagnosis), "drag");
+  DiagnosisRecord other = diagnosis;
+  other.verdict = Verdict::kMissing;  // then it is named
+  EXPECT_EQ(PartlyExplainedBy(other), std::nullopt);
+  other = diagnosis;
+  other.decision.probabilities[1].names = {"gravity"};  // it may as well be gravity
+  EXPECT_EQ(PartlyExplainedBy(other), std::nullopt);
+  other = diagnosis;
+  other.reasons = {ResidualRemains{"drag", 0.4, 2}};  // it explains less than half
+  EXPECT_EQ(PartlyExplainedBy(other), std::nullopt);
+}
+
 TEST(DiagnosisRecord, AnEarlierFormatIsRefusedWithTheCommandToRun) {
   const TemporaryFolder folder;
   std::ofstream(folder / "diagnosis.json") << R"({"schema_version": 8})";

@@ -175,6 +175,18 @@ TEST(Headline, EveryOtherVerdictHasItsSentence) {
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("No further effect is needed: "));
 }
 
+TEST(Headline, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kNotInLibrary, {"drag"});
+  model.diagnosis->reasons = {ResidualRemains{"drag", 0.93, 1.7}};
+  Believe(&*model.diagnosis, {"drag"}, 0.99);
+  EXPECT_EQ(
+      Headline({model}).at(1),
+      "Of all effects of the catalogue, drag of the surrounding medium explains most: 93 % of "
+      "the squared error beyond the noise. 1.7 times the noise is left, which no effect "
+      "explains: something else is missing, beside it or in its place.");
+}
+
 TEST(Headline, AFitThatFailedIsNotCalledAModel) {
   ReportedModel failed = Model(0, 0);
   failed.calibration.usable = false;

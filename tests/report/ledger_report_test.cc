@@ -20,7 +20,7 @@ TEST(LedgerReport, DrawsTheModelsAndWhatWasTriedAsATree) {
   EXPECT_THAT(text, HasSubstr("50 % less than before"));
   EXPECT_THAT(text, HasSubstr("b (not fitted)"));
   EXPECT_THAT(text, HasSubstr("held-out error before   0.400 mm, 4.0 σ\n"
-                              "what was missing        drag\n"
+                              "what was added          drag\n"
                               "held-out error after    0.200 mm, 2.0 σ\n"));
 }
 
