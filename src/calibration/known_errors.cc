@@ -1,6 +1,7 @@
 #include "calibration/known_errors.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "calibration/mesh_limit.h"
 #include "calibration/size_errors.h"
 #include "calibration/step_errors.h"
+#include "core/parallel.h"
 
 namespace lacuna {
 
@@ -35,8 +37,16 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     const Eigen::VectorXd whitened = WhitenedRows(change, misfit, 0, /*fitted_only=*/true);
     return model.WithResidual(whitened, by_parameters).FitAll(1).change;
   };
+  std::optional<OtherMesh> mesh;
+  std::optional<StepErrors> step;
+  Eigen::MatrixXd by_size;
+  ParallelFor(3, 1, [&](int64_t k) {
+    if (k == 0) mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true);
+    if (k == 1) step = FindStepErrors(problem, values, misfit);
+    if (k == 2) by_size = ChangesBySize(problem, values, misfit);
+  });
   Eigen::VectorXd to_limit = Eigen::VectorXd::Zero(values.size());
-  if (const auto mesh = MakeOtherMesh(problem, values, misfit, /*fitted_only=*/true)) {
+  if (mesh) {
     // `mesh` was compared with other parameters, chosen under a narrower prior than that of the
     // fit.
     const Eigen::VectorXd change = response(mesh->other - mesh->own - jacobian * mesh->change);
@@ -44,14 +54,13 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     errors.at_mesh_limit = MovedBy(parameters, values, to_limit);
     add(mesh->DeviationOfLimit() * change);
   }
-  if (const auto step = FindStepErrors(problem, values, misfit)) {
+  if (step) {
     const Eigen::VectorXd change = response(step->to_limit);
     to_limit += change;
     add(StepErrors::kLimitDeviation * change);
     add(StepErrors::kDepartureDeviation * response(step->departure));
   }
   errors.at_limit = MovedBy(parameters, values, to_limit);
-  const Eigen::MatrixXd by_size = ChangesBySize(problem, values, misfit);
   for (Eigen::Index axis = 0; axis < by_size.cols(); ++axis) add(response(by_size.col(axis)));
   return errors;
 }

@@ -1,5 +1,11 @@
 #include "calibration/size_errors.h"
 
+#include <algorithm>
+#include <array>
+#include <functional>
+
+#include "core/parallel.h"
+
 namespace lacuna {
 namespace {
 
@@ -20,16 +26,19 @@ Eigen::MatrixXd ChangesBySize(const CalibrationProblem& problem, const Eigen::Ve
     centre = mesh.nodes(Eigen::all, model.grips.front().nodes).rowwise().mean();
   const Eigen::VectorXd& residual = misfit.residual;
   Eigen::MatrixXd changes(residual.size(), 3);
-  for (int axis = 0; axis < 3; ++axis) {
+  std::array<bool, 3> is_usable{};
+  ParallelFor(3, 1, [&](int64_t axis) {
     TetMesh larger = mesh;
     larger.nodes.row(axis).array() +=
         kProbe * study.size_deviation * (mesh.nodes.row(axis).array() - centre[axis]);
     const LinearisedMisfit changed =
         CalibrationProblem(study, larger).Linearise(values, false, {}, nullptr, &misfit);
-    if (!changed.usable || changed.residual.size() != residual.size()) return {};
+    if (!changed.usable || changed.residual.size() != residual.size()) return;
     changes.col(axis) = (changed.residual - residual) / kProbe;
-  }
-  return changes;
+    is_usable[static_cast<size_t>(axis)] = true;
+  });
+  return std::all_of(is_usable.begin(), is_usable.end(), std::identity()) ? changes
+                                                                          : Eigen::MatrixXd();
 }
 
 }  // namespace lacuna

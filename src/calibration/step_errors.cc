@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace lacuna {
 namespace {
 
@@ -29,7 +31,8 @@ std::optional<StepErrors> FindStepErrors(const CalibrationProblem& problem,
         .residual;
   };
   const Eigen::VectorXd& whole = misfit.residual;
-  const Eigen::VectorXd half = with_steps(2), quarter = with_steps(4);
+  Eigen::VectorXd half, quarter;
+  ParallelFor(2, 1, [&](int64_t k) { k == 0 ? quarter = with_steps(4) : half = with_steps(2); });
   if (half.size() != whole.size() || quarter.size() != half.size()) return std::nullopt;
   const double power = ChangePerHalving(problem.study().scheme, whole, half, quarter);
   return StepErrors{quarter + (quarter - half) / (power - 1) - whole,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calibration/held_out_misfit.h"
+#include "core/parallel.h"
 #include "diagnosis/thresholds.h"
 #include "fit/active_bounds.h"
 
@@ -254,27 +255,56 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
   return !a.estimates.empty() && (b.estimates.empty() || a.rms < b.rms);
 }
 
-ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
-                        RefitFrom from, const Eigen::VectorXd& refitted, double hopeless_cost) {
-  const Eigen::Index own = extended.OwnCount();
-  Eigen::VectorXd start;
-  if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
-  if (start.size() == 0) start = extended.Start(refitted);
-  ExtendedFit fit = extended.CalibrateFrom(start, stage, hopeless_cost);
-  const bool converged =
-      !fit.calibration.estimates.empty() && fit.calibration.rms <= kThresholds.refit.converged_rms;
-  // The baseline was fitted to what it cannot explain, so its parameters may be a bad start. A fit
-  // with the effect held at a size has given another one already.
-  if (!is_far_off || converged || from != RefitFrom::kFirstOrder) return fit;
-  const Calibration afresh = extended.CalibrateAfresh();
-  if (afresh.parameters.size() != own) return fit;
-  start.head(own) = afresh.parameters;
-  ExtendedFit other = extended.CalibrateFrom(start, stage + " from there", hopeless_cost);
+// The better of the fits from two starts: the baseline's parameters, and those of a fit of the
+// model with the effect from the study's own start. The baseline was fitted to what it cannot
+// explain, so its parameters may be a bad start. A first fit that comes down to the noise is good
+// enough.
+ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string& stage,
+                             const Eigen::VectorXd& start, double hopeless_cost,
+                             Progress* progress) {
+  ExtendedFit fit, other;
+  Calibration afresh;
+  const auto is_good = [&] {
+    return !fit.calibration.estimates.empty() &&
+           fit.calibration.rms <= kThresholds.refit.converged_rms;
+  };
+  const auto fit_from_start = [&] {
+    fit = extended.CalibrateFrom(start, stage, hopeless_cost, progress);
+  };
+  const auto fit_afresh = [&](Progress* shown) {
+    afresh = extended.CalibrateAfresh(shown);
+    if (afresh.parameters.size() != extended.OwnCount()) return;
+    Eigen::VectorXd from = start;
+    from.head(afresh.parameters.size()) = afresh.parameters;
+    other = extended.CalibrateFrom(from, stage + " from there", hopeless_cost, shown);
+  };
+  // With several threads, the second fit does not wait for the first one. It is not looked at where
+  // the first one is good, so that the result is the same.
+  if (ThreadCount() > 1) {
+    Progress silent({.style = ProgressStyle::kSilent});
+    ParallelFor(2, 1, [&](int64_t k) { k == 0 ? fit_from_start() : fit_afresh(&silent); });
+  } else {
+    fit_from_start();
+    if (!is_good()) fit_afresh(progress);
+  }
+  if (is_good() || afresh.parameters.size() != extended.OwnCount()) return fit;
   const int predictions =
       fit.calibration.predictions + afresh.predictions + other.calibration.predictions;
   ExtendedFit& better = IsBetter(other.calibration, fit.calibration) ? other : fit;
   better.calibration.predictions = predictions;
   return std::move(better);
+}
+
+ExtendedFit FitExtended(const ExtendedProblem& extended, const std::string& stage, bool is_far_off,
+                        RefitFrom from, const Eigen::VectorXd& refitted, double hopeless_cost,
+                        Progress* progress) {
+  Eigen::VectorXd start;
+  if (from == RefitFrom::kFixedSize) start = extended.StartAtFixedSize(stage + " at a size");
+  if (start.size() == 0) start = extended.Start(refitted);
+  // A fit with the effect held at a size has given another start already.
+  return is_far_off && from == RefitFrom::kFirstOrder
+             ? FitFromTwoStarts(extended, stage, start, hopeless_cost, progress)
+             : extended.CalibrateFrom(start, stage, hopeless_cost, progress);
 }
 
 }  // namespace
@@ -321,9 +351,9 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
     refitted.resize(without->calibration.parameters.size() + without->amounts.size());
     refitted << without->calibration.parameters, without->amounts;
   }
-  ExtendedFit fit =
-      FitExtended(extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
-                  effect != nullptr && is_far_off, from, refitted, hopeless_cost);
+  ExtendedFit fit = FitExtended(
+      extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
+      effect != nullptr && is_far_off, from, refitted, hopeless_cost, baseline.progress);
   EffectRefit refit;
   refit.calibration = std::move(fit.calibration);
   if (refit.calibration.estimates.empty()) {

@@ -167,7 +167,7 @@ Eigen::VectorXd ExtendedProblem::StartAtFixedSize(const std::string& stage) cons
     at.segment(shared_, added_) = part_way.segment(shared_, added_);
     const Calibration fitted =
         Fit(ParametersFrom(at, /*holds_effect=*/true), stage,
-            {.max_iterations = kHoldIterations, .cost_tolerance = kTolerance})
+            {.max_iterations = kHoldIterations, .cost_tolerance = kTolerance}, baseline_.progress)
             .calibration;
     if (fitted.estimates.empty() || fitted.rms >= least) continue;
     least = fitted.rms;
@@ -218,38 +218,39 @@ Calibration ExtendedProblem::Kept(const std::string& purpose,
 }
 
 ExtendedFit ExtendedProblem::CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
-                                           double hopeless_cost) const {
+                                           double hopeless_cost, Progress* progress) const {
   return Fit(ParametersFrom(start, /*holds_effect=*/false), stage,
              {.max_iterations = kIterations,
               .cost_tolerance = kTolerance,
               .max_predictions = kThresholds.refit.most_predictions,
-              .hopeless_cost = hopeless_cost});
+              .hopeless_cost = hopeless_cost},
+             progress);
 }
 
 ExtendedFit ExtendedProblem::Fit(const std::vector<CalibratedParameter>& parameters,
-                                 const std::string& stage,
-                                 const CalibrationOptions& options) const {
+                                 const std::string& stage, const CalibrationOptions& options,
+                                 Progress* progress) const {
   Memory memory;
   int evaluations = 0;
   const auto predict = [&](const Eigen::VectorXd& at, bool with_jacobian) {
     const Prediction prediction = Predict(at, with_jacobian, &memory);
-    baseline_.progress->Report(
-        ++evaluations, prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
+    progress->Report(++evaluations,
+                     prediction.usable ? RootMeanSquare(prediction.residual) : std::nan(""));
     return prediction;
   };
-  baseline_.progress->Begin(stage, 0);
+  progress->Begin(stage, 0);
   ExtendedFit fit;
   fit.calibration = Kept("fit", parameters, options.hopeless_cost,
                          [&] { return Calibrate(parameters, predict, options); });
-  baseline_.progress->End(fit.calibration.usable ? "" : fit.calibration.message);
+  progress->End(fit.calibration.usable ? "" : fit.calibration.message);
   if (memory.latest.usable && memory.of_latest == fit.calibration.parameters.head(own_))
     fit.misfit = std::move(memory.latest);
   return fit;
 }
 
-Calibration ExtendedProblem::CalibrateAfresh() const {
+Calibration ExtendedProblem::CalibrateAfresh(Progress* progress) const {
   return Kept("afresh", with_.parameters(), kInfinity,
-              [&] { return FitInStages(with_, with_.Start(), baseline_.progress); });
+              [&] { return FitInStages(with_, with_.Start(), progress); });
 }
 
 Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,

@@ -72,18 +72,20 @@ class ExtendedProblem {
   // Interrupted.
   Eigen::VectorXd StartAtFixedSize(const std::string& stage) const;
 
-  // Fits all parameters. `hopeless_cost`: as in CalibrationOptions. Throws Interrupted.
+  // Fits all parameters. `hopeless_cost`: as in CalibrationOptions. May be called from several
+  // threads. Throws Interrupted.
   ExtendedFit CalibrateFrom(const Eigen::VectorXd& start, const std::string& stage,
-                            double hopeless_cost = std::numeric_limits<double>::infinity()) const;
-  // Fits the model with the effect, but without adopted nuisances, from the study's own start.
-  Calibration CalibrateAfresh() const;
+                            double hopeless_cost, Progress* progress) const;
+  // Fits the model with the effect, but without adopted nuisances, from the study's own start. May
+  // be called from several threads.
+  Calibration CalibrateAfresh(Progress* progress) const;
 
  private:
   // `holds_effect`: the effect stays near its start, by a narrow prior.
   std::vector<CalibratedParameter> ParametersFrom(const Eigen::VectorXd& start,
                                                   bool holds_effect) const;
   ExtendedFit Fit(const std::vector<CalibratedParameter>& parameters, const std::string& stage,
-                  const CalibrationOptions& options) const;
+                  const CalibrationOptions& options, Progress* progress) const;
   // The kept result of this fit, or else that of `fit`, which is then kept. `purpose` distinguishes
   // fits with the same start.
   Calibration Kept(const std::string& purpose, const std::vector<CalibratedParameter>& parameters,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/parallel.h"
 #include "diagnosis/thresholds.h"
 
 namespace lacuna {
@@ -74,16 +75,21 @@ std::vector<NuisanceTrial> NuisanceControls() {
 
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known) {
-  std::vector<NuisanceCandidate> candidates;
-  ForEach<ModelNuisance>([&](const NuisanceCard& card, ModelNuisance make) {
+  // Each is simulated by itself, side by side with the others.
+  std::vector<const NuisanceEntry*> entries;
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (std::holds_alternative<ModelNuisance>(entry.make)) entries.push_back(&entry);
+  std::vector<std::optional<NuisanceCandidate>> made(entries.size());
+  ParallelFor(static_cast<int64_t>(entries.size()), 1, [&](int64_t k) {
+    const size_t at = static_cast<size_t>(k);
     const auto same = std::find_if(known.begin(), known.end(), [&](const NuisanceCandidate& other) {
-      return other.card.name == card.name;
+      return other.card.name == entries[at]->card.name;
     });
-    if (same != known.end())
-      candidates.push_back(*same);
-    else if (auto candidate = make(context))
-      Add(card, *std::move(candidate), &candidates);
+    made[at] = same != known.end() ? *same : std::get<ModelNuisance>(entries[at]->make)(context);
   });
+  std::vector<NuisanceCandidate> candidates;
+  for (size_t k = 0; k < entries.size(); ++k)
+    if (made[k]) Add(entries[k]->card, *std::move(made[k]), &candidates);
   return candidates;
 }
 

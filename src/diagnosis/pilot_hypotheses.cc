@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/parallel.h"
 #include "diagnosis/model_change.h"
 #include "diagnosis/plane_proposals.h"
 #include "diagnosis/thresholds.h"
@@ -92,11 +93,17 @@ PilotHypotheses RunPilots(const CalibrationProblem& problem, const Eigen::Vector
       candidates.push_back(Contact(planes.front(), stiffness, kThresholds.pilots.friction));
   }
 
-  std::map<std::string, std::string> failed;
-  for (CandidateEffect& candidate : candidates) {
-    const PredictionStudy changed = WithCandidate(study, candidate);
+  std::vector<LinearisedMisfit> runs(candidates.size());
+  ParallelFor(static_cast<int64_t>(candidates.size()), 1, [&](int64_t k) {
+    const size_t at = static_cast<size_t>(k);
+    const PredictionStudy changed = WithCandidate(study, candidates[at]);
     const CalibrationProblem pilot(changed, problem.body()->mesh);
-    const LinearisedMisfit run = pilot.Linearise(values, false, {}, &misfit, &misfit);
+    runs[at] = pilot.Linearise(values, false, {}, &misfit, &misfit);
+  });
+  std::map<std::string, std::string> failed;
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    CandidateEffect& candidate = candidates[k];
+    const LinearisedMisfit& run = runs[k];
     if (!run.usable) {
       failed.try_emplace(candidate.type, "its pilot cannot be simulated: " + run.message);
     } else {

@@ -59,11 +59,13 @@ RefitStore::RefitStore(std::filesystem::path file, json origin)
 }
 
 const Calibration* RefitStore::Find(const std::string& key) const {
+  const std::lock_guard lock(mutex_);
   const auto found = fits_.find(key);
   return found != fits_.end() ? &found->second : nullptr;
 }
 
 void RefitStore::Keep(const std::string& key, const Calibration& calibration) {
+  const std::lock_guard lock(mutex_);
   content_["fits"][key] = ToJson(calibration);
   WriteFileAtomically(file_, content_.dump() + "\n");
   fits_[key] = calibration;

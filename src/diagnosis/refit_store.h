@@ -2,12 +2,14 @@
 // continues where it was.
 //
 // The file refits.json holds {"schema_version", "of": origin, "fits": {key: fit}}. Each fit is
-// written as soon as it is finished. The store is not meant for use by several threads.
+// written as soon as it is finished. Find() and Keep() may be called from
+// several threads.
 #ifndef LACUNA_DIAGNOSIS_REFIT_STORE_H_
 #define LACUNA_DIAGNOSIS_REFIT_STORE_H_
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -31,6 +33,7 @@ class RefitStore {
   void Drop();
 
  private:
+  mutable std::mutex mutex_;
   std::filesystem::path file_;
   nlohmann::json content_;
   std::map<std::string, Calibration> fits_;
