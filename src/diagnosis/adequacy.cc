@@ -90,7 +90,7 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
                           bool noise_is_known, uint64_t seed) {
   const ProjectedHypotheses projected(space, further);
   AdequacyTest test;
-  test.discretisation = space.discretisation;
+  test.model_error = space.model_error;
   test.found = MeasureAdequacy(space, projected, {space.model.squares(), space.model.toward()});
   const NoiseDraws noise(space);
   std::vector<double> drawn[3];
@@ -135,8 +135,8 @@ NoiseDraws::NoiseDraws(const HypothesisSpace& space)
   const Eigen::Index rank = (eigen.eigenvalues().array() > least).count();
   root_ = unit.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
           eigen.eigenvalues().tail(rank).cwiseSqrt().asDiagonal();
-  if (!(space.discretisation > 0)) return;
-  error_ = std::sqrt(2 * space.discretisation * space.variance);
+  if (!(space.model_error > 0)) return;
+  error_ = std::sqrt(2 * space.model_error * space.variance);
   products_ = products;
   for (const WeighedHypothesis& hypothesis : space.hypotheses) {
     if (hypothesis.kind == HypothesisKind::kUnknownForce) forces_.push_back(hypothesis.columns);
@@ -156,7 +156,7 @@ ResidualProducts NoiseDraws::Draw(uint64_t seed, uint64_t number) const {
     rest = unseen * std::pow(1 - spread + deviation, 3);
   }
   ResidualProducts products;
-  // The product of noise and discretisation error is neglected: its mean is 0.
+  // The product of noise and model error is neglected: its mean is 0.
   products.squares = variance_ * (normal.squaredNorm() + std::max(0.0, rest)) + error_ * error_;
   products.toward = std::sqrt(variance_) * (root_ * normal);
   const bool along_force = effects_.empty() || (number % 2 == 0 && !forces_.empty());

@@ -53,15 +53,15 @@ struct AdequacyTest {
   // Tail probabilities under noise alone: of each statistic, and of their smallest.
   double p_unknown_force = 1, p_further = 1, p_variance = 1, p = 1;
 
-  // HypothesisSpace::discretisation, which may imitate something that is left.
-  double discretisation = 0;
+  // HypothesisSpace::model_error, which may imitate something that is left.
+  double model_error = 0;
 
-  // Something that may be left is more probable than noise and discretisation: an unknown force or
-  // a further effect has more evidence than `discretisation`, or the residual itself is the rarest
+  // Something that may be left is more probable than noise and model error: an unknown force or a
+  // further effect has more evidence than `model_error`, or the residual itself is the rarest
   // of the statistics. Otherwise a small p says only that the hypotheses do not describe the noise
   // perfectly.
   bool IsSupported() const {
-    return std::max(found.unknown_force, found.further) > discretisation ||
+    return std::max(found.unknown_force, found.further) > model_error ||
            (p_variance < p_unknown_force && p_variance < p_further);
   }
 };
@@ -73,7 +73,7 @@ AdequacyTest TestAdequacy(const HypothesisSpace& space, const std::vector<int>& 
                           bool noise_is_known, uint64_t seed);
 
 // Draws of the products of noise alone: t ~ N(0, v AᵀA), with rᵀr from the same noise. The unknown
-// part of the discretisation error (HypothesisSpace::discretisation) is added in a random
+// part of the model error (HypothesisSpace::model_error) is added in a random
 // direction: in every other draw along the influence of a smooth force, which an error of the
 // stiffness resembles, else along that of an effect.
 class NoiseDraws {
@@ -85,7 +85,7 @@ class NoiseDraws {
   double variance_;
   Eigen::Index rows_;
   Eigen::MatrixXd root_;                            // AᵀA = root rootᵀ, columns × rank
-  double error_ = 0;                                // length of the discretisation error
+  double error_ = 0;                                // length of the model error
   Eigen::MatrixXd products_;                        // AᵀA; empty where there is no such error
   std::vector<std::vector<int>> forces_, effects_;  // columns of hypotheses
 };

@@ -44,7 +44,7 @@ void CompareWithAdopted(const DecisionInput& input, double effects,
     for (const WeighedRefit& refit : input.in_place_of_adopted) {
       if (one.kind != Kind::kEffect || refit.effect != one.names.front()) continue;
       HypothesisProbability& alone = in_place.emplace_back(one);
-      alone.evidence = refit.evidence - effects - input.baseline.discretisation;
+      alone.evidence = refit.evidence - effects - input.baseline.model_error;
       alone.is_refuted = !refit.predicts;
     }
     one.evidence += adopted;
@@ -75,7 +75,7 @@ double KeptShare(const DecisionInput& input, const std::vector<NamedEvidence>& f
 std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
                                                const std::vector<NamedEvidence>& first_order) {
   std::vector<HypothesisProbability> hypotheses =
-      HypothesesOf(first_order, input.families, input.baseline.discretisation);
+      HypothesesOf(first_order, input.families, input.baseline.model_error);
   const double share = KeptShare(input, first_order);
   const double effects = std::log(static_cast<double>(CountOf(hypotheses, Kind::kEffect)));
   const double nuisances = std::log(static_cast<double>(CountOf(hypotheses, Kind::kNuisance)));
@@ -84,7 +84,7 @@ std::vector<HypothesisProbability> PosteriorOf(const DecisionInput& input,
       const WeighedRefit* refit = FindRefit(input, one.names.front());
       one.is_refuted = refit != nullptr && !refit->predicts;
       if (refit != nullptr)
-        one.evidence = refit->evidence - effects - input.baseline.discretisation;
+        one.evidence = refit->evidence - effects - input.baseline.model_error;
       else if (one.evidence > 0)
         one.evidence *= share;
       if (const auto natural = input.natural_value.find(one.names.front());
@@ -142,7 +142,7 @@ std::vector<NamedEvidence> TakeNuisancesBeside(TestedSpace* tested) {
       else if (best == nullptr || named.evidence > best->evidence)
         best = &named;
     }
-    const double least = std::max(space.discretisation + std::log(kPriorNothing / kPriorNuisances),
+    const double least = std::max(space.model_error + std::log(kPriorNothing / kPriorNuisances),
                                   effect + kThresholds.ranking.nuisance_lead);
     if (best == nullptr || !(best->evidence > least)) break;
     const std::vector<int>& columns = space.hypotheses[best->best].columns;
@@ -200,7 +200,7 @@ struct EffectWithFurther {
   // The evidence of this effect together with a further one that has this evidence beside it.
   // Either of the two may be found first.
   double With(double second) const {
-    return evidence + second - tested.space->discretisation + std::log(2.0);
+    return evidence + second - tested.space->model_error + std::log(2.0);
   }
 };
 
@@ -283,7 +283,7 @@ EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
 
 std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
                                                 const std::map<std::string, EffectFamily>& families,
-                                                double discretisation) {
+                                                double model_error) {
   std::vector<HypothesisProbability> hypotheses(1);  // nothing
   for (const NamedEvidence& named : evidence) {
     HypothesisProbability& one = hypotheses.emplace_back();
@@ -291,7 +291,7 @@ std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>
     one.names = {named.name};
     one.evidence = named.evidence;
     if (one.kind != Kind::kEffect) continue;
-    one.evidence -= discretisation;
+    one.evidence -= model_error;
     one.family = FamilyOf(families, named.name);
   }
   return hypotheses;

@@ -36,7 +36,7 @@ EffectFamily FamilyOf(const std::map<std::string, EffectFamily>& families,
 // The hypotheses of a space with their log Bayes factors, and "nothing", without probabilities.
 std::vector<HypothesisProbability> HypothesesOf(const std::vector<NamedEvidence>& evidence,
                                                 const std::map<std::string, EffectFamily>& families,
-                                                double discretisation);
+                                                double model_error);
 
 }  // namespace lacuna
 

@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "fit/calibration.h"
 
 namespace lacuna {
 namespace {
 
-// Of a normal distribution: the half width of the 95 % interval.
-constexpr double kHalfWidth95 = 1.96;
 // The length of a vector is determined if its mean exceeds so many standard deviations.
 constexpr double kDeterminedLength = 3;
 
@@ -34,7 +33,7 @@ double EvidenceOfNaturalValue(const RankedEffect& effect) {
   for (int k = 0; k < 3; ++k) {
     const ParameterEstimate& size = effect.sizes[static_cast<size_t>(k)];
     mean[k] = size.value;
-    deviation[k] = (size.high - size.low) / (2 * kHalfWidth95);
+    deviation[k] = (size.high - size.low) / (2 * kNormalQuantile);
   }
   if (!deviation.allFinite()) return 0;
   const double prior = AmountsOf(candidate).front().plausible;

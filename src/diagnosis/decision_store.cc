@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 4;
+constexpr int kSchemaVersion = 5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::pair<HypothesisKind, const char*> kKinds[] = {
@@ -55,7 +55,7 @@ json SpaceToJson(const HypothesisSpace& space) {
                           {"selection_penalty", one.selection_penalty}});
   }
   return {
-      {"variance", space.variance}, {"rows", space.rows}, {"discretisation", space.discretisation},
+      {"variance", space.variance}, {"rows", space.rows}, {"model_error", space.model_error},
       {"base", space.base},         {"priors", priors},   {"hypotheses", hypotheses}};
 }
 
@@ -73,7 +73,7 @@ HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& pr
       all(0, 0), all.col(0).tail(size), all.bottomRightCorner(size, size), std::move(priors));
   space.variance = value.at("variance");
   space.rows = value.at("rows");
-  space.discretisation = value.at("discretisation");
+  space.model_error = value.at("model_error");
   space.base = value.at("base").get<std::vector<int>>();
   for (const json& one : value.at("hypotheses")) {
     WeighedHypothesis& hypothesis = space.hypotheses.emplace_back();

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "diagnosis/decision_rules.h"
 #include "diagnosis/grip_motions.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/recording_agreement.h"
@@ -135,6 +136,7 @@ HypothesisRanking::HypothesisRanking(const CalibrationProblem& problem,
 
   parameters_ = base_ =
       hypotheses_.Add(misfit_.jacobian.leftCols(known_), PriorsAbout(problem.parameters(), values));
+  ranking_.explained_misfit = study.explained_misfit;
   ranking_.scene.pilots =
       known.pilots ? *known.pilots : RunPilots(problem, values, misfit_, without);
   AddEffects(misfit_.jacobian.middleCols(known_, of_effects), *ranking_.scene.pilots);
@@ -406,8 +408,9 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
       WhitenedRows(columns, misfit, noise.correlation_time, false), std::move(priors), base.cols(),
       std::move(hypotheses), noise.variance, ObservedRows(misfit));
+  space.model_error = 0.5 * kToleratedModelError * ranking.explained_misfit;
   for (const ScoredNuisance& nuisance : ranking.nuisances)
-    space.discretisation += nuisance.uncertain_evidence;
+    space.model_error += nuisance.uncertain_evidence;
   return space;
 }
 

@@ -44,6 +44,7 @@ struct EffectRanking {
   std::vector<ScoredNuisance> nuisances;  // in the order of the catalogue
   AdoptedNuisances adopted;
   NoiseLevel noise;
+  double explained_misfit = 0;    // as PredictionStudy has it
   LinearisedMisfit misfit;        // at the fitted values, without columns
   Eigen::MatrixXd unknown_force;  // the columns of UnknownForceColumns (unknown_force.h)
   HypothesisSpace space;          // of all hypotheses beside the parameters and adopted nuisances

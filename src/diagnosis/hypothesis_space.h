@@ -32,9 +32,11 @@ struct HypothesisSpace {
   LinearGaussianModel model = LinearGaussianModel::FromProducts(0, {}, {}, {});
   double variance = 1;    // of the noise in the whitened rows
   Eigen::Index rows = 0;  // number of rows that were observed
-  // ½ u², where u is the length, in units of the noise, of the error that mesh and time step may
-  // leave in an unknown direction: the evidence that it could give to an effect along it.
-  double discretisation = 0;
+  // ½ u², where u is the length, in units of the noise, of the error that the model may leave in an
+  // unknown direction: the evidence that it could give to an effect along it. It is that of the
+  // mesh and the time step, and kToleratedModelError of the misfit that the effects explain which
+  // earlier diagnoses have added (decision_rules.h).
+  double model_error = 0;
   std::vector<int> base;  // columns of the base
   std::vector<WeighedHypothesis> hypotheses;
 };

@@ -45,7 +45,7 @@ class SimulatedDecisions {
     const std::vector<NamedEvidence> evidence = SumVariants(
         space_, beside_nothing_.LogBayesFactors(beside_nothing_.Project(residual.toward)));
     std::vector<HypothesisProbability> posterior =
-        HypothesesOf(evidence, input_.families, space_.discretisation);
+        HypothesesOf(evidence, input_.families, space_.model_error);
     SetPosterior(&posterior);
     const HypothesisProbability& best = posterior.front();
     int variant = -1;
@@ -56,8 +56,8 @@ class SimulatedDecisions {
     const AdequacyStatistics left = MeasureAdequacy(space_, *null.projected, residual);
     Outcome outcome;
     outcome.is_unknown_left =
-        left.unknown_force > std::max(space_.discretisation, null.unknown_force) ||
-        left.further > std::max(space_.discretisation, null.further) ||
+        left.unknown_force > std::max(space_.model_error, null.unknown_force) ||
+        left.further > std::max(space_.model_error, null.further) ||
         (input_.noise_is_known && left.variance / space_.variance > null.variance);
     const Naming naming = NameFrom(posterior);
     outcome.names = naming.names;

@@ -3,9 +3,11 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
+#include "core/parallel.h"
 #include "diagnosis/adequacy.h"
 #include "diagnosis/projected_hypotheses.h"
 #include "diagnosis/thresholds.h"
@@ -297,16 +299,26 @@ void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ran
   std::stable_sort(rivals.begin(), rivals.end(),
                    [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
   rivals.resize(std::min(rivals.size(), thresholds.most_rival_nuisances));
+  if (rivals.empty()) return;
   const double before = EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence;
-  for (ScoredNuisance* nuisance : rivals) {
+  Progress& progress = *context.model.progress;
+  progress.Begin("refit with nuisances", static_cast<int64_t>(rivals.size()));
+  std::atomic<int64_t> done = 0;
+  ParallelFor(static_cast<int64_t>(rivals.size()), 1, [&](int64_t k) {
+    ScoredNuisance& nuisance = *rivals[static_cast<size_t>(k)];
+    Progress silent({.style = ProgressStyle::kSilent});
+    BaselineModel model = context.model;
+    model.progress = &silent;
     const EffectRefit with =
-        Refit(context.model, nullptr, context.ranking.adopted.And(nuisance->candidate), false);
-    if (!with.message.empty()) continue;
+        Refit(model, nullptr, context.ranking.adopted.And(nuisance.candidate), false);
+    progress.Report(++done);
+    if (!with.message.empty()) return;
     const double evidence = EvidenceOf(with.hypothesis, noise.level).log_evidence - before -
-                            nuisance->candidate.selection_penalty -
+                            nuisance.candidate.selection_penalty -
                             SelectionPenalty(nuisances->size());
-    if (std::isfinite(evidence)) nuisance->refitted = evidence;
-  }
+    if (std::isfinite(evidence)) nuisance.refitted = evidence;
+  });
+  progress.End();
 }
 
 NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,

@@ -169,9 +169,7 @@ ReferenceBody MakeObjectiveBody(const ParameterObjective& problem,
 FollowedMotion FollowForObjective(const ParameterObjective& problem,
                                   const SearchedParameters& parameters,
                                   const ReferenceBody& reference) {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const ReconstructionStudy study = StudyAt(problem, parameters);
   return FollowFrames(study, reference, problem.states, &progress,
                       problem.registration_in_loop ? nullptr : &problem.tracked,

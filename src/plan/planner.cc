@@ -18,6 +18,7 @@
 #include "diagnosis/decision_rules.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/projected_hypotheses.h"
+#include "fit/calibration.h"
 #include "plan/joined_space.h"
 #include "plan/planned_recording.h"
 #include "report/verdict_text.h"
@@ -29,8 +30,6 @@ using Kind = HypothesisProbability::Kind;
 
 // Simulated recordings per protocol and rival: frequencies to within 0.035.
 constexpr int kDraws = 200;
-// Of a normal distribution: the half width of the 95 % interval.
-constexpr double kHalfWidth95 = 1.96;
 
 // The influence of everything that is weighed on a planned recording.
 struct Influence {
@@ -237,8 +236,8 @@ void Planner::Predict(const JoinedSpace& space, PlannedOutcome* outcome) const {
       for (size_t a = 0; a < amounts.size(); ++a) {
         const Eigen::Index at = static_cast<Eigen::Index>(a);
         outcome->sizes.push_back({effect.name, amounts[a].name, amounts[a].unit, effect.amounts[at],
-                                  kHalfWidth95 * std::sqrt(covariance_now(at, at)),
-                                  kHalfWidth95 * std::sqrt(covariance(at, at))});
+                                  kNormalQuantile * std::sqrt(covariance_now(at, at)),
+                                  kNormalQuantile * std::sqrt(covariance(at, at))});
       }
     }
   }

@@ -128,8 +128,8 @@ std::string AdequacySentence(const RecordedAdequacy& adequacy) {
       adequacy.beside.empty() ? "The model as it is" : "The model with " + NamesOf(adequacy.beside);
   if (adequacy.is_adequate)
     return fmt::format(
-        "{} leaves nothing that is more probable than noise and the error of the "
-        "discretisation (p = {:.2g}).",
+        "{} leaves nothing that is more probable than noise and the error of the model (p = "
+        "{:.2g}).",
         beside, adequacy.p);
   if (adequacy.is_tolerated)
     return fmt::format(

@@ -32,7 +32,6 @@ namespace lacuna {
 namespace {
 
 constexpr int kIntervalsVersion = 1;  // of intervals.json
-constexpr double kFinerTruth = 20;    // volume of the model's elements over that of the truth's
 constexpr double kTrueStep = 1e-3;    // s
 constexpr int kBins = 10;
 constexpr uint64_t kShapeStream = 70, kEffectStream = 71, kPriorStream = 72;
@@ -154,9 +153,7 @@ IntervalTally TallyOf(const std::string& name, const std::vector<double>& deviat
 void FitDraw(const std::filesystem::path& folder) {
   PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   study.output = folder / "fit";
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  Progress progress(silent);
+  Progress progress({.style = ProgressStyle::kSilent});
   const CalibrationRecord record = RunCalibration(study, &progress);
   if (!record.usable) throw InputError(folder.string() + ": " + record.message);
   const TrialCase truth = LoadCase(folder / "truth.json");
@@ -175,6 +172,8 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
   suite.recordings = config.Integer("recordings", 1, 2, suite.recordings);
   suite.element_volume =
       config.Quantity("element_volume", kVolume, kPositive, suite.element_volume);
+  suite.finer_truth = config.Number("finer_truth", {1, 1000}, suite.finer_truth);
+  suite.noise = config.Quantity("noise", kLength, kPositive, suite.noise);
   suite.modelled = ReadEffectTypes(config, "modelled");
   suite.missing = ReadEffectTypes(config, "missing");
   for (const Config& item : config.Items("priors"))
@@ -201,10 +200,9 @@ TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
         trial.size[axis] *
         (1 + PredictionStudy{}.size_deviation *
                  Normal(RandomBits({trial.seed, kShapeStream, static_cast<uint64_t>(axis)})));
+  trial.noise = suite.noise;
   trial.element_volume = suite.element_volume;
-  // The intervals are those of infinitely fine elements and steps. A truth of which a fifth of the
-  // model's error is left would look like a bias.
-  trial.true_element_volume = suite.element_volume / kFinerTruth;
+  trial.true_element_volume = suite.element_volume / suite.finer_truth;
   trial.true_step = kTrueStep;
   trial.priors = suite.priors;
 

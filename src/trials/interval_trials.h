@@ -29,8 +29,13 @@ struct IntervalSuite {
   std::string name;
   uint64_t seed = 0;
   int draws = 0;
-  int recordings = 1;                      // of each draw, 1 or 2
-  double element_volume = 4e-7;            // m³, of the model
+  int recordings = 1;            // of each draw, 1 or 2
+  double element_volume = 4e-7;  // m³, of the model
+  // The volume of the model's elements over that of the truth's. The intervals are those of
+  // infinitely fine elements, so that what is left of the model's error in the truth looks like a
+  // bias.
+  double finer_truth = 20;
+  double noise = TrialCase{}.noise;        // m, standard deviation of a marker's coordinate
   std::vector<std::string> modelled = {};  // effects of the truth and of the model
   std::vector<std::string> missing = {};   // effects of the truth alone
   std::vector<TrialPrior> priors = {};     // of parameters of the model and of missing effects

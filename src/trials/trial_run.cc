@@ -28,12 +28,6 @@ namespace {
 
 constexpr int kSchemaVersion = 3;  // of outcome.json
 
-ProgressOptions Silent() {
-  ProgressOptions silent;
-  silent.style = ProgressStyle::kSilent;
-  return silent;
-}
-
 const RankedEffect* Find(const Diagnosis& diagnosis, const std::string& type) {
   for (const RankedEffect& effect : diagnosis.ranking)
     if (effect.scored.candidate.type == type) return &effect;
@@ -55,7 +49,7 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   std::vector<ParameterEstimate> sizes = effect->sizes;
   double in_noise = effect->errors.without_nuisances;
   if (!effect->refitted) {
-    Progress progress(Silent());
+    Progress progress({.style = ProgressStyle::kSilent});
     const LinearisedMisfit misfit = problem.Linearise(values, false);
     const EffectRefit refit = Refit({problem, values, misfit, &progress}, &effect->scored, {},
                                     diagnosis.baseline_rms_over_sigma > kFarFromTruth);
@@ -103,7 +97,7 @@ DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::V
                                double time_step) {
   PredictionStudy study = problem.WithEstimatedNoise();
   study.time_step = time_step;
-  Progress progress(Silent());
+  Progress progress({.style = ProgressStyle::kSilent});
   return FirstOrderInput(CalibrationProblem(study, problem.body()->mesh), values, &progress);
 }
 
@@ -113,7 +107,7 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   const auto began = std::chrono::steady_clock::now();
   PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
   const ReferenceBody reference = MakeReferenceBody(study);
-  Progress progress(Silent());
+  Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration =
       FitWithAdaptiveTimeStep(reference.mesh, &study, &progress).calibration;
   const CalibrationProblem problem(study, reference.mesh);

@@ -139,7 +139,7 @@ TEST(Adequacy, SeesAForceAnEffectAndTooMuchNoise) {
   EXPECT_TRUE(force.IsSupported());
   // ... unless the discretisation may have left as much.
   HypothesisSpace coarse = synthetic.With(noise + 4 * synthetic.unknown.rowwise().sum());
-  coarse.discretisation = 1000;
+  coarse.model_error = 1000;
   EXPECT_FALSE(TestAdequacy(coarse, {}, false, 1).IsSupported());
   const HypothesisSpace effect = synthetic.With(noise - 6 * synthetic.Of("fibres"));
   const AdequacyTest without = TestAdequacy(effect, {}, true, 1);

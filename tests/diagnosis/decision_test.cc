@@ -171,8 +171,8 @@ TEST(Decide, BelievesARefitMoreThanFirstOrder) {
   input.refits.push_back({"mass_damping", 40, synthetic.With(noise)});
   const Decision decision = Decide(input);
   EXPECT_THAT(decision.names, ElementsAre("mass_damping"));
-  // The uncertainty in the discretisation error counts against every effect.
-  input.baseline.discretisation = 50;
+  // The unknown error of the model counts against every effect.
+  input.baseline.model_error = 50;
   EXPECT_EQ(Decide(input).verdict, Verdict::kAdequate);
 }
 

@@ -68,5 +68,21 @@ TEST(EffectRanking, TakesOverTheColumnsOfItsScene) {
     EXPECT_EQ(second.scene.pilots->tried[k].change, 2 * first.scene.pilots->tried[k].change);
 }
 
+// What an added effect has explained tells how large the error of its own model may be.
+TEST(EffectRanking, CountsTheErrorOfEffectsThatWereAddedBefore) {
+  const TemporaryFolder folder;
+  WriteBarRecording(folder.Path(), FilmHeldBar({}));
+  PredictionStudy study = ReadBarStudy(folder.Path());
+  Progress progress({.style = ProgressStyle::kSilent});
+  const auto rank = [&](const SceneColumns& known) {
+    const CalibrationProblem problem(study, BarMesh({6, 1, 1}, 1));
+    return RankEffects(problem, problem.Start(), &progress, {}, known);
+  };
+  const EffectRanking first = rank({});
+  study.explained_misfit = 10'000;
+  const EffectRanking later = rank(first.scene);
+  EXPECT_NEAR(later.space.model_error - first.space.model_error, 0.5 * 0.01 * 10'000, 1e-6);
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -68,7 +68,7 @@ TEST(VerdictText, StatesProbabilitiesOfFamiliesAndMembers) {
   EXPECT_THAT(ExplainVerdict(record),
               HasSubstr("loss outside the body 99 % (drag 62 %, mass_damping 37 %). The model with "
                         "drag leaves nothing that is more probable than noise and the error of the "
-                        "discretisation (p = 0.4)."));
+                        "model (p = 0.4)."));
   record.decision.adequacy.is_adequate = false;
   record.decision.adequacy.p = 0.001;
   record.decision.adequacy.left_share = 0.25;
