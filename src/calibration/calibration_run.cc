@@ -135,9 +135,7 @@ std::map<std::string, std::string> InputHashes(const PredictionStudy& study) {
   std::map<std::string, std::string> hashes;
   for (const PredictedRecording& item : study.recordings)
     for (const std::filesystem::path& file : RecordingFiles(item.recording))
-      hashes[item.name + "/" +
-             file.lexically_proximate(item.recording.file.parent_path()).generic_string()] =
-          HashFile(file);
+      AddInput(item.name + "/" + InputName(file, item.recording.file.parent_path()), file, &hashes);
   return hashes;
 }
 

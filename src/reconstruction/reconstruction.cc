@@ -30,8 +30,7 @@ constexpr int kResultsVersion = 3;
 std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
   std::map<std::string, std::string> hashes;
   for (const std::filesystem::path& file : RecordingFiles(study.recording))
-    hashes[file.lexically_proximate(study.recording.file.parent_path()).generic_string()] =
-        HashFile(file);
+    AddInput(InputName(file, study.recording.file.parent_path()), file, &hashes);
   return hashes;
 }
 

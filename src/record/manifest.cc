@@ -21,6 +21,21 @@ std::string StageKey(const StageIdentity& identity) {
   return HashBytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+std::string InputName(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  const fs::path inside = fs::absolute(file).lexically_normal().lexically_proximate(
+      fs::absolute(folder).lexically_normal());
+  const bool is_inside = inside.is_relative() && !inside.empty() && *inside.begin() != "..";
+  return (is_inside ? inside : file.filename()).generic_string();
+}
+
+void AddInput(const std::string& name, const std::filesystem::path& file,
+              std::map<std::string, std::string>* inputs) {
+  const std::string hash = HashFile(file);
+  const auto [entry, is_new] = inputs->try_emplace(name, hash);
+  if (!is_new) entry->second = HashBytes(entry->second + hash);
+}
+
 void SaveManifest(const Manifest& manifest, const std::filesystem::path& file) {
   json stages = json::object();
   for (const auto& [name, result] : manifest.stages) {

@@ -33,7 +33,7 @@ struct Manifest {
   std::string program_version;
   std::map<std::string, std::string> library_versions;
   nlohmann::json configuration;               // all values in SI, defaults included
-  std::map<std::string, std::string> inputs;  // file as named by the user → hash of its content
+  std::map<std::string, std::string> inputs;  // InputName() → hash of the content
   uint64_t seed = 0;
   std::map<std::string, StageResult> stages;  // by name of the stage
   bool finished = false;  // whether every stage exists and belongs to this configuration
@@ -49,6 +49,15 @@ struct StageIdentity {
 };
 // The hash of the identity, under which the result is stored.
 std::string StageKey(const StageIdentity& identity);
+
+// The name under which Manifest::inputs lists a file that was read: its path relative to `folder`
+// if it lies in there, and otherwise its own name, so that it depends neither on where the data lie
+// nor on how the paths were spelled.
+std::string InputName(const std::filesystem::path& file, const std::filesystem::path& folder);
+// Adds the hash of a file to inputs. Files of one name share an entry. Throws InputError if the
+// file cannot be read.
+void AddInput(const std::string& name, const std::filesystem::path& file,
+              std::map<std::string, std::string>* inputs);
 
 // Writes the file atomically. Throws InputError if that fails.
 void SaveManifest(const Manifest& manifest, const std::filesystem::path& file);
