@@ -23,7 +23,7 @@ namespace {
 
 // Incremented whenever a change of the code changes the result of the stage.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 24;
+constexpr int kCalibrationVersion = 25;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
@@ -100,6 +100,8 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
     if (item.scans != nullptr)
       record.recordings.back().scan =
           DescribeScan(misfits[r], problem.models()[r].observer().Places(), problem.scan_noise());
+    else
+      record.recordings.back().marker_names = item.recording.markers.names;
   }
   record.prior_conflicts = FindPriorConflicts(problem, misfits);
   stage.misfit = MisfitTable(problem, misfits);

@@ -92,6 +92,7 @@ json ToJson(const CalibrationRecord& record) {
       entry["own"].push_back({{"name", own.name}, {"unit", own.unit}, {"value", own.value}});
     for (const FittedReaction& reaction : recording.reactions)
       entry["reactions"].push_back(ReactionToJson(reaction));
+    if (!recording.marker_names.empty()) entry["marker_names"] = recording.marker_names;
     recordings.push_back(entry);
   }
   json conflicts = json::array();
@@ -153,6 +154,7 @@ CalibrationRecord FromJson(const json& value) {
       record.recordings.back().own.push_back({own.at("name"), own.at("unit"), own.at("value")});
     for (const json& reaction : entry.value("reactions", json::array()))
       record.recordings.back().reactions.push_back(ReactionFromJson(reaction));
+    record.recordings.back().marker_names = entry.value("marker_names", std::vector<std::string>());
   }
   for (const json& conflict : value.at("prior_conflicts"))
     record.prior_conflicts.push_back(PriorConflictFromJson(conflict));

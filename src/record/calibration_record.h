@@ -75,6 +75,7 @@ struct FittedRecording {
   // parameters are among CalibrationRecord::parameters.
   std::vector<OwnValue> own = {};
   std::vector<FittedReaction> reactions = {};  // measured forces of its grips
+  std::vector<std::string> marker_names = {};  // as the recording has them; empty for scans
 };
 
 struct CalibrationRecord {

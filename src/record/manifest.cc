@@ -84,7 +84,9 @@ Manifest LoadManifest(const std::filesystem::path& file) {
     }
     manifest.finished = document.at("finished");
   } catch (const json::exception& error) {
-    throw InputError({file.string()}, std::string("is not a valid manifest: ") + error.what());
+    throw InputError({file.string()}, fmt::format("is not a valid manifest: {}. If the folder is a run of Lacuna, remove "
+                                 "this file, and everything is computed again",
+                                 error.what()));
   }
   return manifest;
 }

@@ -104,7 +104,8 @@ std::string WithProbability(const DiagnosisRecord& diagnosis, const std::string&
          (std::isnan(probability) ? "" : fmt::format(" ({})", PercentText(probability)));
 }
 
-std::string MissingSentence(const DiagnosisRecord& diagnosis) {
+std::string MissingSentence(const ReportedModel& model) {
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
   std::vector<std::string> titles, details;
   for (const std::string& name : diagnosis.effects) titles.push_back(ShortTitle(diagnosis, name));
   if (const HypothesisProbability* found = FindHypothesis(diagnosis.decision, diagnosis.effects)) {
@@ -113,7 +114,8 @@ std::string MissingSentence(const DiagnosisRecord& diagnosis) {
       details.push_back(FamilyTitle(found->family));
     details.push_back("probability " + PercentText(found->probability));
   }
-  return fmt::format("What it lacks: {}{}.", fmt::join(titles, " and "),
+  return fmt::format("What it {}lacks: {}{}.", model.added.empty() ? "" : "still ",
+                     fmt::join(titles, " and "),
                      details.empty() ? "" : fmt::format(" ({})", fmt::join(details, "; ")));
 }
 
@@ -127,7 +129,8 @@ std::string AmbiguousSentence(const DiagnosisRecord& diagnosis) {
       fmt::join(titles, ", or "), NextStep(diagnosis));
 }
 
-std::string NuisanceSentence(const DiagnosisRecord& diagnosis) {
+std::string NuisanceSentence(const ReportedModel& model) {
+  const DiagnosisRecord& diagnosis = *model.diagnosis;
   std::vector<std::string> whats;
   for (const std::string& name : diagnosis.effects) whats.push_back(TitleOf(diagnosis, name));
   std::string advice;
@@ -136,8 +139,9 @@ std::string NuisanceSentence(const DiagnosisRecord& diagnosis) {
         !nuisance.advice.empty() && advice.empty())
       advice = " What to do: " + nuisance.advice + ".";
   return fmt::format(
-      "No physical effect needs to be missing: an error of the measurement or of the computation "
-      "explains it{}.{}",
+      "No {} effect needs to be missing: an error of the measurement or of the computation "
+      "explains {}{}.{}",
+      model.added.empty() ? "physical" : "further", model.added.empty() ? "it" : "what is left",
       whats.empty() ? "" : fmt::format(" ({})", fmt::join(whats, ", ")), advice);
 }
 
@@ -175,11 +179,11 @@ std::string VerdictSentence(const ReportedModel& model) {
   const DiagnosisRecord& diagnosis = *model.diagnosis;
   switch (diagnosis.verdict) {
     case Verdict::kMissing:
-      return MissingSentence(diagnosis);
+      return MissingSentence(model);
     case Verdict::kAmbiguous:
       return AmbiguousSentence(diagnosis);
     case Verdict::kNuisance:
-      return NuisanceSentence(diagnosis);
+      return NuisanceSentence(model);
     case Verdict::kNotInLibrary:
       return UnknownSentence(diagnosis);
     case Verdict::kNoPower:

@@ -1,5 +1,7 @@
 #include "report/scene_document.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
@@ -54,8 +56,11 @@ double NoiseOf(const CalibrationRecord& record, const FittedRecording& recording
 std::vector<std::string> PointNames(const ReportedModel& model, size_t recording, int points) {
   if (model.comparison && recording < model.comparison->recordings.size())
     return model.comparison->recordings[recording].point_names;
+  const FittedRecording& fitted = model.calibration.recordings[recording];
+  if (static_cast<int>(fitted.marker_names.size()) == points) return fitted.marker_names;
   std::vector<std::string> names;
-  for (int m = 0; m < points; ++m) names.push_back(std::to_string(m));
+  for (int m = 0; m < points; ++m)
+    names.push_back(fmt::format("{} {}", fitted.scan ? "patch" : "marker", m));
   return names;
 }
 

@@ -30,6 +30,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   parameter.share_of_forces = 0.75;
   record.held = {{"density", "kg/m^3", {1070}}, {"gravity.acceleration", "m/s^2", {0, 0, -9.81}}};
   record.recordings.push_back({"a", true, 1e-4, {3, 30, 1e-4, 2e-4, 1.5}, {}, std::nullopt});
+  record.recordings[0].marker_names = {"root", "tip"};
   record.recordings[0].reactions.push_back({"jaw",
                                             true,
                                             true,
@@ -67,6 +68,7 @@ TEST(CalibrationRecord, IsReadBackAsItWasWritten) {
   ASSERT_EQ(read.recordings.size(), 1u);
   EXPECT_EQ(read.recordings[0].in_fit.rms_over_sigma, 1.5);
   EXPECT_EQ(read.parameters[0].share_of_forces, 0.75);
+  EXPECT_EQ(read.recordings[0].marker_names, (std::vector<std::string>{"root", "tip"}));
   ASSERT_EQ(read.recordings[0].reactions.size(), 1u);
   EXPECT_EQ(ReactionToJson(read.recordings[0].reactions[0]),
             ReactionToJson(record.recordings[0].reactions[0]));
