@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/command_documents.h"
 #include "app/commands.h"
 #include "core/blas_kernels.h"
 #include "core/error.h"
@@ -85,6 +86,7 @@ int main(int argc, char** argv) {
   lacuna::AddExplain(&app, &command);
   lacuna::AddExport(&app, &command);
   lacuna::AddImport(&app, &command);
+  lacuna::AddDocumentOption(&app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

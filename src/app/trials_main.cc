@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/command_documents.h"
 #include "core/blas_kernels.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -61,6 +62,7 @@ int Main(int argc, char** argv) {
   intervals->add_option("folder", folder, "Folder for the draws")->required();
   intervals->add_option("--workers", workers, "Number of processes that run at the same time")
       ->check(CLI::Range(1, 64));
+  AddDocumentOption(&app);
   CLI11_PARSE(app, argc, argv);
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
