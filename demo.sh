@@ -3,8 +3,12 @@
 # the model of a second bar lacks. Further arguments go to the first command; run again, it resumes.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")"
-./build.sh lacuna
-lacuna=build/release/src/app/lacuna
+if [[ -x build.sh ]]; then
+  ./build.sh lacuna
+  lacuna=build/release/src/app/lacuna
+else  # in a copy of the installed examples
+  lacuna=lacuna
+fi
 "$lacuna" reconstruct experiments/bend.yaml "$@"
 
 # Its physics is known to experiments/recordings/hidden_effect/truth.json alone, which nothing reads.

@@ -32,7 +32,8 @@ check_man() {
   expect "requests" ".PP .SH .SS .TH .TP .fi .nf" \
     "$(grep -oE '^\.[A-Za-z]+' "$page" | sort -u | paste -sd ' ')"
   if command -v mandoc >/dev/null; then
-    expect "mandoc's warnings" "" "$(mandoc -T lint -W warning "$page" | grep -v 'missing date' || true)"
+    expect "mandoc's warnings" "" \
+      "$(mandoc -T lint -W warning "$page" | grep -v 'missing date' || true)"
   fi
 }
 
@@ -69,9 +70,13 @@ check_zsh() {
       zpty -b shell "TERM=dumb PS1=ready\> zsh -f -i"
       say() { zpty -w shell "$1" }
       say "stty -echo cols 200; fpath=($1 \$fpath); autoload -Uz compinit; compinit -u -D"
-      say "setopt noautomenu nolistbeep; bindkey \"^I\" complete-word; LISTMAX=0; unset zle_bracketed_paste"
+      say "setopt noautomenu nolistbeep; bindkey \"^I\" complete-word; LISTMAX=0"
       # The offers are printed rather than drawn.
-      say "compadd() { builtin compadd -O offers \"\$@\"; (( \$#offers )) && print -rl -- offered:\$^offers >&3; builtin compadd \"\$@\" }"
+      say "compadd() {
+        builtin compadd -O offers \"\$@\"
+        (( \$#offers )) && print -rl -- offered:\$^offers >&3
+        builtin compadd \"\$@\"
+      }"
       say "exec 3>$3; print loaded\\d"
       zpty -r shell text "*loadedd*"
       zpty -w -n shell "$2"$'"'\\t'"'
