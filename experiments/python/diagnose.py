@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fits an experiment, diagnoses it, and shows what was found with NumPy.
 
-    python3 experiments/python/diagnose.py [EXPERIMENT]
+    python3 experiments/python/diagnose.py [EXPERIMENT [REFITS]]
 
 The cells between the marks "# %%" can be run one by one in editors such as Spyder or VS Code.
 """
@@ -14,6 +14,7 @@ import numpy as np
 import lacuna
 
 experiment = sys.argv[1] if len(sys.argv) > 1 else "experiments/hidden_effect.yaml"
+refits = int(sys.argv[2]) if len(sys.argv) > 2 else None  # None: as many as lacuna diagnose
 run = lacuna.fit(experiment)
 model = run.model
 
@@ -38,7 +39,7 @@ for number, recording in enumerate(model.recordings):
 
 # %% What the model lacks. This takes longer than the fit; Ctrl-C stops it, and the next call
 # continues.
-diagnosis = lacuna.diagnose(run, refits=1).model.diagnosis
+diagnosis = lacuna.diagnose(run, refits=refits).model.diagnosis
 print(f"\n{diagnosis.verdict}: {', '.join(diagnosis.effects) or 'no effect is named'}")
 for hypothesis in diagnosis.hypotheses[:3]:
     print(f"  {hypothesis.probability:6.1%}  {' and '.join(hypothesis.names) or 'nothing'}")

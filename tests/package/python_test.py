@@ -100,7 +100,7 @@ class PythonModule(unittest.TestCase):
         self.assertTrue((np.diff(diagnosis.probabilities) <= 0).all())
         # The example reads the same run back and shows it.
         shown = subprocess.run(
-            [sys.executable, SOURCE / "experiments/python/diagnose.py", self.experiment],
+            [sys.executable, SOURCE / "experiments/python/diagnose.py", self.experiment, "1"],
             check=True, capture_output=True, text=True, cwd=self.folder).stdout
         self.assertIn("young_modulus", shown)
         self.assertIn("missing: viscoelastic_branch", shown)
