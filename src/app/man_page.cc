@@ -78,7 +78,7 @@ std::string CommandText(const DescribedCommand& command, const std::string& prog
 }  // namespace
 
 std::string ManPage(const DescribedCommand& program, const std::string& version) {
-  // The first sentence of the description, without its stop, is what apropos(1) shows.
+  // The description, without its full stop, is what apropos(1) shows.
   std::string purpose = program.description;
   if (!purpose.empty() && purpose.back() == '.') purpose.pop_back();
   std::string text = fmt::format(".TH {} 1 \"\" \"{}\" \"User Commands\"\n",

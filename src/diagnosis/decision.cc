@@ -123,10 +123,10 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
   return {&input.baseline, {}};
 }
 
-// Adds to the columns of a hypothesis with an effect those of the nuisances that explain what the
-// effect leaves: a real clamp is never exactly where it was measured, and an effect that dwarfs the
-// error of its place must not hide that error. Each is more probable than no nuisance, and leads
-// over every further effect as a nuisance that enters the model does. Returns them.
+// Adds to the columns of a hypothesis with an effect those of the nuisances that explain the
+// residual beside it: a clamp is never exactly where it was measured, and a large effect must not
+// turn that error into something unknown. Each is more probable than no nuisance, and leads over
+// every further effect as a nuisance that enters the model does. Returns them.
 std::vector<NamedEvidence> TakeNuisancesBeside(TestedSpace* tested) {
   std::vector<NamedEvidence> taken;
   const HypothesisSpace& space = *tested->space;
@@ -315,7 +315,8 @@ Decision Decide(const DecisionInput& input) {
   std::vector<std::string> beside = best.names.empty() ? input.adopted : best.names;
   if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
     for (const NamedEvidence& nuisance : TakeNuisancesBeside(&tested))
-      beside.push_back(nuisance.name);
+      if (std::count(beside.begin(), beside.end(), nuisance.name) == 0)
+        beside.push_back(nuisance.name);
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
   record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "calibration/calibration_run.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -13,7 +15,7 @@
 namespace lacuna {
 namespace {
 
-// Whether the verdict ends the search: kNone where its first effect is to be added.
+// Whether the verdict ends the search: kNone where an effect is to be added.
 LedgerEnding::Reason EndingOf(const DiagnosisRecord& diagnosis, const ExtensionOptions& options,
                               int added) {
   using Reason = LedgerEnding::Reason;
@@ -26,7 +28,8 @@ LedgerEnding::Reason EndingOf(const DiagnosisRecord& diagnosis, const ExtensionO
 
 // The effect that is to be added: the one that explains most, or that the verdict names first.
 const RecordedEffect& ToAdd(const DiagnosisRecord& diagnosis, const std::filesystem::path& run) {
-  const std::string name = PartlyExplainedBy(diagnosis).value_or(diagnosis.effects.front());
+  const std::optional<std::string> part = PartlyExplainedBy(diagnosis);
+  const std::string name = part ? *part : diagnosis.effects.front();
   for (const RecordedEffect& effect : diagnosis.ranking)
     if (effect.type == name) return effect;
   throw InputError(

@@ -1,7 +1,7 @@
 // Diagnoses a fitted model, adds the missing effect, fits again and diagnoses the new model, until
 // no effect can be named any more. An effect that explains most of the misfit is added even where
-// the verdict is "not in library" (PartlyExplainedBy, record/diagnosis_record.h): what is left
-// shows more clearly beside it.
+// the verdict is "not in library" (PartlyExplainedBy, record/diagnosis_record.h): with it in the
+// model, the rest of the residual can be seen better.
 #ifndef LACUNA_DIAGNOSIS_EXTENSION_ROUNDS_H_
 #define LACUNA_DIAGNOSIS_EXTENSION_ROUNDS_H_
 

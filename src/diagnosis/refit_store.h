@@ -2,8 +2,7 @@
 // continues where it was.
 //
 // The file refits.json holds {"schema_version", "of": origin, "fits": {key: fit}}. Each fit is
-// written as soon as it is finished. Find() and Keep() may be called from
-// several threads.
+// written as soon as it is finished. Find() and Keep() may be called from several threads.
 #ifndef LACUNA_DIAGNOSIS_REFIT_STORE_H_
 #define LACUNA_DIAGNOSIS_REFIT_STORE_H_
 

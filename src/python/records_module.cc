@@ -54,10 +54,10 @@ Motion ReadMotion(const ReportedModel& model, size_t recording) {
           model.calibration.recordings[recording].scan.has_value()};
 }
 
-// The names of the points of a recording, which `compare` keeps; otherwise their numbers.
+// The names of the points of a recording; empty for scans that were not compared.
 std::vector<std::string> PointNames(const ReportedModel& model, size_t recording) {
   if (model.comparison) return model.comparison->recordings.at(recording).point_names;
-  return {};
+  return model.calibration.recordings.at(recording).marker_names;
 }
 
 const char* KindName(HypothesisProbability::Kind kind) {
@@ -191,7 +191,7 @@ void DefineModel(py::module_* module) {
       .def("motion", &ReadMotion, py::arg("recording") = 0,
            "measured and predicted places of the points of a recording")
       .def("point_names", &PointNames, py::arg("recording") = 0,
-           "the names of its points, once `compare` has run; otherwise an empty list")
+           "the names of its markers, and of its patches once `compare` has run")
       .def("__repr__", [](const ReportedModel& m) { return fmt::format("<Model {}>", m.name); });
 }
 

@@ -112,10 +112,11 @@ struct DiagnosisRecord : Conclusion {
   RecordedAlternatives alternatives;
 };
 
-// Of a verdict "not in library": the effect that is part of every hypothesis that must be kept, and
-// that explains more than half of the squared misfit in excess of the noise. The model comes closer
-// to the measurements with it, although something is missing that the catalogue does not have, and
-// for which it may stand in. Empty for other verdicts, and where there is no such effect.
+// Of a verdict "not in library": the effect with which the hypotheses that contain it reach
+// kStatedProbability together, and that explains more than half of the squared misfit in excess of
+// the noise. The model comes closer to the measurements with it, although something is missing that
+// the catalogue does not have, and for which it may stand in. Empty for other verdicts, and where
+// there is no such effect.
 std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis);
 
 void WriteDiagnosisFile(const DiagnosisRecord& record, const std::filesystem::path& file);

@@ -84,9 +84,7 @@ Manifest LoadManifest(const std::filesystem::path& file) {
     }
     manifest.finished = document.at("finished");
   } catch (const json::exception& error) {
-    throw InputError({file.string()}, fmt::format("is not a valid manifest: {}. If the folder is a run of Lacuna, remove "
-                                 "this file, and everything is computed again",
-                                 error.what()));
+    throw InputError({file.string()}, fmt::format("is not a valid manifest: {}", error.what()));
   }
   return manifest;
 }

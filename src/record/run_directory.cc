@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "core/atomic_file.h"
@@ -47,6 +49,17 @@ void RefuseForeignFolder(const fs::path& folder) {
         fmt::format("is not a run folder (it has no {}) and is not empty; choose another",
                     kManifestName));
   }
+}
+
+// Whether a manifest is damaged so that it is no JSON any more. The run then starts over. Manifests
+// of later versions, and files of other programs, are refused by LoadManifest instead.
+bool IsNoJson(const fs::path& file) {
+  std::ifstream stream(file);
+  const bool is_none =
+      nlohmann::json::parse(stream, nullptr, /*allow_exceptions=*/false).is_discarded();
+  if (is_none)
+    LOG(WARNING) << file.string() << ": is damaged; everything in this folder is computed again";
+  return is_none;
 }
 
 void SyncFile(const fs::path& file) {
@@ -103,6 +116,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   }
   RefuseForeignFolder(folder_);
   const fs::path file = folder_ / kLockName;
+  const bool was_run = fs::exists(file);
   lock_.emplace(file);
   if (!lock_->holds()) {
     throw InputError({folder_.string()},
@@ -111,7 +125,8 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   for (const auto& entry : fs::directory_iterator(folder_)) {
     if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
   }
-  if (fs::exists(folder_ / kManifestName)) manifest_ = LoadManifest(folder_ / kManifestName);
+  if (fs::exists(folder_ / kManifestName) && !(was_run && IsNoJson(folder_ / kManifestName)))
+    manifest_ = LoadManifest(folder_ / kManifestName);
   // Another version of the program or of a library may give other results.
   if (manifest_.program_version != ProgramVersion() ||
       manifest_.library_versions != LibraryVersions()) {

@@ -235,6 +235,19 @@ TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
   return trial;
 }
 
+namespace {
+
+// Whether a draw that is kept is that of this suite.
+bool IsSame(const TrialCase& kept, const TrialCase& drawn) {
+  return kept.seed == drawn.seed && kept.noise == drawn.noise &&
+         kept.element_volume == drawn.element_volume &&
+         kept.true_element_volume == drawn.true_element_volume &&
+         kept.young_modulus == drawn.young_modulus && kept.damping == drawn.damping &&
+         kept.hidden.size() == drawn.hidden.size() && kept.modelled.size() == drawn.modelled.size();
+}
+
+}  // namespace
+
 std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialCase& truth) {
   const std::map<std::string, double> known = TrueParameters(truth);
   std::vector<JudgedParameter> judged;
@@ -257,8 +270,13 @@ int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& fo
   MakeFolder(folder);
   std::vector<std::filesystem::path> draws;
   for (int k = 0; k < suite.draws; ++k) {
-    draws.push_back(folder / DrawIntervalCase(suite, k).name);
+    const TrialCase drawn = DrawIntervalCase(suite, k);
+    draws.push_back(folder / drawn.name);
     MakeFolder(draws.back());
+    const std::filesystem::path truth = draws.back() / "truth.json";
+    if (std::filesystem::exists(truth) && !IsSame(LoadCase(truth), drawn))
+      throw InputError({truth.string()},
+                       "belongs to a draw of another suite; choose another folder");
   }
   const auto keep_failure = [&](size_t k, const std::string& reason) {
     WriteFileAtomically(draws[k] / "failed.txt", reason + "\n");

@@ -10,8 +10,13 @@ trap 'rm -rf "$work"' EXIT
 
 fail() { echo "$*" >&2; exit 1; }
 
+# The list of what an installation by hand has installed stays.
+manifest=$build/install_manifest.txt
+[[ ! -f $manifest ]] || cp -p "$manifest" "$work/install_manifest.txt"
 cmake --install "$build" --prefix "$work/first" >"$work/install.log" ||
   fail "$(tail "$work/install.log")"
+rm -f "$manifest"
+[[ ! -f $work/install_manifest.txt ]] || cp -p "$work/install_manifest.txt" "$manifest"
 mv "$work/first" "$work/prefix"
 prefix=$work/prefix
 if grep -rlF -e "$source" -e "$build" "$prefix" --include='*.cmake' --include='*.h'; then

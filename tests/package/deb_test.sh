@@ -2,7 +2,9 @@
 # Makes the Debian packages and uses what is in them, unpacked: deb_test.sh BUILD
 set -euo pipefail
 build=$1
-command -v dpkg-deb dpkg-shlibdeps >/dev/null || { echo "dpkg-dev is not installed"; exit 77; }
+for tool in dpkg-deb dpkg-shlibdeps file; do
+  command -v "$tool" >/dev/null || { echo "$tool is not installed"; exit 77; }
+done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "$*" >&2; exit 1; }

@@ -267,6 +267,24 @@ TEST_F(RunDirectoryTest, FolderWithOtherContentsIsRefusedAndNotChanged) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
+TEST_F(RunDirectoryTest, ADamagedManifestStartsTheRunOver) {
+  MakeFinishedRun();
+  const fs::path manifest = folder_ / "manifest.json";
+  fs::resize_file(manifest, fs::file_size(manifest) / 2);
+  RunDirectory run(folder_);
+  run.Begin({{"density", 1070.0}}, {{"scan.ply", "00"}}, 7);
+  EXPECT_EQ(run.Check("surface", "key s").status, Status::kAbsent);
+}
+
+// Without the lock that every run leaves, the file may belong to another program.
+TEST_F(RunDirectoryTest, AnUnreadableManifestOfAnotherProgramIsRefusedAndNotChanged) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "manifest.json") << "{ not ours";
+  EXPECT_THAT([&] { RunDirectory run(folder_); },
+              ThrowsMessage<InputError>(HasSubstr("is not a valid manifest")));
+  EXPECT_EQ(FileContent(folder_ / "manifest.json"), "{ not ours");
+}
+
 TEST_F(RunDirectoryTest, ErrorNamesAPlaceThatCannotBeAFolder) {
   std::ofstream(parent_ / "file") << "x";
   for (const fs::path& folder : {parent_ / "file", parent_ / "file/run", fs::path("/proc/run")}) {

@@ -18,7 +18,7 @@ _UNUSABLE_INPUT = 2
 
 
 class ProgramError(RuntimeError):
-    """The program ended in a way that is none of its own, such as by a signal."""
+    """The program ended otherwise than by itself, for instance by a signal."""
 
 
 def program() -> str:
@@ -42,7 +42,7 @@ def _run_program(arguments, progress) -> str:
     resume.
     """
     # A process group of its own: Ctrl-C reaches Python alone, which passes it on exactly once. A
-    # second one would end the program before it has put its work away.
+    # second one would end the program before it has saved its work.
     with tempfile.TemporaryFile("w+") as printed:
         said = []
         with subprocess.Popen([program(), *map(str, arguments)], stdin=subprocess.DEVNULL,
