@@ -27,8 +27,8 @@ struct ProgressOptions {
   // a stage are always reported.
   double live_interval = 0.1;
   double json_interval = 1.0;
-  std::function<double()> clock;   // s; the steady clock if empty
-  std::ostream* stream = nullptr;  // not owned; standard error if null
+  std::function<double()> clock = {};  // s; the steady clock if empty
+  std::ostream* stream = nullptr;      // not owned; standard error if null
 };
 
 // The progress of one run. All functions may be called from several threads.

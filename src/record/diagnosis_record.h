@@ -29,8 +29,9 @@ struct RecordedSize {
   // The first-order estimate and its standard deviation, which is infinite where the data do not
   // determine it.
   double expected = 0, deviation = 0;
-  double detectable = 0;                     // the smallest detectable size
-  std::optional<RecordedInterval> refitted;  // after a usable refit; absent for a pilot hypothesis
+  double detectable = 0;  // the smallest detectable size
+  std::optional<RecordedInterval> refitted =
+      {};  // after a usable refit; absent for a pilot hypothesis
 };
 
 // Another parameter of a refitted effect, such as a place or a time, in its unit (SI).
@@ -73,12 +74,12 @@ struct RecordedEffect {
 };
 
 struct RecordedNuisance {
-  std::string name, what;          // "grip_compliance"; a phrase with its place or time
-  std::string advice;              // how to check for it, or to remove it
-  double evidence = 0;             // first-order evidence
-  double explained = 0;            // share of the squared misfit
-  std::optional<double> refitted;  // evidence after a refit with it
-  bool adopted = false;            // certain enough to be part of all models
+  std::string name, what;               // "grip_compliance"; a phrase with its place or time
+  std::string advice = {};              // how to check for it, or to remove it
+  double evidence = 0;                  // first-order evidence
+  double explained = 0;                 // share of the squared misfit
+  std::optional<double> refitted = {};  // evidence after a refit with it
+  bool adopted = false;                 // certain enough to be part of all models
   // Evidence for an effect that the uncertainty in this nuisance's influence could account for.
   double evidence_uncertainty = 0;
 };

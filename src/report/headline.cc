@@ -145,8 +145,18 @@ std::string NuisanceSentence(const ReportedModel& model) {
       whats.empty() ? "" : fmt::format(" ({})", fmt::join(whats, ", ")), advice);
 }
 
+// The probability of all hypotheses without an effect; NaN where the record has none.
+double ProbabilityOfNoEffect(const DecisionRecord& decision) {
+  using Kind = HypothesisProbability::Kind;
+  double sum = kNotMeasured;
+  for (const HypothesisProbability& one : decision.probabilities)
+    if (one.kind == Kind::kNothing || one.kind == Kind::kNuisance)
+      sum = (std::isnan(sum) ? 0 : sum) + one.probability;
+  return sum;
+}
+
 std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
-  const double nothing = ProbabilityOf(diagnosis.decision, {});
+  const double nothing = ProbabilityOfNoEffect(diagnosis.decision);
   const std::string corrected = CorrectedError(diagnosis);
   return fmt::format(
       "{}{}: {}.",
@@ -154,7 +164,7 @@ std::string AdequateSentence(const DiagnosisRecord& diagnosis) {
                         : "No further effect is needed",
       std::isnan(nothing)
           ? ""
-          : fmt::format(" (probability that nothing is missing: {})", PercentText(nothing)),
+          : fmt::format(" (probability that no effect is missing: {})", PercentText(nothing)),
       corrected.empty() ? "the error that is left is that of the noise, or no larger than the "
                           "error of any model"
                         : corrected);

@@ -71,7 +71,8 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
   ReportedModel after = Model(1.9e-4, 1.2);
   after.added = "viscoelastic_branch";
   after.diagnosis = Diagnosis(Verdict::kAdequate, {});
-  Believe(&*after.diagnosis, {}, 0.78, HypothesisProbability::Kind::kNothing);
+  Believe(&*after.diagnosis, {}, 0.58, HypothesisProbability::Kind::kNothing);
+  Believe(&*after.diagnosis, {"clock"}, 0.2, HypothesisProbability::Kind::kNuisance);
   EXPECT_THAT(
       Headline({before, after}),
       ElementsAre(
@@ -79,7 +80,8 @@ TEST(Headline, TellsTheErrorWhatIsMissingAndWhatAddingItDid) {
           "not fitted to; the error is largest at marker tip and from 0.3 s to 0.4 s.",
           "What it lacks: viscoelastic branch (loss inside the body; probability 99 %).",
           "With viscoelastic branch, the error falls by 78 % to 0.190 mm, 1.2 times the noise.",
-          "No further effect is needed (probability that nothing is missing: 78 %): the error that "
+          "No further effect is needed (probability that no effect is missing: 78 %): the error "
+          "that "
           "is left is that of the noise, or no larger than the error of any model."));
 }
 
