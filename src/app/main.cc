@@ -8,6 +8,7 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/command_documents.h"
@@ -17,6 +18,7 @@
 #include "core/interrupt.h"
 #include "core/logging.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/suggestion.h"
 #include "record/library_versions.h"
 
@@ -46,6 +48,12 @@ std::string UnknownCommand(const CLI::App& app, const std::string& given) {
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   return fmt::format("there is no command \"{}\"{}; lacuna --help lists them", given,
                      lacuna::Suggestion(given, known));
+}
+
+// Prints a message. Where nothing can be printed any more, on a full disk for instance, the exit
+// status still says that the command has failed; fmt::print would throw.
+void Say(std::string_view message) {
+  lacuna::WriteLineToStandardError(fmt::format("lacuna: {}", message));
 }
 
 }  // namespace
@@ -111,13 +119,13 @@ int main(int argc, char** argv) {
   try {
     return command();
   } catch (const lacuna::InputError& problem) {
-    fmt::print(stderr, "lacuna: {}\n", problem.what());
+    Say(problem.what());
     return kUnusableInput;
   } catch (const lacuna::Interrupted& interrupted) {
-    fmt::print(stderr, "lacuna: stopped; run the same command again to resume\n");
+    Say("stopped; run the same command again to resume");
     return interrupted.ExitCode();
   } catch (const std::exception& problem) {
-    fmt::print(stderr, "lacuna: {}\n", problem.what());
+    Say(problem.what());
     return kUnusableInput;
   }
 }

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
+#include "core/progress.h"
 #include "trials/interval_trials.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
@@ -71,9 +72,9 @@ int Main(int argc, char** argv) {
     if (redecide->parsed()) fmt::print("{} cases decided\n", RedecideTrials(folder));
     return Report(folder);
   } catch (const InputError& problem) {
-    fmt::print(stderr, "{}\n", problem.what());
+    WriteLineToStandardError(problem.what());
   } catch (const Interrupted&) {
-    fmt::print(stderr, "stopped; run the same command again to resume\n");
+    WriteLineToStandardError("stopped; run the same command again to resume");
   }
   return 1;
 }

@@ -24,8 +24,8 @@ struct FaultOptions {
   std::filesystem::path program;  // lacuna
   std::filesystem::path sources;  // the folder that contains experiments/
   std::filesystem::path folder;   // for the runs; it is emptied
-  int kills = 3;                  // how often each subject is killed
-  int damaged_files = 3;          // how many files of a result are damaged, each in two ways
+  int kills = 2;                  // how often each subject is killed
+  int damaged_files = 2;          // how many files of a result are damaged, each in two ways
   uint64_t seed = 1;
 };
 
