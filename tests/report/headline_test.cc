@@ -130,7 +130,10 @@ TEST(Headline, SaysWhatTheErrorIsDueToWhereItIsNoNoise) {
   mesh.advice = "choose a smaller mesh.max_volume";
   mesh.explained = 0.6;
   mesh.adopted = true;
-  model.diagnosis->nuisances = {RecordedNuisance{.name = "shape", .adopted = true}, mesh};
+  RecordedNuisance shape;
+  shape.name = "shape";
+  shape.adopted = true;
+  model.diagnosis->nuisances = {shape, mesh};
   EXPECT_EQ(Headline({model}).back(),
             "No further effect is needed: corrected for the size of the elements, the error is 1.0 "
             "times the noise: choose a smaller mesh.max_volume.");
