@@ -54,9 +54,8 @@ json SpaceToJson(const HypothesisSpace& space) {
                           {"columns", one.columns},
                           {"selection_penalty", one.selection_penalty}});
   }
-  return {
-      {"variance", space.variance}, {"rows", space.rows}, {"model_error", space.model_error},
-      {"base", space.base},         {"priors", priors},   {"hypotheses", hypotheses}};
+  return {{"variance", space.variance}, {"rows", space.rows}, {"model_error", space.model_error},
+          {"base", space.base},         {"priors", priors},   {"hypotheses", hypotheses}};
 }
 
 HypothesisSpace SpaceFromJson(const json& value, const std::filesystem::path& products) {

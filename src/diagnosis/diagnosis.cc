@@ -56,9 +56,9 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   return found;
 }
 
-// There is evidence for an effect, and the unknown part of the step's error could explain it. A step
-// whose unknown error is smaller than that of the elements is short enough: what remains unknown is
-// then that of the elements, however short the step.
+// There is evidence for an effect, and the unknown part of the step's error could explain it. A
+// step whose unknown error is smaller than that of the elements is short enough: what remains
+// unknown is then that of the elements, however short the step.
 bool IsStepTooLong(const EffectRanking& ranking) {
   double of_step = 0, of_others = 0;
   for (const ScoredNuisance& nuisance : ranking.nuisances)
