@@ -126,9 +126,9 @@ TestedSpace SpaceOf(const DecisionInput& input, const std::vector<NamedEvidence>
 // Adds to the columns of a hypothesis with an effect those of the nuisances that explain the
 // residual beside it: a clamp is never exactly where it was measured, and a large effect must not
 // turn that error into something unknown. Each is more probable than no nuisance, and leads over
-// every further effect as a nuisance that enters the model does. Returns them.
-std::vector<NamedEvidence> TakeNuisancesBeside(TestedSpace* tested) {
-  std::vector<NamedEvidence> taken;
+// every further effect as a nuisance that enters the model does. Returns their names.
+std::vector<std::string> TakeNuisancesBeside(TestedSpace* tested) {
+  std::vector<std::string> taken;
   const HypothesisSpace& space = *tested->space;
   for (int count = 0; count < kThresholds.ranking.most_adopted_nuisances; ++count) {
     const ProjectedHypotheses beside(space, tested->columns);
@@ -147,7 +147,7 @@ std::vector<NamedEvidence> TakeNuisancesBeside(TestedSpace* tested) {
     if (best == nullptr || !(best->evidence > least)) break;
     const std::vector<int>& columns = space.hypotheses[best->best].columns;
     tested->columns.insert(tested->columns.end(), columns.begin(), columns.end());
-    taken.push_back(*best);
+    taken.push_back(best->name);
   }
   return taken;
 }
@@ -314,9 +314,8 @@ Decision Decide(const DecisionInput& input) {
     if (pair.hypothesis.names == best.names) tested = pair.tested;
   std::vector<std::string> beside = best.names.empty() ? input.adopted : best.names;
   if (best.kind == Kind::kEffect || best.kind == Kind::kPair)
-    for (const NamedEvidence& nuisance : TakeNuisancesBeside(&tested))
-      if (std::count(beside.begin(), beside.end(), nuisance.name) == 0)
-        beside.push_back(nuisance.name);
+    for (const std::string& nuisance : TakeNuisancesBeside(&tested))
+      if (std::count(beside.begin(), beside.end(), nuisance) == 0) beside.push_back(nuisance);
   const AdequacyTest test =
       TestAdequacy(*tested.space, tested.columns, input.noise_is_known, input.seed);
   record.adequacy = RecordOf(test, 2 * best.evidence + input.explained_misfit, std::move(beside));

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "record/csv_table.h"
+#include "record/decision_record.h"
 #include "record/library_versions.h"
 #include "record/recorded_residuals.h"
 #include "record/verdict.h"
@@ -58,20 +59,6 @@ Motion ReadMotion(const ReportedModel& model, size_t recording) {
 std::vector<std::string> PointNames(const ReportedModel& model, size_t recording) {
   if (model.comparison) return model.comparison->recordings.at(recording).point_names;
   return model.calibration.recordings.at(recording).marker_names;
-}
-
-const char* KindName(HypothesisProbability::Kind kind) {
-  switch (kind) {
-    case HypothesisProbability::Kind::kNothing:
-      return "nothing";
-    case HypothesisProbability::Kind::kEffect:
-      return "effect";
-    case HypothesisProbability::Kind::kNuisance:
-      return "nuisance";
-    case HypothesisProbability::Kind::kPair:
-      return "pair";
-  }
-  return "";
 }
 
 void DefineParameters(py::module_* module) {
@@ -129,14 +116,14 @@ void DefineRecordings(py::module_* module) {
 
 void DefineDiagnosis(py::module_* module) {
   py::class_<HypothesisProbability>(*module, "Hypothesis", "What may be missing")
-      .def_property_readonly("kind",
-                             [](const HypothesisProbability& h) { return KindName(h.kind); })
+      .def_property_readonly(
+          "kind", [](const HypothesisProbability& h) { return HypothesisKindName(h.kind); })
       .def_readonly("names", &HypothesisProbability::names)
       .def_readonly("probability", &HypothesisProbability::probability)
       .def_readonly("evidence", &HypothesisProbability::evidence,
                     "log Bayes factor against the model as it is")
       .def("__repr__", [](const HypothesisProbability& h) {
-        return fmt::format("<{} {}: {:.3f}>", KindName(h.kind), fmt::join(h.names, " + "),
+        return fmt::format("<{} {}: {:.3f}>", HypothesisKindName(h.kind), fmt::join(h.names, " + "),
                            h.probability);
       });
   py::class_<DiagnosisRecord>(*module, "Diagnosis", "What a diagnosis found")

@@ -19,12 +19,6 @@ constexpr std::pair<Kind, const char*> kKinds[] = {{Kind::kNothing, "nothing"},
                                                    {Kind::kNuisance, "nuisance"},
                                                    {Kind::kPair, "pair"}};
 
-std::string KindName(Kind kind) {
-  for (const auto& [known, name] : kKinds)
-    if (known == kind) return name;
-  return "";
-}
-
 Kind KindFromName(const std::string& name) {
   for (const auto& [kind, known] : kKinds)
     if (known == name) return kind;
@@ -32,6 +26,12 @@ Kind KindFromName(const std::string& name) {
 }
 
 }  // namespace
+
+std::string HypothesisKindName(Kind kind) {
+  for (const auto& [known, name] : kKinds)
+    if (known == kind) return name;
+  return "";
+}
 
 double DecisionRecord::FamilyProbability(EffectFamily family) const {
   double sum = 0;
@@ -43,7 +43,7 @@ double DecisionRecord::FamilyProbability(EffectFamily family) const {
 json ProbabilitiesToJson(const std::vector<HypothesisProbability>& probabilities) {
   json all = json::array();
   for (const HypothesisProbability& one : probabilities)
-    all.push_back({{"kind", KindName(one.kind)},
+    all.push_back({{"kind", HypothesisKindName(one.kind)},
                    {"names", one.names},
                    {"family", FamilyName(one.family)},
                    {"evidence", NumberOrNull(one.evidence)},

@@ -66,6 +66,9 @@ struct RecordedSeparation {
   double lambda = 0;
 };
 
+// The name of a kind in files, e.g. "nothing".
+std::string HypothesisKindName(HypothesisProbability::Kind kind);
+
 struct DecisionRecord {
   std::vector<HypothesisProbability> probabilities;  // the most probable one first
   RecordedAdequacy adequacy;

@@ -30,8 +30,8 @@ struct RecordedSize {
   // determine it.
   double expected = 0, deviation = 0;
   double detectable = 0;  // the smallest detectable size
-  std::optional<RecordedInterval> refitted =
-      {};  // after a usable refit; absent for a pilot hypothesis
+  // After a usable refit; absent for a pilot hypothesis.
+  std::optional<RecordedInterval> refitted = {};
 };
 
 // Another parameter of a refitted effect, such as a place or a time, in its unit (SI).

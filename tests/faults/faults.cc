@@ -10,13 +10,13 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 #include <thread>
 
 #include "core/error.h"
 #include "core/hash.h"
+#include "support/temporary_folder.h"
 
 namespace lacuna {
 namespace {
@@ -27,19 +27,13 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr rlim_t kNoLimit = RLIM_INFINITY;
 
-std::string TextOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // The content of a folder: hash by relative path. What a lock file holds belongs to a process.
 std::map<std::string, std::string> ContentOf(const fs::path& folder) {
   std::map<std::string, std::string> content;
   if (!fs::exists(folder)) return content;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file() && entry.path().filename() != ".lock")
-      content[entry.path().lexically_relative(folder).generic_string()] =
-          HashBytes(TextOf(entry.path()));
+      content[entry.path().lexically_relative(folder).generic_string()] = HashFile(entry.path());
   return content;
 }
 
@@ -160,7 +154,7 @@ class Trial {
   void Require(const std::vector<std::string>& arguments) {
     if (Execute(arguments) != 0)
       throw InputError(fmt::format("lacuna {} fails without any fault: {}",
-                                   fmt::join(arguments, " "), TextOf(log_)));
+                                   fmt::join(arguments, " "), FileContent(log_)));
   }
   double Random(double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random_);
@@ -184,7 +178,7 @@ class Trial {
   // Runs the command to its end; what is wrong afterwards.
   std::string Finish() {
     if (const int status = Execute(subject_.arguments); status != 0)
-      return fmt::format("exit status {}: {}", status, TextOf(log_));
+      return fmt::format("exit status {}: {}", status, FileContent(log_));
     return Difference(expected_, ContentOf(results_));
   }
 
@@ -216,7 +210,7 @@ class Trial {
       StartOver();
       const int status = Execute(subject_.arguments, largest);
       // The log of the run is a file, too, and stays empty where nothing can be written.
-      if (!(status > 0) || (largest > 0 && TextOf(log_).empty()))
+      if (!(status > 0) || (largest > 0 && FileContent(log_).empty()))
         Count(fmt::format("exit status {} with files of at most {} bytes", status, largest),
               &result);
       else
@@ -232,7 +226,7 @@ class Trial {
     Process second(options_.program, subject_.arguments, folder_, folder_ / "log_2.txt");
     const int one = first.Wait(), other = second.Wait();
     std::string failure = Difference(expected_, ContentOf(results_));
-    if (one != 0 && other != 0) failure = "neither has finished: " + TextOf(log_);
+    if (one != 0 && other != 0) failure = "neither has finished: " + FileContent(log_);
     Count(failure, &result);
     return result;
   }
@@ -259,7 +253,7 @@ class Trial {
     for (const std::string& name : names)
       for (const bool cut : {true, false}) {
         Reset(Finished());
-        std::string bytes = TextOf(results_ / name);
+        std::string bytes = FileContent(results_ / name);
         if (bytes.empty()) continue;
         const size_t middle = bytes.size() / 2;
         if (cut)
@@ -270,7 +264,7 @@ class Trial {
         std::string failure = Finish();
         // A command does not mend the results of another one, but names what is damaged.
         if (!failure.empty() && !subject_.preparation.empty() &&
-            TextOf(log_).find(fs::path(name).filename().string()) != std::string::npos) {
+            FileContent(log_).find(fs::path(name).filename().string()) != std::string::npos) {
           Execute(subject_.preparation);
           failure = Finish();
         }
@@ -287,13 +281,13 @@ class Trial {
     FaultResult result{"an input that changes afterwards", subject_.name};
     Reset(Finished());
     const fs::path file = folder_ / subject_.input;
-    const std::string before = TextOf(file);
+    const std::string before = FileContent(file);
     std::string bytes = before;
     const size_t digit = bytes.find_last_of("0123456789");
     bytes[digit] = bytes[digit] == '1' ? '2' : '1';
     std::ofstream(file, std::ios::binary) << bytes;
     const int status = Execute(subject_.arguments);
-    const bool is_refused = status > 0 && TextOf(log_).find("changed") != std::string::npos;
+    const bool is_refused = status > 0 && FileContent(log_).find("changed") != std::string::npos;
     // The manifest differs in any case: it has the hashes of the inputs.
     std::map<std::string, std::string> expected = expected_, found = ContentOf(results_);
     expected.erase("manifest.json");
