@@ -13,6 +13,7 @@ NuisanceEntry MeshNuisance();
 NuisanceEntry TimeStepNuisance();
 NuisanceEntry ShapeNuisance();
 NuisanceEntry GripJitterNuisance();
+NuisanceEntry GripExtentNuisance();
 NuisanceEntry GripPlacementNuisance();
 NuisanceEntry GripComplianceNuisance();
 NuisanceEntry ClockNuisance();
@@ -22,11 +23,12 @@ NuisanceEntry RegistrationDriftNuisance();
 
 const std::vector<NuisanceEntry>& NuisanceCatalogue() {
   static const std::vector<NuisanceEntry> entries{
-      // Of the model, part of every model.
+      // Of the model; all but the extent of the grips are part of every model.
       MeshNuisance(),
       TimeStepNuisance(),
       ShapeNuisance(),
       GripJitterNuisance(),
+      GripExtentNuisance(),
       // Of each grip.
       GripPlacementNuisance(),
       GripComplianceNuisance(),

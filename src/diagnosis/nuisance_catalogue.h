@@ -1,8 +1,9 @@
 // The written list of all nuisances, and what turns it into columns for one fitted model.
 //
-// There are three kinds: nuisances of the model (mesh, time step, shape), of each grip, and of each
-// recording (clock, frames). A kind has one signature, so that nuisance_NAME.cc contains a card and
-// one function. All columns refer to the rows of the same LinearisedMisfit, in m per unit amount.
+// There are three kinds: nuisances of the model (mesh, time step, shape, extent of the grips), of
+// each grip, and of each recording (clock, frames). A kind has one signature, so that
+// nuisance_NAME.cc contains a card and one function. All columns refer to the rows of the same
+// LinearisedMisfit, in m per unit amount.
 #ifndef LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_
 #define LACUNA_DIAGNOSIS_NUISANCE_CATALOGUE_H_
 
@@ -73,8 +74,9 @@ const NuisanceCard* FindNuisance(const std::string& name);
 std::vector<NuisanceTrial> NuisanceControls();
 
 // The nuisances of the model: what a finer mesh and a shorter step change beyond what the
-// parameters can compensate for, the object's dimensions, and the noise of the grips' markers.
-// Those that are in `known`, by the names of their cards, are taken from there.
+// parameters can compensate for, the object's dimensions, the noise of the grips' markers, and the
+// extent of the grips. Those that are in `known`, by the names of their cards, are taken from
+// there.
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known = {});
 

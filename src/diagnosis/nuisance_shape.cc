@@ -1,4 +1,5 @@
 // Errors of the object's three dimensions, by finite differences of predictions of a larger body.
+#include "calibration/in_phase.h"
 #include "calibration/size_errors.h"
 #include "diagnosis/nuisance_catalogue.h"
 
@@ -24,8 +25,9 @@ NuisanceCard Card() {
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
-  candidate.columns = ChangesBySize(at.problem, at.values, at.misfit);
-  if (candidate.columns.cols() == 0) return std::nullopt;
+  const Eigen::MatrixXd changes = ChangesBySize(at.problem, at.values, at.misfit);
+  if (changes.cols() == 0) return std::nullopt;
+  candidate.columns = KeptInPhase(changes, at.problem, at.values, at.misfit).of_columns;
   candidate.priors.assign(3, {0, 1, false});
   return candidate;
 }

@@ -17,6 +17,7 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/progress.h"
+#include "core/text_file.h"
 #include "core/workers.h"
 #include "effects/catalogue.h"
 #include "effects/neo_hookean.h"
@@ -235,19 +236,6 @@ TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
   return trial;
 }
 
-namespace {
-
-// Whether a draw that is kept is that of this suite.
-bool IsSame(const TrialCase& kept, const TrialCase& drawn) {
-  return kept.seed == drawn.seed && kept.noise == drawn.noise &&
-         kept.element_volume == drawn.element_volume &&
-         kept.true_element_volume == drawn.true_element_volume &&
-         kept.young_modulus == drawn.young_modulus && kept.damping == drawn.damping &&
-         kept.hidden.size() == drawn.hidden.size() && kept.modelled.size() == drawn.modelled.size();
-}
-
-}  // namespace
-
 std::vector<JudgedParameter> Judge(const CalibrationRecord& record, const TrialCase& truth) {
   const std::map<std::string, double> known = TrueParameters(truth);
   std::vector<JudgedParameter> judged;
@@ -274,7 +262,7 @@ int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& fo
     draws.push_back(folder / drawn.name);
     MakeFolder(draws.back());
     const std::filesystem::path truth = draws.back() / "truth.json";
-    if (std::filesystem::exists(truth) && !IsSame(LoadCase(truth), drawn))
+    if (std::filesystem::exists(truth) && ReadTextFile(truth) != TextOfCase(drawn))
       throw InputError({truth.string()},
                        "belongs to a draw of another suite; choose another folder");
   }

@@ -199,7 +199,7 @@ HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_
   return hidden;
 }
 
-void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
+std::string TextOfCase(const TrialCase& trial) {
   nlohmann::json hidden = nlohmann::json::array();
   for (const HiddenEffect& effect : trial.hidden)
     hidden.push_back({{"type", effect.type},
@@ -233,7 +233,11 @@ void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
                               {"hold_forces", forces},
                               {"noise", trial.noise},
                               {"noise_correlation_time", trial.noise_correlation_time}};
-  WriteFileAtomically(file, all.dump(2) + "\n");
+  return all.dump(2) + "\n";
+}
+
+void SaveCase(const TrialCase& trial, const std::filesystem::path& file) {
+  WriteFileAtomically(file, TextOfCase(trial));
 }
 
 TrialCase LoadCase(const std::filesystem::path& file) {

@@ -96,6 +96,8 @@ TrialCase DrawCase(const std::string& name, const std::string& group, uint64_t s
 // stands beside the bar, on the side to which it swings. `type` must be in the catalogue.
 HiddenEffect DrawHidden(const std::string& type, const TrialCase& trial, uint64_t seed);
 
+// The text of truth.json.
+std::string TextOfCase(const TrialCase& trial);
 // Write and read truth.json. Both throw InputError if the file cannot be used.
 void SaveCase(const TrialCase& trial, const std::filesystem::path& file);
 TrialCase LoadCase(const std::filesystem::path& file);
