@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
-#include "fit/calibration.h"
 
 namespace lacuna {
 namespace {
@@ -33,7 +32,7 @@ double EvidenceOfNaturalValue(const RankedEffect& effect) {
   for (int k = 0; k < 3; ++k) {
     const ParameterEstimate& size = effect.sizes[static_cast<size_t>(k)];
     mean[k] = size.value;
-    deviation[k] = (size.high - size.low) / (2 * kNormalQuantile);
+    deviation[k] = size.posterior_deviation;
   }
   if (!deviation.allFinite()) return 0;
   const double prior = AmountsOf(candidate).front().plausible;

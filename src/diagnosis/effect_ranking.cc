@@ -408,10 +408,14 @@ HypothesisSpace SpaceBeside(const LinearisedMisfit& misfit, const Eigen::MatrixX
       WhitenedRows(misfit.residual, misfit, noise.correlation_time, false),
       WhitenedRows(columns, misfit, noise.correlation_time, false), std::move(priors), base.cols(),
       std::move(hypotheses), noise.variance, ObservedRows(misfit));
-  space.model_error = 0.5 * kToleratedModelError * ranking.explained_misfit;
-  for (const ScoredNuisance& nuisance : ranking.nuisances)
-    space.model_error += nuisance.uncertain_evidence;
+  space.model_error = ranking.ModelError();
   return space;
+}
+
+double EffectRanking::ModelError() const {
+  double error = 0.5 * kToleratedModelError * explained_misfit;
+  for (const ScoredNuisance& nuisance : nuisances) error += nuisance.uncertain_evidence;
+  return error;
 }
 
 double SelectionPenalty(size_t rivals) {

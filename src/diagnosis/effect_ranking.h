@@ -51,6 +51,9 @@ struct EffectRanking {
   int variants = 0;               // number of variants scored
   SceneColumns scene;             // for further rankings
   AgreementRecord agreement;      // of the recordings, along the fitted motion
+
+  // HypothesisSpace::model_error.
+  double ModelError() const;
 };
 
 // The space of all hypotheses that a ranking has tried, beside the columns `base` (m, the rows of

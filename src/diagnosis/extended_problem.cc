@@ -113,16 +113,26 @@ Eigen::VectorXd ExtendedProblem::OwnParameters(const Eigen::VectorXd& values) co
 }
 
 std::vector<ParameterEstimate> ExtendedProblem::SizesIn(const Calibration& calibration) const {
-  const auto first = calibration.estimates.begin() + shared_;
-  return {first, first + static_cast<Eigen::Index>(effect_->candidate.amplitude.size())};
+  std::vector<ParameterEstimate> sizes;
+  for (size_t k = 0; k < effect_->candidate.amplitude.size(); ++k)
+    sizes.push_back(Reported(calibration, static_cast<size_t>(shared_) + k));
+  return sizes;
 }
 
 std::vector<NamedEstimate> ExtendedProblem::OthersIn(const Calibration& calibration) const {
   std::vector<NamedEstimate> others;
   const size_t first = static_cast<size_t>(shared_) + effect_->candidate.amplitude.size();
   for (size_t k = first; k < static_cast<size_t>(shared_ + added_); ++k)
-    others.push_back({parameters_[k].name, with_.UnitOf(k), calibration.estimates[k]});
+    others.push_back({parameters_[k].name, with_.UnitOf(k), Reported(calibration, k)});
   return others;
+}
+
+ParameterEstimate ExtendedProblem::Reported(const Calibration& calibration, size_t k) const {
+  ParameterEstimate estimate = calibration.estimates[k];
+  const double unknown = std::sqrt(2 * baseline_.model_error * baseline_.noise.variance);
+  CountModelErrors(parameters_[k], estimate.value, unknown * estimate.posterior_deviation,
+                   &estimate);
+  return estimate;
 }
 
 Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {

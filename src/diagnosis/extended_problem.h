@@ -25,6 +25,7 @@ struct BaselineModel {
   Progress* progress;
   RefitStore* kept = nullptr;  // finished fits are read from here and added to it; null: not kept
   NoiseLevel noise = {};       // with which refits are compared
+  double model_error = 0;      // EffectRanking::ModelError()
 };
 
 struct NamedEstimate {
@@ -58,7 +59,8 @@ class ExtendedProblem {
   // Number of parameters without the amounts of the adopted nuisances.
   Eigen::Index OwnCount() const { return own_; }
   // The estimates of the parameters that make the effect's size, and of its other fitted
-  // parameters.
+  // parameters. Their intervals contain the error that the model may have in an unknown direction:
+  // an error of u standard deviations of the noise along an estimate moves it by u of its own.
   std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const;
   std::vector<NamedEstimate> OthersIn(const Calibration& calibration) const;
 
@@ -100,6 +102,8 @@ class ExtendedProblem {
     Eigen::VectorXd of_latest = {};
   };
   Prediction Predict(const Eigen::VectorXd& at, bool with_jacobian, Memory* memory) const;
+  // The estimate of parameter `k` as SizesIn() and OthersIn() report it.
+  ParameterEstimate Reported(const Calibration& calibration, size_t k) const;
   double ResidualNorm(const Eigen::VectorXd& at) const;  // infinite if it cannot be predicted
   // The baseline's values moved by a share of the way to `target`, and the effect by the same share
   // of the way from its null value to its start.

@@ -30,8 +30,8 @@ RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant&
 std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further) const {
   for (const ScoredEffect& scored : ranking_.effects) {
     if (scored.candidate.type != further) continue;
-    const BaselineModel model{problem_,           values_,        ranking_.misfit,
-                              baseline_.progress, baseline_.kept, noise_};
+    const BaselineModel model{problem_,       values_, ranking_.misfit,      baseline_.progress,
+                              baseline_.kept, noise_,  ranking_.ModelError()};
     const EffectRefit alone = Refit(model, nullptr, ranking_.adopted, /*is_far_off=*/false);
     RankedEffect effect;
     effect.scored = scored;

@@ -315,12 +315,21 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: the bar cannot move
   bed.expected_values = fit.parameters;
-  const EffectRefit refit = Refit({*problem_, fit.parameters, misfit, &progress_}, &bed,
-                                  {Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0}, false);
+  BaselineModel baseline{*problem_, fit.parameters, misfit, &progress_};
+  const AdoptedNuisances none{Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0};
+  const EffectRefit refit = Refit(baseline, &bed, none, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   // A refit ends when a step gains less than one standard deviation.
   EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
   EXPECT_LT(refit.calibration.start_rms, 3 * fit.rms);
+
+  // An unknown error of two standard deviations of the noise makes the interval of the size √5
+  // times as wide; the size must be positive.
+  baseline.model_error = 2;
+  const ParameterEstimate size = refit.sizes.front();
+  const ParameterEstimate wider = Refit(baseline, &bed, none, false).sizes.front();
+  EXPECT_EQ(wider.value, size.value);
+  EXPECT_NEAR(wider.high - wider.value, std::sqrt(5) * (size.high - size.value), 1e-9 * wider.high);
 }
 
 }  // namespace
