@@ -205,6 +205,24 @@ std::string VerdictSentence(const ReportedModel& model) {
   return AdequateSentence(diagnosis);
 }
 
+// Where nothing more is missing in the recordings that were fitted, but others are not met: those.
+// Empty where there are none.
+std::string NotMetElsewhere(const ReportedModel& model) {
+  const Verdict verdict = model.diagnosis->verdict;
+  if (verdict != Verdict::kNuisance && verdict != Verdict::kAdequate) return "";
+  std::vector<std::string> missed;
+  for (const FittedRecording& recording : model.calibration.recordings)
+    if (!recording.fitted && recording.held_out.rms_over_sigma >= kBeyondNoise)
+      missed.push_back(fmt::format("{} ({:.1f} times the noise)", recording.name,
+                                   recording.held_out.rms_over_sigma));
+  if (missed.empty()) return "";
+  return fmt::format(
+      "That holds for the recordings that were fitted. The model does not meet the others to "
+      "within the noise: {}. To have them diagnosed, set `fitted: true` in a copy of the "
+      "experiment.",
+      fmt::join(missed, ", "));
+}
+
 std::string AfterAdding(const ReportedModel& model, const ReportedModel& before) {
   const std::string title =
       before.diagnosis ? ShortTitle(*before.diagnosis, model.added) : model.added;
@@ -248,7 +266,10 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();
   });
-  if (last != models.rend() && last->diagnosis->agreement.Disagree())
+  if (last == models.rend()) return sentences;
+  if (const std::string elsewhere = NotMetElsewhere(*last); !elsewhere.empty())
+    sentences.push_back(elsewhere);
+  if (last->diagnosis->agreement.Disagree())
     sentences.push_back(ExplainAgreement(last->diagnosis->agreement));
   return sentences;
 }

@@ -33,7 +33,6 @@ namespace lacuna {
 namespace {
 
 constexpr int kIntervalsVersion = 1;  // of intervals.json
-constexpr double kTrueStep = 1e-3;    // s
 constexpr int kBins = 10;
 constexpr uint64_t kShapeStream = 70, kEffectStream = 71, kPriorStream = 72;
 
@@ -174,6 +173,7 @@ IntervalSuite ReadIntervalSuite(const Config& config) {
   suite.element_volume =
       config.Quantity("element_volume", kVolume, kPositive, suite.element_volume);
   suite.finer_truth = config.Number("finer_truth", {1, 1000}, suite.finer_truth);
+  suite.true_step = config.Quantity("true_step", kTime, kPositive, suite.true_step);
   suite.noise = config.Quantity("noise", kLength, kPositive, suite.noise);
   suite.modelled = ReadEffectTypes(config, "modelled");
   suite.missing = ReadEffectTypes(config, "missing");
@@ -204,7 +204,7 @@ TrialCase DrawIntervalCase(const IntervalSuite& suite, int number) {
   trial.noise = suite.noise;
   trial.element_volume = suite.element_volume;
   trial.true_element_volume = suite.element_volume / suite.finer_truth;
-  trial.true_step = kTrueStep;
+  trial.true_step = suite.true_step;
   trial.priors = suite.priors;
 
   std::map<std::string, double> drawn;

@@ -35,6 +35,7 @@ struct IntervalSuite {
   // infinitely fine elements, so that what is left of the model's error in the truth looks like a
   // bias.
   double finer_truth = 20;
+  double true_step = 1e-3;                 // s, time step of the truth
   double noise = TrialCase{}.noise;        // m, standard deviation of a marker's coordinate
   std::vector<std::string> modelled = {};  // effects of the truth and of the model
   std::vector<std::string> missing = {};   // effects of the truth alone

@@ -180,6 +180,26 @@ TEST(Headline, EveryOtherVerdictHasItsSentence) {
   EXPECT_THAT(Headline({model}).at(1), HasSubstr("No further effect is needed: "));
 }
 
+// A diagnosis of some recordings says nothing about what others would ask for.
+TEST(Headline, SaysWhichRecordingsAreNotMetAlthoughNothingMoreIsMissingInTheOthers) {
+  ReportedModel model = Model(8.7e-4, 5.1);
+  model.diagnosis = Diagnosis(Verdict::kAdequate, {});
+  EXPECT_THAT(Headline({model}), SizeIs(2));
+  model.calibration.recordings.resize(3);
+  model.calibration.recordings[1].name = "repeat";
+  model.calibration.recordings[1].fitted = false;
+  model.calibration.recordings[1].held_out.rms_over_sigma = 1.05;
+  model.calibration.recordings[2].name = "52 g";
+  model.calibration.recordings[2].fitted = false;
+  model.calibration.recordings[2].held_out.rms_over_sigma = 14.04;
+  EXPECT_EQ(Headline({model}).at(2),
+            "That holds for the recordings that were fitted. The model does not meet the others "
+            "to within the noise: 52 g (14.0 times the noise). To have them diagnosed, set "
+            "`fitted: true` in a copy of the experiment.");
+  model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
+  EXPECT_THAT(Headline({model}), SizeIs(2));
+}
+
 TEST(Headline, AnEffectThatExplainsAPartIsNotCalledWhatIsMissing) {
   ReportedModel model = Model(8.7e-4, 5.1);
   model.diagnosis = Diagnosis(Verdict::kNotInLibrary, {"drag"});
