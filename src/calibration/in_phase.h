@@ -1,4 +1,4 @@
-// Changes of a motion that the parameters do not follow.
+// Changes of a motion beside the parameters that keep it in phase.
 #ifndef LACUNA_CALIBRATION_IN_PHASE_H_
 #define LACUNA_CALIBRATION_IN_PHASE_H_
 
@@ -8,22 +8,24 @@
 
 namespace lacuna {
 
-// A longer object vibrates more slowly. The change c of its residual therefore grows with time and
-// cannot be multiplied by an amount once the phase has moved by more than a small part of a
-// period; nor can it be added to a motion whose moduli were fitted to another frequency. Together
-// with the change g of the parameters that keeps the motion in phase,
+// With other dimensions, an object vibrates at another frequency, so that the change c of the
+// residual grows with time. It is proportional to the amount only while the phase error is a small
+// part of a period. Together with the change g of the parameters that keeps the motion in phase,
 //   g = argmin ‖c + J g‖² + Σ (g/s)²,
 // it stays small, where c and the Jacobian J are whitened and s are the deviations of the
-// parameters' priors. The sum c + J g spans the same space beside J as c does.
+// parameters' priors. Beside J, the sum c + J g spans the same space as c; the evidence is the same
+// only where these priors are wide.
 struct InPhase {
-  Eigen::MatrixXd change;      // g, one column for each of `columns`, in the units of MovedBy()
-  Eigen::MatrixXd of_columns;  // c + J g, m
+  Eigen::MatrixXd parameters;  // g, one column for each of `columns`, in the units of MovedBy()
+  Eigen::MatrixXd residual;    // c + J g, m
 };
 
 // `columns`: changes of the rows of `misfit`, m, for amounts that are typical. `misfit` is that at
-// `values`, with the Jacobian of the problem's parameters in its first columns.
+// `values`, with the Jacobian of the problem's parameters in its first columns. `fitted_only`: g is
+// that of the fitted frames.
 InPhase KeptInPhase(const Eigen::MatrixXd& columns, const CalibrationProblem& problem,
-                    const Eigen::VectorXd& values, const LinearisedMisfit& misfit);
+                    const Eigen::VectorXd& values, const LinearisedMisfit& misfit,
+                    bool fitted_only);
 
 }  // namespace lacuna
 

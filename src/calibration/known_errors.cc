@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/linear_evidence.h"
+#include "calibration/in_phase.h"
 #include "calibration/linear_misfit.h"
 #include "calibration/mesh_limit.h"
 #include "calibration/size_errors.h"
@@ -27,15 +27,9 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     }
   };
   const Eigen::MatrixXd jacobian = misfit.jacobian.leftCols(values.size());
-  const Eigen::MatrixXd by_parameters = WhitenedRows(jacobian, misfit, 0, /*fitted_only=*/true);
-  std::vector<LinearPrior> priors = PriorsAbout(parameters, values);
-  for (LinearPrior& prior : priors) prior.mean = 0;  // only the response to the error counts
-  const LinearGaussianModel model(Eigen::VectorXd::Zero(by_parameters.rows()), by_parameters,
-                                  std::move(priors));
   // The change of the parameters by which the fit would compensate for a change of the residual, m.
   const auto response = [&](const Eigen::MatrixXd& change) -> Eigen::VectorXd {
-    const Eigen::VectorXd whitened = WhitenedRows(change, misfit, 0, /*fitted_only=*/true);
-    return model.WithResidual(whitened, by_parameters).FitAll(1).change;
+    return KeptInPhase(change, problem, values, misfit, /*fitted_only=*/true).parameters.col(0);
   };
   std::optional<OtherMesh> mesh;
   std::optional<StepErrors> step;

@@ -26,14 +26,14 @@ bool IsEnough(const OtherElements& other, double wanted) {
 }
 
 bool ListsNodes(const PredictionStudy& study) {
-  return std::any_of(
-      study.recordings.begin(), study.recordings.end(), [](const PredictedRecording& item) {
-        std::vector<Region> regions = RegionsOf(item.recording.object);
-        if (item.hold) regions.push_back(item.hold->region);
-        return std::any_of(regions.begin(), regions.end(), [](const Region& region) {
-          return std::holds_alternative<NodeRegion>(region.shape);
-        });
-      });
+  return std::any_of(study.recordings.begin(), study.recordings.end(),
+                     [](const PredictedRecording& item) {
+                       std::vector<Region> regions = RegionsOf(item.recording.object);
+                       if (item.hold) regions.push_back(item.hold->region);
+                       return std::any_of(regions.begin(), regions.end(), [](const Region& region) {
+                         return std::holds_alternative<NodeRegion>(region.shape);
+                       });
+                     });
 }
 
 std::optional<OtherElements> MeshedAnew(const PredictionStudy& study, const TetMesh& own,

@@ -52,7 +52,8 @@ struct EffectRanking {
   SceneColumns scene;             // for further rankings
   AgreementRecord agreement;      // of the recordings, along the fitted motion
 
-  // HypothesisSpace::model_error.
+  // Half of the squared length, in units of the noise, of the error that the model may have in any
+  // direction (HypothesisSpace::model_error).
   double ModelError() const;
 };
 

@@ -129,7 +129,9 @@ std::vector<NamedEstimate> ExtendedProblem::OthersIn(const Calibration& calibrat
 
 ParameterEstimate ExtendedProblem::Reported(const Calibration& calibration, size_t k) const {
   ParameterEstimate estimate = calibration.estimates[k];
-  const double unknown = std::sqrt(2 * baseline_.model_error * baseline_.noise.variance);
+  // The deviation of the estimate grows with the residual that a refit leaves; the error does not.
+  const double unknown = std::sqrt(2 * baseline_.model_error * baseline_.noise.variance) /
+                         std::max(1.0, calibration.rms);
   CountModelErrors(parameters_[k], estimate.value, unknown * estimate.posterior_deviation,
                    &estimate);
   return estimate;

@@ -60,7 +60,8 @@ class ExtendedProblem {
   Eigen::Index OwnCount() const { return own_; }
   // The estimates of the parameters that make the effect's size, and of its other fitted
   // parameters. Their intervals contain the error that the model may have in an unknown direction:
-  // an error of u standard deviations of the noise along an estimate moves it by u of its own.
+  // an error whose length is u σ, in the direction to which an estimate is most sensitive, moves it
+  // by u of the standard deviations that noise alone gives it.
   std::vector<ParameterEstimate> SizesIn(const Calibration& calibration) const;
   std::vector<NamedEstimate> OthersIn(const Calibration& calibration) const;
 

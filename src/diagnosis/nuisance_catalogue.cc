@@ -75,12 +75,12 @@ std::vector<NuisanceTrial> NuisanceControls() {
   return controls;
 }
 
-std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
-                                              const std::vector<NuisanceCandidate>& known) {
-  // Each is simulated by itself, side by side with the others.
-  std::vector<const NuisanceEntry*> entries;
-  for (const NuisanceEntry& entry : NuisanceCatalogue())
-    if (std::holds_alternative<ModelNuisance>(entry.make)) entries.push_back(&entry);
+namespace {
+
+// Each is simulated by itself, side by side with the others.
+std::vector<NuisanceCandidate> Made(const std::vector<const NuisanceEntry*>& entries,
+                                    const NuisanceContext& context,
+                                    const std::vector<NuisanceCandidate>& known) {
   std::vector<std::optional<NuisanceCandidate>> made(entries.size());
   ParallelFor(static_cast<int64_t>(entries.size()), 1, [&](int64_t k) {
     const size_t at = static_cast<size_t>(k);
@@ -93,6 +93,23 @@ std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
   for (size_t k = 0; k < entries.size(); ++k)
     if (made[k]) Add(entries[k]->card, *std::move(made[k]), &candidates);
   return candidates;
+}
+
+}  // namespace
+
+std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
+                                              const std::vector<NuisanceCandidate>& known) {
+  std::vector<const NuisanceEntry*> entries;
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (std::holds_alternative<ModelNuisance>(entry.make)) entries.push_back(&entry);
+  return Made(entries, context, known);
+}
+
+std::vector<NuisanceCandidate> NuisancesOfEveryModel(const NuisanceContext& context) {
+  std::vector<const NuisanceEntry*> entries;
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (entry.card.is_always_in_model) entries.push_back(&entry);
+  return Made(entries, context, {});
 }
 
 std::vector<NuisanceCandidate> GripNuisances(const GripMotions& grips,

@@ -79,6 +79,8 @@ std::vector<NuisanceTrial> NuisanceControls();
 // there.
 std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
                                               const std::vector<NuisanceCandidate>& known = {});
+// Those of them that belong to every model.
+std::vector<NuisanceCandidate> NuisancesOfEveryModel(const NuisanceContext& context);
 
 // The nuisances of each grip; `grip_columns` as in NuisanceContext, after the simulation.
 std::vector<NuisanceCandidate> GripNuisances(const GripMotions& grips,

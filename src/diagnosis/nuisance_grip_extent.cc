@@ -1,12 +1,15 @@
 // A grip that ends elsewhere than in the model, so that more or less of the object is held.
 //
 // A grip that reaches further by δ leaves the same object with a shorter free part. The model's
-// mesh is given that shape: with c the centroid of the gripped nodes, d the direction from there to
-// the centroid of the object and ℓ its extent along d, a node at X moves by
-//   δ (1 − t) d,   t = (X − c)·d/ℓ between 0 and 1,
-// so that the grip moves by δ and the other end stays. Markers keep their places.
+// mesh is given that shape: with d the direction from the centroid of the gripped nodes to that of
+// the object, x = X·d the position of a node along it, x₁ the largest one of a gripped node and x₂
+// that of any node, a node moves by
+//   δ (1 − t) d,   t = (x − x₁)/(x₂ − x₁) between 0 and 1,
+// so that the whole grip moves by δ and the other end stays. Nodes of other grips stay, too.
+// Markers keep their places.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "analysis/linear_evidence.h"
@@ -24,19 +27,19 @@ namespace {
 constexpr double kProbe = 0.1;
 // The largest amount, in standard deviations, for which a column is made.
 constexpr double kMostAmount = 3;
-// A grip at the middle of the object, nearer to its centroid than this share of its extent, can
-// reach further on either side.
+// A grip whose centroid is this close to that of the object, relative to the diagonal of its box,
+// has no inward direction and no column.
 constexpr double kCentral = 0.05;
 
 NuisanceCard Card() {
   NuisanceCard card;
   card.name = "grip_extent";
-  card.title = "the extent of a grip";
+  card.title = "how far the grips reach";
   card.directions = "each grip reaching further into the object, by a finite difference";
   card.prior = "1 mm for each grip";
   card.residual_when_present =
-      "Natural frequencies are too high or too low, by a share that depends on the mode: as for a "
-      "wrong stiffness near the grip.";
+      "The free part of the object is longer or shorter than in the model, so that it vibrates too "
+      "slowly or too fast, by a share that depends on the mode.";
   card.advice = "measure how far the clamp reaches";
   card.source = NuisanceSource::kGrip;
   card.is_shared_in_scene = true;
@@ -49,74 +52,97 @@ NuisanceCard Card() {
   return card;
 }
 
-Eigen::Vector3d CentroidOf(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gripped) {
-  return nodes(Eigen::all, gripped).rowwise().mean();
+Eigen::Vector3d Inwards(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gripped) {
+  return nodes.rowwise().mean() - nodes(Eigen::all, gripped).rowwise().mean();
 }
 
-// Whether the grip is at the middle of the object.
-bool IsCentral(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gripped) {
+// Whether the extent of a grip can be changed: it holds its nodes along all axes, by the same nodes
+// in all recordings, and has an inward direction. A grip that follows a scan would be registered
+// anew with the changed mesh.
+bool HasExtent(const CalibrationProblem& problem, size_t grip) {
+  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
+  const auto& first = problem.models().front().model().grips[grip];
   const Eigen::Vector3d size = nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff();
-  return (nodes.rowwise().mean() - CentroidOf(nodes, gripped)).norm() < kCentral * size.norm();
+  if (!(Inwards(nodes, first.nodes).norm() > kCentral * size.norm())) return false;
+  return std::all_of(problem.models().begin(), problem.models().end(),
+                     [&](const RecordingModel& model) {
+                       const auto& grips = model.model().grips;
+                       const RecordedGrip* recorded = RecordedAs(model.item().recording, grip);
+                       const bool follows_scan =
+                           recorded != nullptr && recorded->motion == GripMotion::kFollowsScan;
+                       return grip < grips.size() && grips[grip].nodes == first.nodes &&
+                              grips[grip].axes.IsAll() && !follows_scan;
+                     });
 }
 
 // Where the nodes are once the grip reaches further by `distance`, m.
-Eigen::Matrix3Xd WithLongerGrip(const Eigen::Matrix3Xd& nodes, const Eigen::VectorXi& gripped,
-                                double distance) {
-  const Eigen::Vector3d grip = CentroidOf(nodes, gripped);
-  const Eigen::Vector3d inwards = (nodes.rowwise().mean() - grip).normalized();
-  const Eigen::RowVectorXd along = inwards.transpose() * (nodes.colwise() - grip);
-  const Eigen::RowVectorXd share = 1 - (along / along.maxCoeff()).array().max(0).min(1);
+Eigen::Matrix3Xd WithLongerGrip(const CalibrationProblem& problem, size_t grip, double distance) {
+  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
+  const auto& grips = problem.models().front().model().grips;
+  const Eigen::Vector3d inwards = Inwards(nodes, grips[grip].nodes).normalized();
+  const Eigen::RowVectorXd along = inwards.transpose() * nodes;
+  const double end = along(grips[grip].nodes).maxCoeff();
+  Eigen::RowVectorXd share = 1 - ((along.array() - end) / (along.maxCoeff() - end)).max(0).min(1);
+  for (size_t other = 0; other < grips.size(); ++other)
+    if (other != grip) share(grips[other].nodes).setZero();
   return nodes + distance * inwards * share;
 }
 
-// The study, whose regions that are held list their nodes, so that they hold the same ones of a
-// mesh that was moved.
+// The study with all regions as lists of their nodes, so that they are the same nodes of a mesh
+// that was moved.
 PredictionStudy WithListedNodes(const CalibrationProblem& problem) {
+  const Eigen::Matrix3Xd& nodes = problem.body()->mesh.nodes;
+  const auto list = [&](Region* region) {
+    region->shape = NodeRegion{SelectNodes(*region, nodes), {}};
+  };
   PredictionStudy study = problem.WithEstimatedNoise();
-  for (size_t r = 0; r < study.recordings.size(); ++r) {
-    RecordedObject& object = study.recordings[r].recording.object;
-    std::vector<Region*> regions;  // in the order of the model's grips
-    for (RecordedSupport& support : object.fixed) regions.push_back(&support.region);
-    for (RecordedGrip& grip : object.grips) regions.push_back(&grip.region);
-    const auto& grips = problem.models()[r].model().grips;
-    for (size_t k = 0; k < std::min(regions.size(), grips.size()); ++k)
-      regions[k]->shape = NodeRegion{{grips[k].nodes.begin(), grips[k].nodes.end()}, {}};
+  for (PredictedRecording& item : study.recordings) {
+    RecordedObject& object = item.recording.object;
+    for (RecordedSupport& support : object.fixed) list(&support.region);
+    for (RecordedGrip& grip : object.grips)
+      if (grip.motion != GripMotion::kFollowsScan) list(&grip.region);
+    for (MeasuredForce& force : object.forces)
+      if (force.region) list(&*force.region);
+    if (item.hold) list(&item.hold->region);
   }
   return study;
 }
 
-// The residual of the model with this mesh, m. Empty where it cannot be simulated.
-Eigen::VectorXd ResidualOn(const TetMesh& mesh, const Eigen::VectorXd& values,
-                           const PredictionStudy& study, const NuisanceContext& at) {
+// The residual of the model with the mesh that a longer grip leaves, m. Empty where it cannot be
+// simulated.
+Eigen::VectorXd ResidualWith(const CalibrationProblem& problem, size_t grip, double distance,
+                             const Eigen::VectorXd& values, const PredictionStudy& study,
+                             const LinearisedMisfit& near) {
+  TetMesh mesh = problem.body()->mesh;
+  mesh.nodes = WithLongerGrip(problem, grip, distance);
+  std::unique_ptr<const CalibrationProblem> changed;
   try {
-    return CalibrationProblem(study, mesh)
-        .Linearise(values, false, {}, nullptr, &at.misfit)
-        .residual;
+    changed = std::make_unique<const CalibrationProblem>(study, mesh);
   } catch (const InputError&) {
-    return {};  // for example, the region of a load holds no node
+    return {};  // for example, a marker is too far from this mesh
   }
+  return changed->Linearise(values, false, {}, nullptr, &near).residual;
 }
 
 // The column of one grip: the change per metre by which it reaches further, with the parameters
 // that keep the motion in phase. First a tangent; then, since the column should hold at the extent
-// that the recordings suggest, the chord to there.
-Eigen::VectorXd ColumnOf(const Eigen::VectorXi& gripped, const PredictionStudy& study,
-                         const NuisanceContext& at) {
+// that the recordings suggest, the chord to there or, where that cannot be simulated, to half or a
+// quarter of it. The suggestion is that of a fit beside the parameters alone.
+Eigen::VectorXd ColumnOf(size_t grip, const PredictionStudy& study, const NuisanceContext& at) {
   const double deviation = kThresholds.nuisances.shift;
   const Eigen::VectorXd& residual = at.misfit.residual;
-  // The change by a grip that reaches further by `distance`.
   const auto change_by = [&](double distance, const Eigen::VectorXd& values) -> Eigen::VectorXd {
-    TetMesh mesh = at.problem.body()->mesh;
-    mesh.nodes = WithLongerGrip(mesh.nodes, gripped, distance);
-    const Eigen::VectorXd there = ResidualOn(mesh, values, study, at);
+    const Eigen::VectorXd there =
+        ResidualWith(at.problem, grip, distance, values, study, at.misfit);
     return there.size() == residual.size() ? there - residual : Eigen::VectorXd();
   };
   const Eigen::VectorXd tangent = change_by(kProbe * deviation, at.values);
   if (tangent.size() == 0) return {};
-  const InPhase kept = KeptInPhase(tangent / kProbe, at.problem, at.values, at.misfit);
+  const InPhase kept =
+      KeptInPhase(tangent / kProbe, at.problem, at.values, at.misfit, /*fitted_only=*/false);
   // Amounts are in units of the deviation from here on.
   Eigen::MatrixXd columns(residual.size(), at.values.size() + 1);
-  columns << at.misfit.jacobian.leftCols(at.values.size()), kept.of_columns;
+  columns << at.misfit.jacobian.leftCols(at.values.size()), kept.residual;
   std::vector<LinearPrior> priors = PriorsAbout(at.problem.parameters(), at.values);
   priors.push_back({0, 1, false});
   const Eigen::VectorXd fitted =
@@ -124,25 +150,25 @@ Eigen::VectorXd ColumnOf(const Eigen::VectorXi& gripped, const PredictionStudy& 
                           WhitenedRows(columns, at.misfit, 0, false), std::move(priors))
           .FitAll(1)
           .change;
-  const double amount = std::clamp(fitted[fitted.size() - 1], -kMostAmount, kMostAmount);
-  if (std::abs(amount) > kProbe) {
+  const double suggested = std::clamp(fitted[fitted.size() - 1], -kMostAmount, kMostAmount);
+  for (const double share : {1.0, 0.5, 0.25}) {
+    const double amount = share * suggested;
+    if (std::abs(amount) <= kProbe) break;
     const Eigen::VectorXd moved =
-        MovedBy(at.problem.parameters(), at.values, amount * kept.change.col(0));
+        MovedBy(at.problem.parameters(), at.values, amount * kept.parameters.col(0));
     const Eigen::VectorXd chord = change_by(amount * deviation, moved);
     if (chord.size() > 0) return chord / (amount * deviation);
   }
-  return kept.of_columns / deviation;
+  return kept.residual / deviation;
 }
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   const PredictionStudy study = WithListedNodes(at.problem);
-  const auto& grips = at.problem.models().front().model().grips;
   NuisanceCandidate candidate;
   candidate.columns.resize(at.misfit.residual.size(), 0);
   for (const GripMotions::Grip& grip : at.grips.grips) {
-    const Eigen::VectorXi& gripped = grips[grip.grip].nodes;
-    if (IsCentral(at.problem.body()->mesh.nodes, gripped)) continue;
-    const Eigen::VectorXd column = ColumnOf(gripped, study, at);
+    if (!HasExtent(at.problem, grip.grip)) continue;
+    const Eigen::VectorXd column = ColumnOf(grip.grip, study, at);
     if (column.size() == 0) continue;
     candidate.columns.conservativeResize(Eigen::NoChange, candidate.columns.cols() + 1);
     candidate.columns.rightCols(1) = column;

@@ -27,7 +27,7 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   const Eigen::MatrixXd changes = ChangesBySize(at.problem, at.values, at.misfit);
   if (changes.cols() == 0) return std::nullopt;
-  candidate.columns = KeptInPhase(changes, at.problem, at.values, at.misfit).of_columns;
+  candidate.columns = KeptInPhase(changes, at.problem, at.values, at.misfit, /*fitted_only=*/false).residual;
   candidate.priors.assign(3, {0, 1, false});
   return candidate;
 }

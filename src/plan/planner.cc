@@ -168,8 +168,8 @@ Influence Planner::InfluenceOf(const Protocol& protocol) const {
     own_priors.insert(own_priors.end(), nuisance.priors.begin(), nuisance.priors.end());
   };
   for (const NuisanceCandidate& nuisance :
-       ModelNuisances({problem, values, misfit, grips, grip_columns}))
-    if (nuisance.card.is_always_in_model) add_own(nuisance);
+       NuisancesOfEveryModel({problem, values, misfit, grips, grip_columns}))
+    add_own(nuisance);
   for (LinearPrior& prior : own_priors) prior = {0, prior.deviation, false};
 
   const auto whiten = [&](const Eigen::MatrixXd& columns) {

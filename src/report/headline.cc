@@ -211,14 +211,18 @@ std::string NotMetElsewhere(const ReportedModel& model) {
   const Verdict verdict = model.diagnosis->verdict;
   if (verdict != Verdict::kNuisance && verdict != Verdict::kAdequate) return "";
   std::vector<std::string> missed;
-  for (const FittedRecording& recording : model.calibration.recordings)
-    if (!recording.fitted && recording.held_out.rms_over_sigma >= kBeyondNoise)
+  for (const FittedRecording& recording : model.calibration.recordings) {
+    if (recording.fitted) continue;
+    if (recording.held_out.points == 0)
+      missed.push_back(recording.name + " (it could not be simulated)");
+    else if (recording.held_out.rms_over_sigma >= kBeyondNoise)
       missed.push_back(fmt::format("{} ({:.1f} times the noise)", recording.name,
                                    recording.held_out.rms_over_sigma));
+  }
   if (missed.empty()) return "";
   return fmt::format(
-      "That holds for the recordings that were fitted. The model does not meet the others to "
-      "within the noise: {}. To have them diagnosed, set `fitted: true` in a copy of the "
+      "That holds for the recordings that were fitted. Of the others, the model does not meet "
+      "these to within the noise: {}. To have them diagnosed, set `fitted: true` in a copy of the "
       "experiment.",
       fmt::join(missed, ", "));
 }
@@ -261,15 +265,16 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     }
     // What was added shows by itself that the model before lacked it.
     const bool is_last = k + 1 == models.size();
-    if (!verdict.empty() && (is_last || models[k].diagnosis)) sentences.push_back(verdict);
+    if (verdict.empty() || !(is_last || models[k].diagnosis)) continue;
+    sentences.push_back(verdict);
+    const std::string elsewhere =
+        is_last && models[k].diagnosis ? NotMetElsewhere(models[k]) : std::string();
+    if (!elsewhere.empty()) sentences.push_back(elsewhere);
   }
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();
   });
-  if (last == models.rend()) return sentences;
-  if (const std::string elsewhere = NotMetElsewhere(*last); !elsewhere.empty())
-    sentences.push_back(elsewhere);
-  if (last->diagnosis->agreement.Disagree())
+  if (last != models.rend() && last->diagnosis->agreement.Disagree())
     sentences.push_back(ExplainAgreement(last->diagnosis->agreement));
   return sentences;
 }

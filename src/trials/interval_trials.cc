@@ -263,8 +263,10 @@ int RunIntervalSuite(const IntervalSuite& suite, const std::filesystem::path& fo
     MakeFolder(draws.back());
     const std::filesystem::path truth = draws.back() / "truth.json";
     if (std::filesystem::exists(truth) && ReadTextFile(truth) != TextOfCase(drawn))
-      throw InputError({truth.string()},
-                       "belongs to a draw of another suite; choose another folder");
+      throw InputError(
+          {truth.string()},
+          "belongs to a draw of another suite or of another version of the program; choose another "
+          "folder");
   }
   const auto keep_failure = [&](size_t k, const std::string& reason) {
     WriteFileAtomically(draws[k] / "failed.txt", reason + "\n");

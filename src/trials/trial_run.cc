@@ -51,8 +51,10 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
   if (!effect->refitted) {
     Progress progress({.style = ProgressStyle::kSilent});
     const LinearisedMisfit misfit = problem.Linearise(values, false);
-    const EffectRefit refit = Refit({problem, values, misfit, &progress}, &effect->scored, {},
-                                    diagnosis.baseline_rms_over_sigma > kFarFromTruth);
+    const EffectRefit refit =
+        Refit({problem, values, misfit, &progress, nullptr, diagnosis.noise_level,
+               diagnosis.decision_input.baseline.model_error},
+              &effect->scored, {}, diagnosis.baseline_rms_over_sigma > kFarFromTruth);
     if (!refit.message.empty()) return;
     sizes = refit.sizes;
     in_noise = refit.errors.without_nuisances;

@@ -189,13 +189,17 @@ TEST(Headline, SaysWhichRecordingsAreNotMetAlthoughNothingMoreIsMissingInTheOthe
   model.calibration.recordings[1].name = "repeat";
   model.calibration.recordings[1].fitted = false;
   model.calibration.recordings[1].held_out.rms_over_sigma = 1.05;
+  model.calibration.recordings[1].held_out.points = 9;
   model.calibration.recordings[2].name = "52 g";
   model.calibration.recordings[2].fitted = false;
   model.calibration.recordings[2].held_out.rms_over_sigma = 14.04;
+  model.calibration.recordings[2].held_out.points = 9;
   EXPECT_EQ(Headline({model}).at(2),
-            "That holds for the recordings that were fitted. The model does not meet the others "
-            "to within the noise: 52 g (14.0 times the noise). To have them diagnosed, set "
-            "`fitted: true` in a copy of the experiment.");
+            "That holds for the recordings that were fitted. Of the others, the model does not "
+            "meet these to within the noise: 52 g (14.0 times the noise). To have them diagnosed, "
+            "set `fitted: true` in a copy of the experiment.");
+  model.calibration.recordings[1].held_out.points = 0;
+  EXPECT_THAT(Headline({model}).at(2), HasSubstr("repeat (it could not be simulated), 52 g"));
   model.diagnosis = Diagnosis(Verdict::kMissing, {"drag"});
   EXPECT_THAT(Headline({model}), SizeIs(2));
 }
