@@ -98,7 +98,7 @@ struct RefitThresholds {
 // explain more, so that effects need more evidence; lower values let effects explain errors of the
 // experiment.
 struct NuisanceThresholds {
-  // A misplaced grip, frame or registration, m, and a misoriented one, rad.
+  // A misplaced grip, frame or registration, or the end of a grip, m; a misoriented one, rad.
   double shift = 1e-3, rotation = 0.02;
   // The time of a single frame, as a share of the frame spacing.
   double frame_time = 0.1;
