@@ -102,7 +102,7 @@ TEST(RefitStore, AStoppedDiagnosisContinuesToTheSameResult) {
   EXPECT_EQ(all.at("fits").size(), fits) << "what was kept is found again";
   // A kept fit is not repeated.
   for (auto& [key, kept] : all["fits"].items())
-    for (json& estimate : kept["estimates"]) estimate["high_95"] = 1e9;
+    for (json& estimate : kept["estimates"]) estimate["deviation"] = 1e9;
   std::ofstream(file) << all;
   EXPECT_NE(diagnose("changed.json"), whole);
 }
