@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "calibration/calibration_run.h"
+#include "core/blas_kernels.h"
 #include "effects/catalogue.h"
 #include "fem/prediction.h"
 #include "geometry/rounded_box.h"
@@ -54,6 +55,7 @@ double Stretch() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  lacuna::UseFastBlasKernels(argv);  // those of the program, so that the result has the same bytes
   if (argc != 2) return 2;
   try {
     std::printf("stretch_mm %.4f\n", 1e3 * Stretch());
