@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/in_phase.h"
 #include "calibration/linear_misfit.h"
 #include "calibration/mesh_limit.h"
+#include "calibration/parameter_response.h"
 #include "calibration/size_errors.h"
 #include "calibration/step_errors.h"
 #include "core/parallel.h"
@@ -27,10 +27,7 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     }
   };
   const Eigen::MatrixXd jacobian = misfit.jacobian.leftCols(values.size());
-  // The change of the parameters by which the fit would compensate for a change of the residual, m.
-  const auto response = [&](const Eigen::MatrixXd& change) -> Eigen::VectorXd {
-    return KeptInPhase(change, problem, values, misfit, /*fitted_only=*/true).parameters.col(0);
-  };
+  const ParameterResponse response(problem, values, misfit, /*fitted_only=*/true);
   std::optional<OtherMesh> mesh;
   std::optional<StepErrors> step;
   Eigen::MatrixXd by_size;
@@ -43,19 +40,19 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
   if (mesh) {
     // `mesh` was compared with other parameters, chosen under a narrower prior than that of the
     // fit.
-    const Eigen::VectorXd change = response(mesh->other - mesh->own - jacobian * mesh->change);
+    const Eigen::VectorXd change = response.To(mesh->other - mesh->own - jacobian * mesh->change);
     to_limit = mesh->ToLimit() * change;
     errors.at_mesh_limit = MovedBy(parameters, values, to_limit);
     add(mesh->DeviationOfLimit() * change);
   }
   if (step) {
-    const Eigen::VectorXd change = response(step->to_limit);
+    const Eigen::VectorXd change = response.To(step->to_limit);
     to_limit += change;
     add(StepErrors::kLimitDeviation * change);
-    add(StepErrors::kDepartureDeviation * response(step->departure));
+    add(StepErrors::kDepartureDeviation * response.To(step->departure));
   }
   errors.at_limit = MovedBy(parameters, values, to_limit);
-  for (Eigen::Index axis = 0; axis < by_size.cols(); ++axis) add(response(by_size.col(axis)));
+  for (const auto change : response.To(by_size).colwise()) add(change);
   return errors;
 }
 

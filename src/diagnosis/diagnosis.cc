@@ -168,8 +168,8 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   diagnosis.untried = std::move(ranking.untried);
   diagnosis.agreement = ranking.agreement;
 
-  const BaselineModel model{problem,      fitted,        ranking.misfit,      setting.progress,
-                            setting.kept, ranking.noise, ranking.ModelError()};
+  const BaselineModel model =
+      RankedBaseline(problem, fitted, ranking, setting.progress, setting.kept);
   const RefitContext context{model, ranking};
   RefittedRanking ranked = StartRefits(context, ranking.effects, options.refits);
   diagnosis.errors.without_nuisances = ranked.baseline.errors.without_nuisances;
@@ -243,8 +243,7 @@ Diagnosis Diagnose(const CalibrationProblem& problem, const Eigen::VectorXd& fit
 DecisionInput FirstOrderInput(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
                               Progress* progress) {
   const EffectRanking ranking = RankEffects(problem, fitted, progress);
-  const BaselineModel model{problem, fitted,        ranking.misfit,      progress,
-                            nullptr, ranking.noise, ranking.ModelError()};
+  const BaselineModel model = RankedBaseline(problem, fitted, ranking, progress);
   const RefitContext context{model, ranking};
   const RefittedRanking ranked = StartRefits(context, ranking.effects, 0);
   // Without a refit, the residual may contain the effect that is missing. The noise of the ranking

@@ -84,6 +84,11 @@ void Append(const Eigen::MatrixXd& numbers, std::string* bytes) {
 
 }  // namespace
 
+BaselineModel RankedBaseline(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                             const EffectRanking& ranking, Progress* progress, RefitStore* kept) {
+  return {problem, values, ranking.misfit, progress, kept, ranking.noise, ranking.ModelError()};
+}
+
 ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVariant* effect,
                                  const AdoptedNuisances& adopted)
     : baseline_(baseline),

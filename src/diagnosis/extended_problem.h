@@ -27,6 +27,10 @@ struct BaselineModel {
   NoiseLevel noise = {};       // with which refits are compared
   double model_error = 0;      // EffectRanking::ModelError()
 };
+// The one that was ranked: with the misfit, the noise and the model error of `ranking`.
+BaselineModel RankedBaseline(const CalibrationProblem& problem, const Eigen::VectorXd& values,
+                             const EffectRanking& ranking, Progress* progress,
+                             RefitStore* kept = nullptr);
 
 struct NamedEstimate {
   std::string name, unit;  // SI

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "analysis/linear_evidence.h"
-#include "calibration/in_phase.h"
 #include "calibration/linear_misfit.h"
+#include "calibration/parameter_response.h"
 #include "core/error.h"
 #include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/thresholds.h"
@@ -25,10 +25,11 @@ namespace {
 // The finite difference moves the end of a grip by this share of the standard deviation. A larger
 // change alters the phase of a long motion, which is not linear.
 constexpr double kProbe = 0.1;
-// The largest amount, in standard deviations, for which a column is made.
+// The largest amount, in standard deviations, for which a column is made. Larger: the column is
+// that of an extent which the prior nearly rules out.
 constexpr double kMostAmount = 3;
 // A grip whose centroid is this close to that of the object, relative to the diagonal of its box,
-// has no inward direction and no column.
+// has no inward direction and no column. Larger: fewer grips have one.
 constexpr double kCentral = 0.05;
 
 NuisanceCard Card() {
@@ -138,11 +139,14 @@ Eigen::VectorXd ColumnOf(size_t grip, const PredictionStudy& study, const Nuisan
   };
   const Eigen::VectorXd tangent = change_by(kProbe * deviation, at.values);
   if (tangent.size() == 0) return {};
-  const InPhase kept =
-      KeptInPhase(tangent / kProbe, at.problem, at.values, at.misfit, /*fitted_only=*/false);
-  // Amounts are in units of the deviation from here on.
+  // In units of the deviation, like the amounts from here on.
+  const Eigen::MatrixXd jacobian = at.misfit.jacobian.leftCols(at.values.size());
+  const Eigen::VectorXd response =
+      ParameterResponse(at.problem, at.values, at.misfit, /*fitted_only=*/false)
+          .To(tangent / kProbe);
+  const Eigen::VectorXd in_phase = tangent / kProbe + jacobian * response;
   Eigen::MatrixXd columns(residual.size(), at.values.size() + 1);
-  columns << at.misfit.jacobian.leftCols(at.values.size()), kept.residual;
+  columns << jacobian, in_phase;
   std::vector<LinearPrior> priors = PriorsAbout(at.problem.parameters(), at.values);
   priors.push_back({0, 1, false});
   const Eigen::VectorXd fitted =
@@ -154,12 +158,11 @@ Eigen::VectorXd ColumnOf(size_t grip, const PredictionStudy& study, const Nuisan
   for (const double share : {1.0, 0.5, 0.25}) {
     const double amount = share * suggested;
     if (std::abs(amount) <= kProbe) break;
-    const Eigen::VectorXd moved =
-        MovedBy(at.problem.parameters(), at.values, amount * kept.parameters.col(0));
+    const Eigen::VectorXd moved = MovedBy(at.problem.parameters(), at.values, amount * response);
     const Eigen::VectorXd chord = change_by(amount * deviation, moved);
     if (chord.size() > 0) return chord / (amount * deviation);
   }
-  return kept.residual / deviation;
+  return in_phase / deviation;
 }
 
 std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {

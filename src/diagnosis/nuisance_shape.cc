@@ -1,5 +1,5 @@
 // Errors of the object's three dimensions, by finite differences of predictions of a larger body.
-#include "calibration/in_phase.h"
+#include "calibration/parameter_response.h"
 #include "calibration/size_errors.h"
 #include "diagnosis/nuisance_catalogue.h"
 
@@ -27,7 +27,8 @@ std::optional<NuisanceCandidate> Make(const NuisanceContext& at) {
   NuisanceCandidate candidate;
   const Eigen::MatrixXd changes = ChangesBySize(at.problem, at.values, at.misfit);
   if (changes.cols() == 0) return std::nullopt;
-  candidate.columns = KeptInPhase(changes, at.problem, at.values, at.misfit, /*fitted_only=*/false).residual;
+  candidate.columns =
+      ParameterResponse(at.problem, at.values, at.misfit, /*fitted_only=*/false).InPhase(changes);
   candidate.priors.assign(3, {0, 1, false});
   return candidate;
 }

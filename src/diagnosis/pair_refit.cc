@@ -20,7 +20,6 @@ RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant&
                              const DecidedBase& decided)
     : baseline_(baseline),
       effect_(effect.candidate.type),
-      noise_(decided.noise),
       study_(WithEffect(baseline.problem.StudyAt(baseline.values), effect)),
       problem_(study_, baseline.problem.body()->mesh),
       values_(refit.calibration.parameters),
@@ -30,17 +29,18 @@ RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant&
 std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further) const {
   for (const ScoredEffect& scored : ranking_.effects) {
     if (scored.candidate.type != further) continue;
-    const BaselineModel model{problem_,       values_, ranking_.misfit,      baseline_.progress,
-                              baseline_.kept, noise_,  ranking_.ModelError()};
+    const BaselineModel model =
+        RankedBaseline(problem_, values_, ranking_, baseline_.progress, baseline_.kept);
     const EffectRefit alone = Refit(model, nullptr, ranking_.adopted, /*is_far_off=*/false);
     RankedEffect effect;
     effect.scored = scored;
     const EffectRefit both = RefitEffect({model, ranking_}, ranking_.adopted, alone,
                                          /*is_found=*/true, &effect);
     if (!alone.message.empty() || !both.message.empty()) return std::nullopt;
-    return WeighedPair{
-        effect_, further, EvidenceOf(both, noise_).all - EvidenceOf(alone, noise_).all,
-        SpaceOf(both.hypothesis, ranking_, further, noise_), Predicts(both, alone, noise_)};
+    const NoiseLevel& noise = ranking_.noise;
+    return WeighedPair{effect_, further, EvidenceOf(both, noise).all - EvidenceOf(alone, noise).all,
+                       SpaceOf(both.hypothesis, ranking_, further, noise),
+                       Predicts(both, alone, noise)};
   }
   return std::nullopt;
 }

@@ -37,7 +37,6 @@ class RefittedModel {
  private:
   const BaselineModel& baseline_;
   std::string effect_;
-  NoiseLevel noise_;
   PredictionStudy study_;
   CalibrationProblem problem_;  // of study_
   Eigen::VectorXd values_;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "record/effect_card.h"
 #include "record/ledger.h"
@@ -206,8 +207,9 @@ std::string VerdictSentence(const ReportedModel& model) {
 }
 
 // Where nothing more is missing in the recordings that were fitted, but others are not met: those.
-// Empty where there are none.
+// Empty where there are none, and without a diagnosis.
 std::string NotMetElsewhere(const ReportedModel& model) {
+  if (!model.diagnosis) return "";
   const Verdict verdict = model.diagnosis->verdict;
   if (verdict != Verdict::kNuisance && verdict != Verdict::kAdequate) return "";
   std::vector<std::string> missed;
@@ -267,9 +269,9 @@ std::vector<std::string> Headline(const std::vector<ReportedModel>& models) {
     const bool is_last = k + 1 == models.size();
     if (verdict.empty() || !(is_last || models[k].diagnosis)) continue;
     sentences.push_back(verdict);
-    const std::string elsewhere =
-        is_last && models[k].diagnosis ? NotMetElsewhere(models[k]) : std::string();
-    if (!elsewhere.empty()) sentences.push_back(elsewhere);
+    if (!is_last) continue;
+    if (std::string others = NotMetElsewhere(models[k]); !others.empty())
+      sentences.push_back(std::move(others));
   }
   const auto last = std::find_if(models.rbegin(), models.rend(), [](const ReportedModel& model) {
     return model.diagnosis.has_value();
