@@ -52,7 +52,8 @@ KnownErrors FindKnownErrors(const CalibrationProblem& problem, const Eigen::Vect
     add(StepErrors::kDepartureDeviation * response.To(step->departure));
   }
   errors.at_limit = MovedBy(parameters, values, to_limit);
-  for (const auto change : response.To(by_size).colwise()) add(change);
+  const Eigen::MatrixXd by_sizes = response.To(by_size);
+  for (const auto change : by_sizes.colwise()) add(change);
   return errors;
 }
 

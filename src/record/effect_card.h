@@ -92,10 +92,10 @@ struct TriedAtRelaxationTimes {
   std::string label;      // names the variant: "τ" gives "τ = 0.3 s"
 };
 
-// On the whole surface, and around the girth near both ends and at the middle of the length; on each
-// side of the body that is not gripped, the whole of it and places along the long sides. A support
-// that slips is tried on the whole surface, around the girth and on each whole side, each of these
-// at several slip distances.
+// On the whole surface, and around the girth near both ends and at the middle of the length; on
+// each side of the body that is not gripped, the whole of it and places along the long sides. A
+// support that slips is tried on the whole surface, around the girth and on each whole side, each
+// of these at several slip distances.
 struct TriedAsSupports {
   std::vector<double> slip_shares;  // values of `slip_distance` over the length of the body
 };

@@ -9,6 +9,8 @@
 #include "calibration/calibration_fits.h"
 #include "calibration/known_errors.h"
 #include "calibration/linear_misfit.h"
+#include "calibration/parameter_response.h"
+#include "calibration/size_errors.h"
 #include "experiment/reference_body.h"
 #include "prediction/predicted_body.h"
 #include "support/held_bar.h"
@@ -96,6 +98,19 @@ TEST(MeshLimit, ACoarseMeshTellsWhatAFinerOneWouldBeFittedWith) {
   EXPECT_LT((again - finer->other).norm(), 0.03 * (finer->other - finer->own).norm());
   EXPECT_EQ(coarse.problem.Linearise(values, false).residual, before)
       << "a prediction depends on nothing that was predicted before it";
+  // The dimensions of the object add a deviation of their own, by the response to each of them.
+  PredictionStudy measured = study;
+  measured.size_deviation = 0;
+  const KnownErrors without =
+      FindKnownErrors(CalibrationProblem(measured, coarse.problem.body()->mesh), values);
+  const Eigen::MatrixXd by_sizes = ParameterResponse(coarse.problem, values, misfit, true)
+                                       .To(ChangesBySize(coarse.problem, values, misfit));
+  ASSERT_EQ(by_sizes.cols(), 3);
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const double scale = coarse.problem.parameters()[k].log_scale ? values[k] : 1;
+    const double expected = std::hypot(without.deviation[k], by_sizes.row(k).norm() / scale);
+    EXPECT_NEAR(errors.deviation[k], expected, 1e-6 * expected) << k;
+  }
 }
 
 // Richardson's extrapolation from a coarser mesh, which a study of many elements uses.
