@@ -258,11 +258,11 @@ bool IsBetter(const Calibration& a, const Calibration& b) {
 // The better of the fits from two starts: the baseline's parameters, and those of a fit of the
 // model with the effect from the study's own start. The baseline was fitted to what it cannot
 // explain, so its parameters may be a bad start. A first fit that comes down to the noise is good
-// enough.
+// enough; otherwise, the second ends early where it would not come below the first.
 ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string& stage,
                              const Eigen::VectorXd& start, double hopeless_cost,
                              Progress* progress) {
-  ExtendedFit fit, other;
+  ExtendedFit fit;
   Calibration afresh;
   const auto is_good = [&] {
     return !fit.calibration.estimates.empty() &&
@@ -271,23 +271,27 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
   const auto fit_from_start = [&] {
     fit = extended.CalibrateFrom(start, stage, hopeless_cost, progress);
   };
-  const auto fit_afresh = [&](Progress* shown) {
-    afresh = extended.CalibrateAfresh(shown);
-    if (afresh.parameters.size() != extended.OwnCount()) return;
-    Eigen::VectorXd from = start;
-    from.head(afresh.parameters.size()) = afresh.parameters;
-    other = extended.CalibrateFrom(from, stage + " from there", hopeless_cost, shown);
-  };
-  // With several threads, the second fit does not wait for the first one. It is not looked at where
-  // the first one is good, so that the result is the same.
+  // With several threads, the second start is looked for during the first fit. It is not used where
+  // the first fit is good, so that the result is the same.
   if (ThreadCount() > 1) {
     Progress silent({.style = ProgressStyle::kSilent});
-    ParallelFor(2, 1, [&](int64_t k) { k == 0 ? fit_from_start() : fit_afresh(&silent); });
+    ParallelFor(2, 1, [&](int64_t k) {
+      if (k == 0)
+        fit_from_start();
+      else
+        afresh = extended.CalibrateAfresh(&silent);
+    });
   } else {
     fit_from_start();
-    if (!is_good()) fit_afresh(progress);
+    if (!is_good()) afresh = extended.CalibrateAfresh(progress);
   }
   if (is_good() || afresh.parameters.size() != extended.OwnCount()) return fit;
+  Eigen::VectorXd from = start;
+  from.head(afresh.parameters.size()) = afresh.parameters;
+  if (!fit.calibration.estimates.empty())
+    hopeless_cost = std::min(hopeless_cost, fit.calibration.cost);
+  ExtendedFit other =
+      extended.CalibrateFrom(from, stage + ", second start", hopeless_cost, progress);
   const int predictions =
       fit.calibration.predictions + afresh.predictions + other.calibration.predictions;
   ExtendedFit& better = IsBetter(other.calibration, fit.calibration) ? other : fit;

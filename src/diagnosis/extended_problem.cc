@@ -28,6 +28,11 @@ constexpr double kSharesBesideRefitted[] = {1, 0.1};
 constexpr double kSizeShares[] = {0.1, 0.3, 1};
 constexpr double kHoldDeviation = 1e-3;
 constexpr int kHoldIterations = 8;  // the result only is the start of the next fit
+// The derivatives of a search also cover the held-out frames where at least this share of all
+// frames is fitted: those of the last step are then the ones that the evidence needs. A search
+// takes derivatives about four times, so that covering all frames each time costs more below this
+// share.
+constexpr double kCoveredShare = 0.75;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The rows of fitted frames, in the order of CalibrationProblem::Predict.
@@ -77,6 +82,17 @@ PredictionStudy Extended(const BaselineModel& baseline, const ScoredVariant* eff
   return effect != nullptr ? WithEffect(study, *effect) : study;
 }
 
+bool CoversHeldOut(const CalibrationProblem& problem) {
+  if (problem.HasScans()) return false;
+  size_t fitted = 0, all = 0;
+  for (const RecordingModel& model : problem.models()) {
+    if (!model.item().fitted) continue;
+    fitted += model.FittedFrames().size();
+    all += model.item().frames.size();
+  }
+  return static_cast<double>(fitted) >= kCoveredShare * static_cast<double>(all);
+}
+
 void Append(const Eigen::MatrixXd& numbers, std::string* bytes) {
   bytes->append(reinterpret_cast<const char*>(numbers.data()),
                 static_cast<size_t>(numbers.size()) * sizeof(double));
@@ -102,6 +118,7 @@ ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVari
                            baseline.misfit)),
       nuisance_columns_(
           FittedRows(WhitenedRows(adopted.columns, baseline.misfit, 0, true), baseline.misfit)),
+      covers_held_out_(CoversHeldOut(with_)),
       parameters_(with_.parameters()) {
   for (const LinearPrior& prior : adopted.priors) {
     CalibratedParameter amount;
@@ -273,8 +290,8 @@ Calibration ExtendedProblem::CalibrateAfresh(Progress* progress) const {
 Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobian,
                                     Memory* memory) const {
   Prediction prediction;
-  if (with_jacobian && !with_.HasScans()) {
-    // All frames, because the last such prediction becomes the fit's misfit.
+  if (with_jacobian && covers_held_out_) {
+    // The last such prediction becomes the fit's misfit.
     memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr, &baseline_.misfit);
     memory->of_latest = at.head(own_);
     prediction = FittedPart(memory->latest);

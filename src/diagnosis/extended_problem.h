@@ -41,7 +41,7 @@ struct NamedEstimate {
 struct ExtendedFit {
   Calibration calibration;
   // At the end of the fit, with its Jacobian, as Linearise() gives it from the baseline's misfit.
-  // Not usable if the fit was kept or the recordings are scans.
+  // Not usable if the fit was kept, the recordings are scans, or most frames are held out.
   LinearisedMisfit misfit;
 };
 
@@ -102,7 +102,7 @@ class ExtendedProblem {
   // What one prediction of a fit hands on to the next.
   struct Memory {
     CalibrationProblem::FitMemory of_problem;
-    // The latest prediction with a Jacobian, of recordings with markers, and its parameters.
+    // The latest prediction of all frames with a Jacobian, and its parameters.
     LinearisedMisfit latest = {};
     Eigen::VectorXd of_latest = {};
   };
@@ -126,6 +126,7 @@ class ExtendedProblem {
   Eigen::Index shared_, added_, own_;
   Eigen::VectorXd residual_;          // whitened, of the baseline in the fitted frames
   Eigen::MatrixXd nuisance_columns_;  // its changes by the adopted nuisances, per unit amount
+  bool covers_held_out_;              // derivatives of a search are taken in all frames
   std::vector<CalibratedParameter> parameters_;
 };
 
