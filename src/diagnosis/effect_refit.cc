@@ -285,13 +285,11 @@ ExtendedFit FitFromTwoStarts(const ExtendedProblem& extended, const std::string&
     fit_from_start();
     if (!is_good()) afresh = extended.CalibrateAfresh(progress);
   }
-  if (is_good() || afresh.parameters.size() != extended.OwnCount()) return fit;
-  Eigen::VectorXd from = start;
-  from.head(afresh.parameters.size()) = afresh.parameters;
+  if (is_good() || afresh.parameters.size() != start.size()) return fit;
   if (!fit.calibration.estimates.empty())
     hopeless_cost = std::min(hopeless_cost, fit.calibration.cost);
   ExtendedFit other =
-      extended.CalibrateFrom(from, stage + ", second start", hopeless_cost, progress);
+      extended.CalibrateFrom(afresh.parameters, stage + ", second start", hopeless_cost, progress);
   const int predictions =
       fit.calibration.predictions + afresh.predictions + other.calibration.predictions;
   ExtendedFit& better = IsBetter(other.calibration, fit.calibration) ? other : fit;
@@ -349,12 +347,9 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   const LinearisedMisfit& misfit = baseline.misfit;
   const ExtendedProblem extended(baseline, effect, adopted);
   const CalibrationProblem& with = extended.problem();
-  const Eigen::Index own = extended.OwnCount();
   Eigen::VectorXd refitted;
-  if (effect != nullptr && without != nullptr && without->message.empty()) {
-    refitted.resize(without->calibration.parameters.size() + without->amounts.size());
-    refitted << without->calibration.parameters, without->amounts;
-  }
+  if (effect != nullptr && without != nullptr && without->message.empty())
+    refitted = without->calibration.parameters;
   ExtendedFit fit = FitExtended(
       extended, effect != nullptr ? "refit " + effect->candidate.type : "refit",
       effect != nullptr && is_far_off, from, refitted, hopeless_cost, baseline.progress);
@@ -363,9 +358,6 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
   if (refit.calibration.estimates.empty()) {
     refit.message = refit.calibration.message;
   } else {
-    refit.amounts = refit.calibration.parameters.tail(refit.calibration.parameters.size() - own);
-    refit.calibration.parameters.conservativeResize(own);
-    refit.calibration.estimates.resize(static_cast<size_t>(own));
     // With markers, one prediction serves both.
     LinearisedMisfit own_misfit = std::move(fit.misfit);
     if (!own_misfit.usable && !with.HasScans())
@@ -383,6 +375,7 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
     }
     refit.message = refit.hypothesis.misfit.message;
     if (refit.hypothesis.misfit.usable) {
+      refit.amounts = extended.AmountsAt(refit.hypothesis.misfit);
       const Eigen::VectorXd residual =
           refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
       const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);

@@ -113,20 +113,17 @@ ExtendedProblem::ExtendedProblem(const BaselineModel& baseline, const ScoredVari
       with_(study_, baseline.problem.body()->mesh),
       shared_(static_cast<Eigen::Index>(baseline.problem.study().fitted.size())),
       added_(static_cast<Eigen::Index>(study_.fitted.size()) - shared_),
-      own_(static_cast<Eigen::Index>(with_.parameters().size())),
       residual_(FittedRows(WhitenedRows(baseline.misfit.residual, baseline.misfit, 0, true),
                            baseline.misfit)),
-      nuisance_columns_(
-          FittedRows(WhitenedRows(adopted.columns, baseline.misfit, 0, true), baseline.misfit)),
+      nuisances_(
+          FittedRows(WhitenedRows(adopted.columns, baseline.misfit, 0, true), baseline.misfit),
+          adopted.priors),
       covers_held_out_(CoversHeldOut(with_)),
-      parameters_(with_.parameters()) {
-  for (const LinearPrior& prior : adopted.priors) {
-    CalibratedParameter amount;
-    amount.name = "nuisance";
-    amount.start = amount.prior_mean = prior.mean;
-    amount.prior_deviation = amount.typical = prior.deviation;
-    parameters_.push_back(amount);
-  }
+      parameters_(with_.parameters()) {}
+
+Eigen::VectorXd ExtendedProblem::AmountsAt(const LinearisedMisfit& misfit) const {
+  return nuisances_.BestAmounts(
+      FittedRows(WhitenedRows(misfit.residual, baseline_.misfit, 0, true), baseline_.misfit));
 }
 
 Eigen::VectorXd ExtendedProblem::OwnParameters(const Eigen::VectorXd& values) const {
@@ -167,8 +164,7 @@ Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   Eigen::VectorXd expected = effect_->expected_values;
   for (Eigen::Index k = 0; k < shared_; ++k)
     if (parameters_[k].log_scale && !(expected[k] > least_share * values[k])) expected = values;
-  const double without =
-      (residual_ + nuisance_columns_ * unchanged.tail(unchanged.size() - own_)).norm();
+  const double without = nuisances_.OfResidual(residual_).norm();
   Eigen::VectorXd start = unchanged;
   double least = ResidualNorm(start);
   for (const double share : kStepShares) {
@@ -181,8 +177,7 @@ Eigen::VectorXd ExtendedProblem::Start(const Eigen::VectorXd& refitted) const {
   }
   for (const double share : kSharesBesideRefitted) {
     if (refitted.size() == 0) break;
-    Eigen::VectorXd at = WithEffectBy(share, refitted.head(values.size()));
-    at.tail(at.size() - own_) = refitted.tail(refitted.size() - values.size());
+    const Eigen::VectorXd at = WithEffectBy(share, refitted);
     if (const double norm = ResidualNorm(at); norm < least) {
       least = norm;
       start = at;
@@ -235,7 +230,8 @@ std::string ExtendedProblem::KeyOf(const std::vector<CalibratedParameter>& param
     Append(Eigen::Vector3d(parameter.start, parameter.prior_mean, parameter.prior_deviation), &all);
   Append(Eigen::Vector2d(study_.time_step, hopeless_cost), &all);
   Append(residual_, &all);
-  Append(nuisance_columns_, &all);
+  Append(nuisances_.projection(), &all);
+  Append(nuisances_.at_means(), &all);
   return HashBytes(all);
 }
 
@@ -277,7 +273,7 @@ ExtendedFit ExtendedProblem::Fit(const std::vector<CalibratedParameter>& paramet
   fit.calibration = Kept("fit", parameters, options.hopeless_cost,
                          [&] { return Calibrate(parameters, predict, options); });
   progress->End(fit.calibration.usable ? "" : fit.calibration.message);
-  if (memory.latest.usable && memory.of_latest == fit.calibration.parameters.head(own_))
+  if (memory.latest.usable && memory.of_latest == fit.calibration.parameters)
     fit.misfit = std::move(memory.latest);
   return fit;
 }
@@ -292,19 +288,16 @@ Prediction ExtendedProblem::Predict(const Eigen::VectorXd& at, bool with_jacobia
   Prediction prediction;
   if (with_jacobian && covers_held_out_) {
     // The last such prediction becomes the fit's misfit.
-    memory->latest = with_.Linearise(at.head(own_), true, {}, nullptr, &baseline_.misfit);
-    memory->of_latest = at.head(own_);
+    memory->latest = with_.Linearise(at, true, {}, nullptr, &baseline_.misfit);
+    memory->of_latest = at;
     prediction = FittedPart(memory->latest);
   } else {
     memory->of_problem.correspondences.clear();  // each prediction finds its own
-    prediction = with_.Predict(at.head(own_), with_jacobian, kInfinity, &memory->of_problem);
+    prediction = with_.Predict(at, with_jacobian, kInfinity, &memory->of_problem);
   }
   if (!prediction.usable) return prediction;
-  prediction.residual += nuisance_columns_ * at.tail(at.size() - own_);
-  if (with_jacobian) {
-    prediction.jacobian.conservativeResize(Eigen::NoChange, at.size());
-    prediction.jacobian.rightCols(at.size() - own_) = nuisance_columns_;
-  }
+  prediction.residual = nuisances_.OfResidual(prediction.residual);
+  if (with_jacobian) prediction.jacobian = nuisances_.OfDerivatives(prediction.jacobian);
   return prediction;
 }
 
@@ -322,7 +315,8 @@ Eigen::VectorXd ExtendedProblem::WithEffectBy(double share, const Eigen::VectorX
   Eigen::VectorXd at(static_cast<Eigen::Index>(parameters_.size()));
   for (Eigen::Index k = 0; k < at.size(); ++k) at[k] = parameters_[k].start;
   at.head(shared_) = own.head(shared_);
-  at.segment(shared_ + added_, own_ - shared_ - added_) = own.tail(own_ - shared_ - added_);
+  const Eigen::Index of_recordings = at.size() - shared_ - added_;
+  at.tail(of_recordings) = own.tail(of_recordings);
   for (Eigen::Index k = shared_; k < shared_ + added_; ++k)
     if (const std::optional<double> null = NullOf(*effect_, study_.fitted[k]))
       at[k] = *null + share * (at[k] - *null);

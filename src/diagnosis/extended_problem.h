@@ -12,6 +12,7 @@
 #include "calibration/linear_misfit.h"
 #include "core/progress.h"
 #include "diagnosis/effect_ranking.h"
+#include "diagnosis/marginal_nuisances.h"
 #include "diagnosis/refit_store.h"
 
 namespace lacuna {
@@ -46,22 +47,22 @@ struct ExtendedFit {
 };
 
 // The baseline model with an effect and the adopted nuisances. The order of its parameters is:
-// those of the baseline study, those of the effect, the nuisance parameters of the recordings, and
-// the amounts of the adopted nuisances, which change the residual by the same columns as at the
-// baseline.
+// those of the baseline study, those of the effect, and the nuisance parameters of the recordings.
+// The amounts of the adopted nuisances, which change the residual by the same columns as at the
+// baseline, are integrated out: the residual of a fit is that of MarginalNuisances.
 class ExtendedProblem {
  public:
   // Null `effect`: the baseline with the adopted nuisances. The arguments must outlive the problem.
   ExtendedProblem(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted);
 
-  // The model with the effect, without the amounts of the adopted nuisances.
+  // The model with the effect, without the adopted nuisances.
   const CalibrationProblem& problem() const { return with_; }
   // The parameters of the effect, in the order of its card, at these values of the problem's
   // parameters.
   Eigen::VectorXd OwnParameters(const Eigen::VectorXd& values) const;
-  // Number of parameters without the amounts of the adopted nuisances.
-  Eigen::Index OwnCount() const { return own_; }
+  // The best amounts of the adopted nuisances. `misfit` has the rows of the baseline's.
+  Eigen::VectorXd AmountsAt(const LinearisedMisfit& misfit) const;
   // The estimates of the parameters that make the effect's size, and of its other fitted
   // parameters. Their intervals contain the error that the model may have in an unknown direction:
   // an error whose length is u σ, in the direction to which an estimate is most sensitive, moves it
@@ -71,8 +72,8 @@ class ExtendedProblem {
 
   // The start of a fit: the values that first order predicts to be the best, or a part of the way
   // to them, or the baseline's own values, whichever gives the smallest residual first. `refitted`:
-  // the baseline's own parameters and the amounts of the adopted nuisances after a fit without the
-  // effect, or empty; the effect added to these is the start where it gives a smaller residual.
+  // the baseline's own parameters after a fit without the effect, or empty; the effect added to
+  // these is the start where it gives a smaller residual.
   Eigen::VectorXd Start(const Eigen::VectorXd& refitted = {}) const;
   // The best start with the effect held near a given share of its predicted size and the other
   // parameters fitted: their dependence on the size is not linear. Empty: no fit succeeded. Throws
@@ -121,12 +122,11 @@ class ExtendedProblem {
   const ScoredVariant* effect_;
   PredictionStudy study_;
   CalibrationProblem with_;
-  // Number of the baseline study's parameters, of those of the effect, and of all parameters of
-  // with_, including those of the recordings.
-  Eigen::Index shared_, added_, own_;
-  Eigen::VectorXd residual_;          // whitened, of the baseline in the fitted frames
-  Eigen::MatrixXd nuisance_columns_;  // its changes by the adopted nuisances, per unit amount
-  bool covers_held_out_;              // derivatives of a search are taken in all frames
+  // Number of the baseline study's parameters and of those of the effect.
+  Eigen::Index shared_, added_;
+  Eigen::VectorXd residual_;     // whitened, of the baseline in the fitted frames
+  MarginalNuisances nuisances_;  // those adopted, in the fitted frames
+  bool covers_held_out_;         // derivatives of a search are taken in all frames
   std::vector<CalibratedParameter> parameters_;
 };
 
