@@ -16,7 +16,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   const Misfit& misfit = recording.misfit;
   const Eigen::Index components = misfit.Components();
   const Eigen::VectorXd residual = misfit.ResidualWithout(recording.place_offset);
-  double squares = 0, weighted = 0;
+  double squares = 0, weighted = 0, at_measured_places = 0;
   for (size_t f = 0; f < recording.fitted.size(); ++f) {
     if (static_cast<bool>(recording.fitted[f]) != fitted) continue;
     ++measure.frames;
@@ -25,6 +25,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
       if (misfit.count[at] == 0) continue;
       const double distance = residual.segment(components * at, components).norm();
       squares += distance * distance;
+      at_measured_places += misfit.residual.segment(components * at, components).squaredNorm();
       weighted += misfit.count[at] * distance * distance;
       measure.largest = std::max(measure.largest, distance);
       ++measure.points;
@@ -32,6 +33,7 @@ MisfitMeasure Measure(const RecordingMisfit& recording, bool fitted, double nois
   }
   if (measure.points == 0) return measure;
   measure.rms = std::sqrt(squares / measure.points);
+  measure.rms_at_measured_places = std::sqrt(at_measured_places / measure.points);
   measure.rms_over_sigma =
       std::sqrt(weighted / measure.points) / (std::sqrt(static_cast<double>(components)) * noise);
   return measure;

@@ -116,8 +116,13 @@ Comparison CompareRun(const std::filesystem::path& run) {
     const RecordedResiduals& residuals = comparison.residuals[r];
     ComparedRecording& recording = comparison.record.recordings[r];
     if (!recording.is_scan) recording.noise_floor = MeasureNoiseFloor(residuals, recording.noise);
-    for (const FrameRange& range : FittedAndHeldOutRanges(residuals))
-      recording.parts.push_back(ComparePart(residuals, range, recording));
+    for (const FrameRange& range : FittedAndHeldOutRanges(residuals)) {
+      ComparedPart part = ComparePart(residuals, range, recording);
+      const FittedRecording& fitted = record.recordings[r];
+      const MisfitMeasure& measure = part.fitted ? fitted.in_fit : fitted.held_out;
+      if (measure.points > 0) part.rms_at_measured_places = measure.rms_at_measured_places;
+      recording.parts.push_back(std::move(part));
+    }
   }
   ComparePairs(LoadManifest(run / "manifest.json").configuration, &comparison);
   return comparison;

@@ -66,7 +66,7 @@ Ledger ExtendUntilDone(const std::filesystem::path& run, const ExtensionOptions&
     ledger.models.push_back(MakeLedgerModel(ledger, at, record, parent, effect.type));
     if (!record.usable) {
       ledger.ending.reason = LedgerEnding::Reason::kNotFitted;
-    } else if (ledger.models.back().gain <= options.least_gain) {
+    } else if (!LowersError(ledger.models.back(), options.least_gain)) {
       ledger.ending = {LedgerEnding::Reason::kLittleGain, options.least_gain};
     } else if (ledger.models.back().may_be_zero) {
       ledger.ending.reason = LedgerEnding::Reason::kMayBeZero;

@@ -18,9 +18,9 @@ struct ExtensionOptions {
   DiagnosisOptions diagnosis;
   int most_effects = 8;      // the largest number of effects that are added; more: slower
   bool follow_best = false;  // true: after an ambiguous verdict, add the best; false: stop there
-  // The search ends when an added effect does not reduce the held-out error by more than this
-  // share. Higher: it ends earlier, also after an effect that is small or that another parameter
-  // has compensated for.
+  // The search ends when an added effect does not lower the held-out error by more than this share
+  // (LowersError). Higher: it ends earlier, also after an effect that is small or that another
+  // parameter has compensated for.
   double least_gain = 0;
 };
 

@@ -87,7 +87,8 @@ void DefineRecordings(py::module_* module) {
       .def_readonly("points", &MisfitMeasure::points)
       .def_readonly("rms", &MisfitMeasure::rms)
       .def_readonly("largest", &MisfitMeasure::largest)
-      .def_readonly("rms_over_sigma", &MisfitMeasure::rms_over_sigma);
+      .def_readonly("rms_over_sigma", &MisfitMeasure::rms_over_sigma)
+      .def_readonly("rms_at_measured_places", &MisfitMeasure::rms_at_measured_places);
   py::class_<FittedRecording>(*module, "Recording", "What a fit says of one recording")
       .def_readonly("name", &FittedRecording::name)
       .def_readonly("fitted", &FittedRecording::fitted)

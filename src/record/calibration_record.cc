@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 using Verdict = ParameterEstimate::Verdict;
 
-constexpr int kSchemaVersion = 3;
+constexpr int kSchemaVersion = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const std::vector<std::pair<Verdict, std::string>>& VerdictNames() {
@@ -35,12 +35,13 @@ json MeasureToJson(const MisfitMeasure& measure) {
           {"points", measure.points},
           {"rms_m", measure.rms},
           {"largest_m", measure.largest},
-          {"rms_over_sigma", measure.rms_over_sigma}};
+          {"rms_over_sigma", measure.rms_over_sigma},
+          {"rms_at_measured_places_m", measure.rms_at_measured_places}};
 }
 
 MisfitMeasure MeasureFromJson(const json& value) {
-  return {value.at("frames"), value.at("points"), value.at("rms_m"), value.at("largest_m"),
-          value.at("rms_over_sigma")};
+  return {value.at("frames"),    value.at("points"),         value.at("rms_m"),
+          value.at("largest_m"), value.at("rms_over_sigma"), value.at("rms_at_measured_places_m")};
 }
 
 json ScanToJson(const FittedScan& scan) {

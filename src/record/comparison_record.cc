@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kSchemaVersion = 2;
+constexpr int kSchemaVersion = 3;
 constexpr const char* kLongerThanData = "longer than the data";
 
 // Writes a correlation time or length, with a string in place of infinity, which JSON does not
@@ -139,6 +139,7 @@ json PartToJson(const ComparedPart& part) {
               {"worst_period", nullptr},
               {"trends", json::array()}};
   AddErrorSize(part.error, &object);
+  object["rms_at_measured_places_m"] = NumberOrNull(part.rms_at_measured_places);
   if (part.worst_period) object["worst_period"] = WorstPeriodToJson(*part.worst_period);
   for (const ErrorTrend& trend : part.trends) object["trends"].push_back(TrendToJson(trend));
   return object;
@@ -150,6 +151,7 @@ ComparedPart PartFromJson(const json& object) {
   part.from = object.at("from_s");
   part.to = object.at("to_s");
   part.error = ErrorSizeFromJson(object);
+  part.rms_at_measured_places = NumberOr(object.at("rms_at_measured_places_m"));
   part.point_rms = VectorFromJson(object.at("point_rms_m"));
   part.worst_point = object.at("worst_point");
   part.in_time = TimeCorrelationFromJson(object.at("time_correlation"));

@@ -98,6 +98,9 @@ struct ComparedPart {
   int frames = 0;
   double from = 0, to = 0;  // s, times of the first and last frame
   ErrorSize error;
+  // m, the rms error with each point at the place on the object where it was measured. In `error`,
+  // it is at the place that the fit gave it within the uncertainty of that measurement.
+  double rms_at_measured_places = kNotMeasured;
   Eigen::VectorXd point_rms;  // m, for each point; NaN where it was never observed
   int worst_point = -1;       // point with the largest rms; −1: no point was observed
   TimeCorrelation in_time;

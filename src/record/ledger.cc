@@ -49,6 +49,12 @@ json ErrorsToJson(const ModelErrors& errors) {
           {"has_held_out", errors.has_held_out}};
 }
 
+json ModelErrorsToJson(const ModelErrors& errors) {
+  json value = ErrorsToJson(errors);
+  value["held_out_rms_at_measured_places_m"] = errors.held_out_at_measured_places;
+  return value;
+}
+
 json DiagnosisToJson(const DiagnosisRecord& diagnosis, const std::vector<std::string>& added) {
   json tried = json::array();
   for (const RecordedEffect& effect : diagnosis.ranking) {
@@ -94,7 +100,7 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
                 {"usable", model.record.usable},
                 {"message", model.record.message},
                 {"noise_m", model.record.noise},
-                {"errors", ErrorsToJson(model.errors)},
+                {"errors", ModelErrorsToJson(model.errors)},
                 {"recordings", recordings},
                 {"parameters", parameters}};
   if (model.record.scan_noise > 0) entry["scan_noise_m"] = model.record.scan_noise;
@@ -102,6 +108,7 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
     entry["parent"] = ledger.models[static_cast<size_t>(model.parent)].name;
     entry["added"] = model.added;
     entry["gain"] = model.gain;
+    entry["gain_at_measured_places"] = model.gain_at_measured_places;
     entry["size_may_be_zero"] = model.may_be_zero;
   }
   if (model.diagnosis) {
@@ -117,12 +124,19 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
 
 const LedgerModel& Ledger::Best() const {
   CHECK(!models.empty());
-  const LedgerModel* best = &models.front();
-  for (const LedgerModel& model : models)
-    if (model.record.usable && !model.may_be_zero &&
-        model.errors.rms_over_sigma < best->errors.rms_over_sigma)
-      best = &model;
-  return *best;
+  size_t best = 0;
+  for (size_t k = 1; k < models.size(); ++k)
+    if (models[k].parent == static_cast<int>(best) && models[k].record.usable &&
+        !models[k].may_be_zero && LowersError(models[k], 0))
+      best = k;
+  return models[best];
+}
+
+bool LowersError(const LedgerModel& model, double share) {
+  // A smaller change of the held-out error is none. Larger: an effect counts that raises it more.
+  constexpr double kNoChange = 0.02;
+  return model.gain > share ||
+         (model.gain > -kNoChange && model.gain_at_measured_places > std::max(share, kNoChange));
 }
 
 bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& before,
@@ -143,11 +157,13 @@ bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& befor
 
 ModelErrors ErrorsOf(const CalibrationRecord& record) {
   struct Sum {
-    double square = 0, over_sigma = 0;
+    double square = 0, over_sigma = 0, at_measured_places = 0;
     int points = 0;
     void Add(const MisfitMeasure& measure) {
       square += measure.rms * measure.rms * measure.points;
       over_sigma += measure.rms_over_sigma * measure.rms_over_sigma * measure.points;
+      at_measured_places +=
+          measure.rms_at_measured_places * measure.rms_at_measured_places * measure.points;
       points += measure.points;
     }
     double Mean(double sum) const { return points > 0 ? std::sqrt(sum / points) : 0; }
@@ -163,6 +179,7 @@ ModelErrors ErrorsOf(const CalibrationRecord& record) {
   errors.held_out_rms = judged.Mean(judged.square);
   errors.rms_over_sigma = errors.without_nuisances = judged.Mean(judged.over_sigma);
   errors.has_held_out = held_out.points > 0;
+  errors.held_out_at_measured_places = judged.Mean(judged.at_measured_places);
   return errors;
 }
 
@@ -204,6 +221,9 @@ LedgerModel MakeLedgerModel(const Ledger& ledger, const std::filesystem::path& r
   model.moves = MovesBetween(before != nullptr ? before->record : CalibrationRecord{}, record);
   if (before != nullptr && record.usable && before->errors.rms_over_sigma > 0)
     model.gain = 1 - model.errors.rms_over_sigma / before->errors.rms_over_sigma;
+  if (before != nullptr && record.usable && before->errors.held_out_at_measured_places > 0)
+    model.gain_at_measured_places =
+        1 - model.errors.held_out_at_measured_places / before->errors.held_out_at_measured_places;
   model.may_be_zero =
       before != nullptr && before->diagnosis && SizeMayBeZero(record, *before->diagnosis, added);
   return model;

@@ -29,13 +29,15 @@ struct ParameterMove {
 // One model, fitted as a run of its own. The models form a tree; effects that a model's diagnosis
 // refitted, and that were not added to it, are its leaves.
 struct LedgerModel {
-  std::string name;                  // name of the run
-  std::filesystem::path run;         // its folder
-  int parent = -1;                   // index in Ledger::models; -1 for the first model
-  std::string added;                 // the effect that the parent does not have
-  CalibrationRecord record;          // usable or not
-  ModelErrors errors;                // over all recordings; 0 if the fit is not usable
-  double gain = 0;                   // relative reduction of the parent's held-out error (in σ)
+  std::string name;           // name of the run
+  std::filesystem::path run;  // its folder
+  int parent = -1;            // index in Ledger::models; -1 for the first model
+  std::string added;          // the effect that the parent does not have
+  CalibrationRecord record;   // usable or not
+  ModelErrors errors;         // over all recordings; 0 if the fit is not usable
+  double gain = 0;            // relative reduction of the parent's held-out error (in σ)
+  // The same with the points at the places where they were measured (in m).
+  double gain_at_measured_places = 0;
   std::vector<ParameterMove> moves;  // changes from the parent
   bool may_be_zero = false;          // as SizeMayBeZero says of the added effect
   std::optional<DiagnosisRecord> diagnosis;
@@ -49,7 +51,7 @@ struct LedgerEnding {
     kUndecided,    // the last verdict is ambiguous, and no effect is added by guess
     kMostEffects,  // as many effects were added as allowed
     kNotFitted,    // the last added effect could not be fitted
-    kLittleGain,   // the last added effect did not reduce the error by more than `least_gain`
+    kLittleGain,   // the last added effect does not lower the error by more than `least_gain`
     kMayBeZero,    // the size of the last added effect may be zero
   };
   Reason reason = Reason::kNone;
@@ -63,8 +65,8 @@ struct Ledger {
   bool HasEnded() const { return ending.reason != LedgerEnding::Reason::kNone; }
   // False if an added effect could not be fitted.
   bool IsUsable() const { return ending.reason != LedgerEnding::Reason::kNotFitted; }
-  // The usable model with the smallest held-out error, without effects whose size may be zero. At
-  // least one model is needed (CHECK).
+  // The model that the effects which count lead to: each of them is fitted, lowers the error
+  // (LowersError) and has a size that cannot be zero. At least one model is needed (CHECK).
   const LedgerModel& Best() const;
 };
 
@@ -73,6 +75,12 @@ struct Ledger {
 // ranked it. False where the fit is not usable or there is no such parameter.
 bool SizeMayBeZero(const CalibrationRecord& record, const DiagnosisRecord& before,
                    const std::string& added);
+
+// Whether a model's error is smaller than its parent's by more than this share: the held-out error
+// or, where that stays the same to 2 %, the held-out error with the points at the places where they
+// were measured. Places that are fitted within their uncertainty may hide a deformation that the
+// parent lacks.
+bool LowersError(const LedgerModel& model, double share);
 
 // The errors over all recordings of a fit.
 ModelErrors ErrorsOf(const CalibrationRecord& record);

@@ -17,6 +17,8 @@ struct MisfitMeasure {
   double rms = 0;             // m, rms length of the residual
   double largest = 0;         // m, largest length of the residual
   double rms_over_sigma = 0;  // rms of the components, each divided by its σ; 1 is noise alone
+  // m, as rms, with each point at the place where it was measured: the common part is counted.
+  double rms_at_measured_places = 0;
 };
 
 // The residuals of a model over all recordings of a study.
@@ -27,7 +29,9 @@ struct ModelErrors {
   // (mesh, time step, grip placement) have taken their best values.
   double without_nuisances = 0;
   double unfitted_rms_over_sigma = 0;  // recordings that were not fitted; 0 if there are none
-  bool has_held_out = false;           // if nothing was held out, the fitted frames are used
+  // m, as held_out_rms, with the points at the places where they were measured. Of fits only.
+  double held_out_at_measured_places = 0;
+  bool has_held_out = false;  // if nothing was held out, the fitted frames are used
   // The sum of the squares of the residuals of the recordings that were not fitted, each divided by
   // its σ. Not in files.
   double unfitted_squares = 0;

@@ -19,6 +19,8 @@ constexpr double kSignificant = 0.01;  // p-values below this are significant
 constexpr double kClearCorrelation = 0.2;  // correlation of neighbouring frames
 constexpr double kSameDirection = 0.5;     // agreement of the errors' directions, 0 to 1
 constexpr double kFarFromFloor = 2;        // ratio of the assumed noise to the measured one
+// An error at the measured places is reported where it is so many times that at the fitted places.
+constexpr double kHiddenByPlaces = 1.1;
 
 bool IsWhite(double p_value) { return p_value >= kSignificant; }
 
@@ -46,6 +48,15 @@ std::string SizeText(const ComparedRecording& recording, const ErrorSize& error)
         Millimetres(error.changing));
   }
   return text;
+}
+
+// The error with the points where they were measured, where the fitted places hide much of it.
+std::string PlacesText(const ComparedRecording& recording, const ComparedPart& part) {
+  if (!(part.rms_at_measured_places > kHiddenByPlaces * part.error.rms)) return "";
+  return fmt::format(
+      " With every {0} at the place where it was measured, the rms error is {1}: the fit has moved "
+      "the places within their uncertainty.",
+      recording.is_scan ? "patch" : "marker", Millimetres(part.rms_at_measured_places));
 }
 
 std::string TimeText(const TimeCorrelation& in_time) {
@@ -104,7 +115,8 @@ std::string DescribePart(const ComparedRecording& recording, const ComparedPart&
                                         part.fitted ? "fitted" : "held-out", part.from, part.to);
   if (part.error.points == 0)
     return title + fmt::format("no {} was observed.", recording.is_scan ? "patch" : "marker");
-  const std::string text = title + SizeText(recording, part.error) + NoiseText(recording, part);
+  const std::string text = title + SizeText(recording, part.error) + PlacesText(recording, part) +
+                           NoiseText(recording, part);
   const bool is_noise = part.error.rms_over_sigma < kBeyondNoise && IsWhite(part.in_time.p_value) &&
                         !(part.in_space.p_value < kSignificant);
   if (is_noise) return text + " Nothing here contradicts the model.";

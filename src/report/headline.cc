@@ -236,8 +236,18 @@ std::string AfterAdding(const ReportedModel& model, const ReportedModel& before)
     return fmt::format("The model with {} could not be fitted: {}.", title,
                        model.calibration.message);
   const double fall = 1 - model.errors.held_out_rms / before.errors.held_out_rms;
-  if (!(fall >= kSmallestFall))
-    return fmt::format("With {}, the error is {}.", title, Lengths(model.errors));
+  if (!(fall >= kSmallestFall)) {
+    const std::string stays = fmt::format("With {}, the error is {}", title, Lengths(model.errors));
+    const double at_measured_places = model.errors.held_out_at_measured_places;
+    const double before_there = before.errors.held_out_at_measured_places;
+    if (!(1 - at_measured_places / before_there >= kSmallestFall)) return stays + ".";
+    return stays +
+           fmt::format(
+               ", but with the points at the places where they were measured, it falls from "
+               "{:.3f} mm to {:.3f} mm: without {}, displaced places hide a part of the "
+               "error.",
+               1e3 * before_there, 1e3 * at_measured_places, title);
+  }
   return fmt::format("With {}, the error falls by {:.0f} % to {}.", title, 100 * fall,
                      Lengths(model.errors));
 }

@@ -234,6 +234,11 @@ TEST(CalibrationProblem, KnowsMisplacedMarkersFromFittedRecordings) {
   EXPECT_NEAR(std::abs(together[0].place_offset(0, 7)), 1.5e-3, 2e-4);
   // The meshes differ.
   EXPECT_LT(together[0].held_out.rms, 3e-4);
+  // At the measured places, one of the markers is 1.5 mm off in every frame.
+  const MisfitMeasure& measure = together[0].held_out;
+  const double markers = measure.points / static_cast<double>(measure.frames);
+  EXPECT_NEAR(std::pow(measure.rms_at_measured_places, 2) - std::pow(measure.rms, 2),
+              std::pow(1.5e-3, 2) / markers, 0.3 * std::pow(1.5e-3, 2) / markers);
 }
 
 // On two cores, with an effect that both recordings share and that remembers.

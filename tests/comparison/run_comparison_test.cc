@@ -32,8 +32,8 @@ constexpr int kMarkers = 4, kFrames = 120, kFitted = 80;
 using Planted = std::function<Eigen::Vector3d(int frame, int marker)>;
 
 json Measure() {
-  return {
-      {"frames", 1}, {"points", 1}, {"rms_m", 0.0}, {"largest_m", 0.0}, {"rms_over_sigma", 0.0}};
+  return {{"frames", 1},      {"points", 1},           {"rms_m", 0.0},
+          {"largest_m", 0.0}, {"rms_over_sigma", 0.0}, {"rms_at_measured_places_m", 0.0}};
 }
 
 // Writes the folder that `lacuna fit` would. The object rests for 30 frames, then swings; the
@@ -51,7 +51,7 @@ CsvTable WriteRun(const std::filesystem::path& run, const std::vector<std::strin
                           {"held_out", Measure()}});
   }
   directory.Begin({{"recordings", entries}}, {}, 0);
-  const json calibration = {{"schema_version", 3},
+  const json calibration = {{"schema_version", 4},
                             {"experiment", "../experiment.yaml"},
                             {"usable", true},
                             {"message", ""},

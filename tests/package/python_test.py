@@ -62,6 +62,7 @@ class PythonModule(unittest.TestCase):
             errors = getattr(recording, part)
             self.assertEqual(errors.rms, stored[part]["rms_m"])
             self.assertEqual(errors.rms_over_sigma, stored[part]["rms_over_sigma"])
+            self.assertEqual(errors.rms_at_measured_places, stored[part]["rms_at_measured_places_m"])
         self.assertGreater(recording.held_out.rms, recording.in_fit.rms)
 
     def test_motion_has_measured_and_predicted_places(self):

@@ -63,6 +63,26 @@ TEST(Ledger, AnEffectWhoseSizeMayBeZeroDoesNotCount) {
   EXPECT_EQ(ledger.Best().name, "bar");
 }
 
+// The places of the points may hide, within their uncertainty, what an effect explains.
+TEST(Ledger, AnEffectCountsThatTheFittedPlacesHide) {
+  Ledger ledger = SmallLedger();
+  LedgerModel& model = ledger.models.back();
+  model.gain = -0.001;
+  model.gain_at_measured_places = 0.4;
+  EXPECT_TRUE(LowersError(model, 0));
+  EXPECT_TRUE(LowersError(model, 0.3));
+  EXPECT_FALSE(LowersError(model, 0.5));
+  EXPECT_EQ(ledger.Best().name, "bar+drag");
+  model.gain = -0.1;  // no longer the same error
+  EXPECT_FALSE(LowersError(model, 0));
+  EXPECT_EQ(ledger.Best().name, "bar");
+  model.gain = -0.001;
+  model.gain_at_measured_places = 0.01;
+  EXPECT_FALSE(LowersError(model, 0));
+  model.gain = 0.001;
+  EXPECT_TRUE(LowersError(model, 0));
+}
+
 TEST(Ledger, IsWrittenAsATree) {
   const TemporaryFolder folder;
   WriteLedgerFile(SmallLedger(), folder.Path());

@@ -58,6 +58,15 @@ TEST(ComparisonReport, SaysHowLargeTheErrorIsAndThatItIsNotNoise) {
               HasSubstr("grows with speed (rank correlation 0.60), from 0.100 mm at 2 mm/s to "
                         "0.400 mm at 80 mm/s."));
   EXPECT_THAT(text, Not(HasSubstr("the same in all frames")));
+  EXPECT_THAT(text, Not(HasSubstr("the place where it was measured")));
+}
+
+TEST(ComparisonReport, SaysHowMuchTheFittedPlacesHide) {
+  ComparisonRecord record = Example();
+  record.recordings[0].parts[0].rms_at_measured_places = 1.4e-3;
+  EXPECT_THAT(DescribeComparison(record).at(0),
+              HasSubstr("With every marker at the place where it was measured, the rms error is "
+                        "1.400 mm: the fit has moved the places within their uncertainty."));
 }
 
 TEST(ComparisonReport, TheTableHasOneLineForEachPart) {

@@ -108,6 +108,10 @@ TEST(Headline, SaysThatAnEffectWhoseSizeMayBeZeroDoesNotCount) {
   EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag, the error falls by 5 % to"));
   after.errors.held_out_rms = 2.1e-4;
   EXPECT_THAT(Headline({before, after}).back(), HasSubstr("With drag, the error is 0.210 mm"));
+  before.errors.held_out_at_measured_places = 5e-4;
+  after.errors.held_out_at_measured_places = 3e-4;
+  EXPECT_THAT(Headline({before, after}).back(),
+              HasSubstr("where they were measured, it falls from 0.500 mm to 0.300 mm"));
 }
 
 TEST(Headline, NamesTheRecordingOfTheLargestErrorWhereThereAreSeveral) {
