@@ -21,9 +21,9 @@
 namespace lacuna {
 namespace {
 
-// Incremented whenever a change of the code changes the result of the stage.
+// Incremented whenever a change of the code changes the result of the stage, or its files.
 constexpr int kMeshVersion = 1;
-constexpr int kCalibrationVersion = 25;
+constexpr int kCalibrationVersion = 26;
 
 // What the model has besides the fitted parameters. A vector none of whose components is fitted is
 // one entry.
