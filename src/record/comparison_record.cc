@@ -285,6 +285,12 @@ void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::
   WriteFileAtomically(file, document.dump(2) + "\n");
 }
 
+bool IsComparisonOf(const std::string& fit, const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const json document = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  return !document.is_object() || !document.contains("fit") || document.at("fit") == fit;
+}
+
 ComparisonRecord ReadComparisonFile(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, "no such file; `lacuna compare` writes it");

@@ -171,10 +171,14 @@ struct ComparisonRecord {
   std::vector<std::string> notes;  // what could not be computed, and why
 };
 
-// Writes the record as JSON (schema_version 2), atomically, together with its description in words.
+// Writes the record as JSON, atomically, together with its description in words.
 // Throws InputError when the file cannot be written.
 void WriteComparisonFile(const ComparisonRecord& record, const std::vector<std::string>& text,
                          const std::filesystem::path& file);
+
+// Whether a comparison, of this format or another, belongs to the fit with this hash. True for a
+// file that cannot be read, which ReadComparisonFile() refuses.
+bool IsComparisonOf(const std::string& fit, const std::filesystem::path& file);
 
 // Throws InputError when the file is absent, damaged or of another schema version.
 ComparisonRecord ReadComparisonFile(const std::filesystem::path& file);

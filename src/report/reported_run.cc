@@ -47,11 +47,10 @@ ReportedModel OpenModel(const fs::path& folder, const std::string& added,
         what, model.name, command));
   };
   if (const fs::path file = folder / "comparison/comparison.json"; fs::exists(file)) {
-    model.comparison = ReadComparisonFile(file);
-    if (model.comparison->fit != model.fit) {
-      model.comparison.reset();
+    if (IsComparisonOf(model.fit, file))
+      model.comparison = ReadComparisonFile(file);
+    else
       leave_out("comparison", "compare");
-    }
   }
   if (const fs::path file = folder / "diagnosis/diagnosis.json"; fs::exists(file)) {
     if (IsDiagnosisOf(model.fit, folder / "diagnosis")) {

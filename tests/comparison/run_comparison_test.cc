@@ -335,6 +335,10 @@ TEST(Comparison, AStoredComparisonOfAnotherFormatIsRefused) {
   };
   EXPECT_THAT(complaint(R"({"schema_version": 1})"), HasSubstr("run `lacuna compare` again"));
   EXPECT_THAT(complaint("{}"), HasSubstr("is not a comparison"));
+  // That of an earlier fit is told apart without being read.
+  complaint(R"({"schema_version": 1, "fit": "before"})");
+  EXPECT_FALSE(IsComparisonOf("now", folder / "comparison.json"));
+  EXPECT_TRUE(IsComparisonOf("before", folder / "comparison.json"));
 }
 
 TEST(Comparison, ExplainsWhyAFolderCannotBeCompared) {
