@@ -39,6 +39,15 @@ const RankedEffect* FirstEffect(const Diagnosis& diagnosis, const std::vector<st
   return nullptr;
 }
 
+// The largest evidence that a single effect has after its refit, or the adequacy test gives one; at
+// least 0.
+double BestEvidence(const Diagnosis& diagnosis) {
+  double best = std::max(0.0, diagnosis.decision.adequacy.further_evidence);
+  for (const RankedEffect& effect : diagnosis.ranking)
+    if (effect.HasUsableRefit()) best = std::max(best, effect.evidence);
+  return best;
+}
+
 VerdictReason ErrorReduction(const Diagnosis& diagnosis, const RankedEffect& effect) {
   const bool adjusted =
       std::any_of(diagnosis.nuisances.begin(), diagnosis.nuisances.end(),
@@ -75,10 +84,10 @@ void ExplainWithoutName(const Diagnosis& diagnosis, Conclusion* conclusion) {
 void ExplainUnknown(const Diagnosis& diagnosis, Conclusion* conclusion) {
   const RecordedAdequacy& adequacy = diagnosis.decision.adequacy;
   const RankedEffect* best = FirstEffect(diagnosis, conclusion->effects);
-  if (best == nullptr || !best->HasUsableRefit()) {
-    conclusion->reasons = {ErrorUnexplained{diagnosis.errors.held_out_rms,
-                                            diagnosis.errors.rms_over_sigma,
-                                            diagnosis.decision.adequacy.further_evidence}};
+  // A member of a pair may have no evidence of its own.
+  if (best == nullptr || !best->HasUsableRefit() || !(best->evidence > 0)) {
+    conclusion->reasons = {ErrorUnexplained{
+        diagnosis.errors.held_out_rms, diagnosis.errors.rms_over_sigma, BestEvidence(diagnosis)}};
     return;
   }
   const std::string& type = best->scored.candidate.type;

@@ -131,6 +131,36 @@ TEST(Diagnosis, HasNoPowerIfNoEffectIsDetectable) {
   EXPECT_EQ(diagnosis.verdict, Verdict::kNoPower) << ExplainVerdict(RecordOf(diagnosis));
 }
 
+// The members of a pair are named together, and may explain nothing one by one.
+TEST(Diagnosis, AnEffectWithoutEvidenceExplainsNoPartOfWhatIsUnknown) {
+  Diagnosis diagnosis;
+  diagnosis.errors.rms_over_sigma = 20;
+  diagnosis.baseline_rms_over_sigma = 10;
+  for (const auto& [type, evidence] : {std::pair("drag", -600.0), std::pair("gravity", 7.0)}) {
+    RankedEffect& effect = diagnosis.ranking.emplace_back();
+    effect.scored.candidate.type = type;
+    effect.refitted = true;
+    effect.evidence = evidence;
+    effect.rms_over_sigma = 9;
+  }
+  Decision decision;
+  decision.verdict = Verdict::kNotInLibrary;
+  decision.names = {"drag", "gravity"};
+  Conclude(decision, &diagnosis);
+  ASSERT_EQ(diagnosis.reasons.size(), 1u);
+  const auto* unexplained = std::get_if<ErrorUnexplained>(&diagnosis.reasons[0]);
+  ASSERT_NE(unexplained, nullptr);
+  EXPECT_EQ(unexplained->best_evidence, 7);
+  EXPECT_EQ(unexplained->rms_over_sigma, 20);
+
+  diagnosis.ranking[0].evidence = 600;
+  Conclude(decision, &diagnosis);
+  ASSERT_EQ(diagnosis.reasons.size(), 1u);
+  const auto* remains = std::get_if<ResidualRemains>(&diagnosis.reasons[0]);
+  ASSERT_NE(remains, nullptr);
+  EXPECT_EQ(remains->effect, "drag");
+}
+
 TEST(Diagnosis, IsRecordedWithTheVerdictAndEveryEffect) {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::kNotInLibrary;

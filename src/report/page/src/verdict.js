@@ -62,10 +62,12 @@ export function verdictBox(diagnosis, subject, isFirst, isInVain) {
   return h('div', { class: `verdict verdict-${diagnosis.verdict.replaceAll(' ', '-')}` },
     h('p', { class: 'verdict-head' },
       subject ? h('span', { class: 'muted' }, `${subject}: `) : null,
-      h('span', { class: 'verdict-name' }, isInVain ? IN_VAIN : title), effects.length > 0 ? [' ', effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
+      h('span', { class: 'verdict-name' }, isInVain ? IN_VAIN : title), effects.length > 0 ? [' ', diagnosis.verdict === 'not in library' ? h('span', { class: 'muted' }, 'closest: ') : null, effects.map((name, k) => [k > 0 ? ' ' : '', h('code', { class: 'clip' }, name)])] : null),
     h('p', { class: 'explain' }, isInVain ? 'Once fitted, its size may be 0.' : meaning, ' ', adequacyText(diagnosis.decision)),
     groups.length > 0 ? h('div', { class: 'probabilities', role: 'list', 'aria-label': 'Probability of what is missing' },
-      h('p', { class: 'small-head' }, 'How sure: the probability of each effect that could be missing'),
+      h('p', { class: 'small-head' }, diagnosis.verdict === 'not in library'
+        ? 'What comes closest: probabilities among the hypotheses that were tried, none of which suffices'
+        : 'How sure: the probability of each effect that could be missing'),
       groups.map((group) => [probabilityRow(group.title, group.probability, false),
         group.members.filter((member) => member.probability >= WORTH_NAMING).map((member) => probabilityRow(member.name, member.probability, true))])) : null);
 }
