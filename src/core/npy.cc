@@ -172,6 +172,7 @@ Eigen::Matrix<Value, Eigen::Dynamic, Eigen::Dynamic> ReadMatrix(const std::files
   const Eigen::Index columns = array.shape.size() == 2 ? array.shape[1] : 1;
   using Matrix = Eigen::Matrix<Value, Eigen::Dynamic, Eigen::Dynamic>;
   using RowMajor = Eigen::Matrix<Value, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  if (values.empty()) return Matrix(rows, columns);  // without a loop over the columns
   if (array.fortran_order) return Eigen::Map<const Matrix>(values.data(), rows, columns);
   return Eigen::Map<const RowMajor>(values.data(), rows, columns);
 }

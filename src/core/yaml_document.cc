@@ -1,10 +1,12 @@
 #include "core/yaml_document.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <sstream>
 #include <vector>
 
 #include "core/error.h"
@@ -42,13 +44,38 @@ void RefuseRepeatedKeys(const YAML::Node& root, const std::filesystem::path& fil
   }
 }
 
+// Where a document starts.
+class StartOfDocument : public YAML::EventHandler {
+ public:
+  const YAML::Mark& mark() const { return mark_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  YAML::Mark mark_;
+};
+
 YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
   YAML::Node root;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      Fail(file, documents[1].Mark(), "a second YAML document starts here; expected one per file");
-    if (!documents.empty()) root = documents[0];
+    root = YAML::Load(text);
+    // YAML::LoadAll() does not end for some damaged files.
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    StartOfDocument first, second;
+    if (parser.HandleNextDocument(first) && parser.HandleNextDocument(second))
+      Fail(file, second.mark(), "a second YAML document starts here; expected one per file");
   } catch (const YAML::ParserException& problem) {
     Fail(file, problem.mark, "is not valid YAML: " + problem.msg);
   }
@@ -96,7 +123,8 @@ void PutInPieces(YAML::Node node, const std::string& path,
         given.is_absolute() ? given : (files.back().parent_path() / given).lexically_normal();
     if (std::find(files.begin(), files.end(), file) != files.end())
       Fail(files.back(), mark, below("use") + ": " + file.string() + " would include itself");
-    if (!std::filesystem::is_regular_file(file))
+    std::error_code no_file;  // as for a name that is too long
+    if (!std::filesystem::is_regular_file(file, no_file))
       Fail(files.back(), mark, below("use") + ": there is no file " + file.string());
     YAML::Node piece = Parse(ReadWholeFile(file), file);
     std::vector<std::filesystem::path> inner = files;

@@ -160,6 +160,64 @@ OffHeader ReadOffHeader(TextScanner& scanner) {
   return header;
 }
 
+// The numbers of a binary OFF file, which are big-endian.
+class BinaryOff {
+ public:
+  BinaryOff(const std::filesystem::path& file, std::string_view rest) : file_(file), rest_(rest) {}
+
+  uint32_t Bits(const char* what) {
+    if (rest_.size() < 4)
+      throw InputError({file_.string()}, fmt::format("is truncated: it ends before {}", what));
+    uint32_t bits = 0;
+    for (int k = 0; k < 4; ++k) bits = bits << 8 | static_cast<unsigned char>(rest_[k]);
+    rest_.remove_prefix(4);
+    return bits;
+  }
+  double Number(const char* what) {
+    const double number = std::bit_cast<float>(Bits(what));
+    if (!std::isfinite(number))
+      throw InputError({file_.string()}, fmt::format("holds {} that is not finite", what));
+    return number;
+  }
+  // A count of things that take at least four bytes each.
+  uint32_t Count(const char* what) {
+    const uint32_t count = Bits(what);
+    if (count > rest_.size() / 4)
+      throw InputError({file_.string()},
+                       fmt::format("is truncated or malformed: {} is {}", what, count));
+    return count;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::string_view rest_;
+};
+
+PolygonSoup ReadBinaryOff(const std::filesystem::path& file, std::string_view numbers) {
+  BinaryOff body(file, numbers);
+  PolygonSoup soup;
+  const uint32_t vertices = body.Count("the number of vertices");
+  const uint32_t faces = body.Count("the number of faces");
+  body.Bits("the number of edges");
+  for (uint32_t v = 0; v < vertices; ++v) {
+    Eigen::Vector3d point;
+    for (double& coordinate : point) coordinate = body.Number("a coordinate");
+    soup.points.push_back(point);
+  }
+  for (uint32_t f = 0; f < faces; ++f) {
+    std::vector<size_t> polygon(body.Count("the number of corners"));
+    for (size_t& corner : polygon) {
+      corner = body.Bits("a corner");
+      if (corner >= vertices)
+        throw InputError({file.string()},
+                         fmt::format("face {} of {}: there is no vertex {}", f + 1, faces, corner));
+    }
+    soup.polygons.push_back(std::move(polygon));
+    for (uint32_t k = body.Count("the number of colours"); k > 0; --k) body.Bits("a colour");
+  }
+  return soup;
+}
+
 }  // namespace
 
 PolygonSoup ReadObj(const std::filesystem::path& file) {
@@ -220,6 +278,10 @@ PolygonSoup ReadStl(const std::filesystem::path& file) {
 }
 
 PolygonSoup ReadOff(const std::filesystem::path& file) {
+  constexpr std::string_view kBinary = "OFF BINARY";
+  if (const std::string content = ReadWholeFile(file); content.starts_with(kBinary))
+    return ReadBinaryOff(file, std::string_view(content).substr(
+                                   std::min(content.find('\n'), content.size() - 1) + 1));
   PolygonSoup soup;
   TextScanner scanner(file, '#');
   const OffHeader header = ReadOffHeader(scanner);

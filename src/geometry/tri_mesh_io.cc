@@ -1,4 +1,3 @@
-#include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
@@ -6,10 +5,13 @@
 #include <bit>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/text_file.h"
 #include "geometry/mesh_io.h"
+#include "geometry/ply_header.h"
 #include "geometry/polygon_soup.h"
 #include "geometry/text_scanner.h"
 
@@ -17,9 +19,16 @@ namespace lacuna {
 namespace {
 
 PolygonSoup ReadPly(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be opened");
-  if (stream.peek() != 'p') throw InputError({file.string()}, "is not a PLY file");
+  const std::string content = ReadWholeFile(file);
+  const PlyHeader header = ReadPlyHeader(file, content);
+  CheckPlyBody(file, content, header);
+  if (const PlyElement* vertices = header.Find("vertex"))
+    for (const PlyProperty& property : vertices->properties)
+      if ((property.name == "x" || property.name == "y" || property.name == "z") &&
+          (property.is_list || !property.is_floating))
+        throw InputError({file.string()},
+                         fmt::format("holds \"{}\" not as floating-point numbers", property.name));
+  std::istringstream stream(content);
   std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
   PolygonSoup soup;
   const bool is_whole = CGAL::IO::read_PLY(stream, points, soup.polygons);
@@ -33,25 +42,10 @@ PolygonSoup ReadPly(const std::filesystem::path& file) {
   return soup;
 }
 
-// The text forms are read here, the binary one by CGAL.
-PolygonSoup ReadTextOrBinaryOff(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string first_line;
-  std::getline(stream, first_line);
-  if (first_line.find("BINARY") == std::string::npos) return ReadOff(file);
-  stream.seekg(0);
-  std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
-  PolygonSoup soup;
-  const bool is_whole = CGAL::IO::read_OFF(stream, points, soup.polygons);
-  if (!is_whole) throw InputError({file.string()}, "is a binary OFF file that is damaged");
-  for (const auto& point : points) soup.points.emplace_back(point.x(), point.y(), point.z());
-  return soup;
-}
-
 PolygonSoup ReadSoup(const std::filesystem::path& file) {
   using Reader = PolygonSoup (*)(const std::filesystem::path&);
   static const std::map<std::string, Reader> readers{
-      {".ply", &ReadPly}, {".obj", &ReadObj}, {".stl", &ReadStl}, {".off", &ReadTextOrBinaryOff}};
+      {".ply", &ReadPly}, {".obj", &ReadObj}, {".stl", &ReadStl}, {".off", &ReadOff}};
   const auto reader = readers.find(LowerExtension(file));
   if (reader == readers.end()) {
     throw InputError({file.string()},

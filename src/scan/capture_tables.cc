@@ -137,13 +137,13 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
   MarkerTracks tracks;
   tracks.length_unit = "mm";
   double rate = 0;
-  size_t announced = 0, row = 0;
+  double announced = 0;  // number of frames
+  size_t row = 0;
   for (; row < lines.size(); ++row) {
     const std::vector<std::string_view> fields = SplitFields(lines[row], '\t');
     if (!IsVariable(fields[0])) break;
     if (fields.size() < 2) continue;
-    if (fields[0] == "NO_OF_FRAMES")
-      announced = static_cast<size_t>(std::max(0.0, NumberIn(file, lines[row], row, fields[1])));
+    if (fields[0] == "NO_OF_FRAMES") announced = NumberIn(file, lines[row], row, fields[1]);
     if (fields[0] == "FREQUENCY") rate = ParseNumber(fields[1]).value_or(0);
     if (fields[0] == "DATA_INCLUDED" && fields[1] != "3D")
       FailAt(file, row, fmt::format("holds {} data; export 3D data", fields[1]));
@@ -181,7 +181,7 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
     else if (rate > 0)
       times.push_back(static_cast<double>(tracks.positions.size() - 1) / rate);
   }
-  if (announced > 0 && tracks.positions.size() != announced)
+  if (announced > 0 && static_cast<double>(tracks.positions.size()) != announced)
     throw InputError({file.string()}, fmt::format("holds {} frames where NO_OF_FRAMES says {}",
                                                   tracks.positions.size(), announced));
   SetTimes(file, times, rate, use, &tracks);

@@ -1,0 +1,177 @@
+#include "scan/pcd_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include "core/error.h"
+#include "scan/delimited_table.h"
+
+namespace lacuna {
+namespace {
+
+constexpr size_t kMostPoints = size_t{1} << 31;  // PCL counts in 32 bits
+constexpr double kValuesPerByte = 300;           // no LZF stream packs more
+
+class HeaderReader {
+ public:
+  HeaderReader(const std::filesystem::path& file, std::string_view content)
+      : file_(file), content_(content) {}
+
+  PcdHeader Read() {
+    while (!has_data_) {
+      const size_t end = content_.find('\n', at_);
+      if (end == std::string_view::npos)
+        throw InputError({file_.string()}, "is not a PCD file or ends within its header");
+      ++line_;
+      const std::string_view line = Trim(content_.substr(at_, end - at_));
+      at_ = end + 1;
+      if (!line.empty() && line[0] != '#') Take(SplitFields(line, ' '));
+    }
+    header_.body = at_;
+    Complete();
+    return std::move(header_);
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& message) const {
+    throw InputError({file_.string(), line_}, message);
+  }
+
+  size_t CountIn(std::string_view word) const {
+    size_t count = 0;
+    const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), count);
+    if (problem != std::errc() || end != word.data() + word.size() || count > kMostPoints)
+      Fail(fmt::format("got \"{}\"; expected a count", word));
+    return count;
+  }
+
+  void Take(std::vector<std::string_view> words) {
+    const std::string_view key = words[0];
+    words.erase(words.begin());
+    constexpr std::array kKeys{"VERSION", "FIELDS", "COLUMNS",   "SIZE",   "TYPE", "COUNT",
+                               "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+      Fail(fmt::format("is not a PCD file, or its header is damaged: got \"{}\"", key));
+    if (words.empty()) Fail(fmt::format("\"{}\" has no value", key));
+    if (key == "FIELDS" || key == "COLUMNS") {
+      if (!header_.fields.empty()) Fail("names the fields a second time");
+      header_.fields.assign(words.begin(), words.end());
+      for (const std::string& field : header_.fields)
+        if (!std::all_of(field.begin(), field.end(), [](char c) { return c > ' ' && c <= '~'; }))
+          Fail("the name of a field holds characters that cannot be printed");
+      return;
+    }
+    const bool is_per_field = key == "SIZE" || key == "TYPE" || key == "COUNT";
+    if (is_per_field && words.size() != header_.fields.size())
+      Fail(
+          fmt::format("{} has {} entries for {} fields", key, words.size(), header_.fields.size()));
+    if (key == "SIZE") {
+      sizes_.clear();
+      for (const std::string_view word : words) {
+        sizes_.push_back(CountIn(word));
+        if (sizes_.back() != 1 && sizes_.back() != 2 && sizes_.back() != 4 && sizes_.back() != 8)
+          Fail(fmt::format("got \"{}\"; expected a size of 1, 2, 4 or 8 bytes", word));
+      }
+    } else if (key == "TYPE") {
+      header_.types.clear();
+      for (const std::string_view word : words) {
+        if (word != "F" && word != "I" && word != "U")
+          Fail(fmt::format("got \"{}\"; expected F, I or U", word));
+        header_.types.push_back(word[0]);
+      }
+    } else if (key == "COUNT") {
+      header_.counts.clear();
+      for (const std::string_view word : words) {
+        header_.counts.push_back(CountIn(word));
+        if (header_.counts.back() == 0) Fail("got 0; a field has at least one value");
+      }
+    } else if (key == "WIDTH") {
+      width_ = CountIn(words[0]);
+    } else if (key == "HEIGHT") {
+      height_ = CountIn(words[0]);
+    } else if (key == "POINTS") {
+      points_ = CountIn(words[0]);
+    } else if (key == "DATA") {
+      has_data_ = true;
+      header_.data = words[0] == "ascii"               ? PcdHeader::Data::kText
+                     : words[0] == "binary"            ? PcdHeader::Data::kBinary
+                     : words[0] == "binary_compressed" ? PcdHeader::Data::kCompressed
+                                                       : throw Unknown(words[0]);
+    } else if (key == "VIEWPOINT") {
+      if (words.size() != 7) Fail(fmt::format("VIEWPOINT has {} of 7 numbers", words.size()));
+      for (const std::string_view word : words)
+        if (!ParseNumber(word)) Fail(fmt::format("got \"{}\"; expected a number", word));
+    }
+  }
+
+  InputError Unknown(std::string_view data) const {
+    return InputError({file_.string(), line_},
+                      fmt::format("got \"{}\"; expected ascii, binary or binary_compressed", data));
+  }
+
+  void Complete() {
+    const auto fail = [&](const std::string& message) {
+      throw InputError({file_.string()}, message);
+    };
+    if (header_.fields.empty()) fail("has a PCD header without FIELDS");
+    if (sizes_.empty() || header_.types.empty()) fail("has a PCD header without SIZE or TYPE");
+    for (size_t k = 0; k < sizes_.size(); ++k)
+      if (header_.types[k] == 'F' && sizes_[k] < 4)
+        fail(fmt::format("holds \"{}\" as numbers of {} bytes; floating-point numbers have 4 or 8",
+                         header_.fields[k], sizes_[k]));
+    if (header_.counts.empty()) header_.counts.assign(header_.fields.size(), 1);
+    if (!width_) fail("has a PCD header without WIDTH");
+    header_.points = points_.value_or(*width_ * height_);
+    if (header_.points != *width_ * height_)
+      fail(fmt::format("announces {} points and an image of {} × {}", header_.points, *width_,
+                       height_));
+    // A value takes a byte at least, as a text two with the blank behind it.
+    double values = 0, bytes = 0;
+    for (size_t k = 0; k < sizes_.size(); ++k) {
+      values += static_cast<double>(header_.counts[k]);
+      bytes += static_cast<double>(header_.counts[k] * sizes_[k]);
+    }
+    const double of_file = static_cast<double>(content_.size() - header_.body);
+    const double needed = header_.data == PcdHeader::Data::kText     ? values
+                          : header_.data == PcdHeader::Data::kBinary ? bytes
+                                                                     : bytes / kValuesPerByte;
+    if (static_cast<double>(header_.points) * needed > of_file)
+      fail(
+          fmt::format("is truncated or malformed: its header announces {} points", header_.points));
+    if (header_.data != PcdHeader::Data::kCompressed) return;
+    // The body begins with the numbers of its bytes, compressed and not.
+    uint32_t numbers[2] = {};
+    if (content_.size() - header_.body < sizeof(numbers)) fail("ends before its points");
+    std::memcpy(numbers, content_.data() + header_.body, sizeof(numbers));
+    if (numbers[0] > content_.size() - header_.body - sizeof(numbers) ||
+        static_cast<double>(numbers[1]) != static_cast<double>(header_.points) * bytes)
+      fail(
+          fmt::format("is truncated or malformed: {} compressed bytes stand for {}, {} points of "
+                      "{} bytes are announced",
+                      numbers[0], numbers[1], header_.points, bytes));
+  }
+
+  const std::filesystem::path& file_;
+  const std::string_view content_;
+  size_t at_ = 0;
+  int line_ = 0;
+  bool has_data_ = false;
+  std::vector<size_t> sizes_;
+  std::optional<size_t> width_, points_;
+  size_t height_ = 1;
+  PcdHeader header_;
+};
+
+}  // namespace
+
+PcdHeader ReadPcdHeader(const std::filesystem::path& file, std::string_view content) {
+  return HeaderReader(file, content).Read();
+}
+
+}  // namespace lacuna

@@ -1,0 +1,32 @@
+// The header of a PCD file of the Point Cloud Library.
+//
+// PCL trusts the header: other numbers of sizes than of fields, or counts that do not fit together,
+// make it leave its memory. A header that is read here is known to be sound.
+#ifndef LACUNA_SCAN_PCD_HEADER_H_
+#define LACUNA_SCAN_PCD_HEADER_H_
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lacuna {
+
+struct PcdHeader {
+  enum class Data { kText, kBinary, kCompressed };
+  std::vector<std::string> fields;
+  std::vector<char> types;     // F, I or U, one for each field
+  std::vector<size_t> counts;  // of the values of each field
+  size_t points = 0;
+  Data data = Data::kText;
+  size_t body = 0;  // position of the first byte behind the header
+};
+
+// `content`: the whole file. Throws InputError with the file and the line for a header that is
+// incomplete, holds an unknown word or numbers that do not fit together, or announces more values
+// than the file can hold or its compressed body says.
+PcdHeader ReadPcdHeader(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace lacuna
+
+#endif  // LACUNA_SCAN_PCD_HEADER_H_
