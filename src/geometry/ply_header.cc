@@ -62,7 +62,8 @@ class HeaderReader {
       const std::string_view key = words.empty() ? "" : words[0];
       if (key == "end_header") break;
       if (key == "format") {
-        if (words.size() < 2) Fail("names no format");
+        if (has_format) Fail("names the format a second time");
+        if (words.size() != 3 || words[2] != "1.0") Fail("expected format NAME 1.0");
         has_format = true;
         header_.is_text = words[1] == "ascii";
         header_.is_big_endian = words[1] == "binary_big_endian";
