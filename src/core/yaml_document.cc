@@ -44,26 +44,35 @@ void RefuseRepeatedKeys(const YAML::Node& root, const std::filesystem::path& fil
   }
 }
 
-// Where a document starts.
-class StartOfDocument : public YAML::EventHandler {
+// Where the first node of a document stands.
+class FirstNode : public YAML::EventHandler {
  public:
   const YAML::Mark& mark() const { return mark_; }
 
-  void OnDocumentStart(const YAML::Mark& mark) override { mark_ = mark; }
+  void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Keep(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { Keep(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    Keep(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Keep(mark);
+  }
   void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Keep(mark);
+  }
   void OnMapEnd() override {}
 
  private:
-  YAML::Mark mark_;
+  void Keep(const YAML::Mark& mark) {
+    if (mark_.is_null()) mark_ = mark;
+  }
+  YAML::Mark mark_ = YAML::Mark::null_mark();
 };
 
 YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
@@ -73,7 +82,7 @@ YAML::Node Parse(const std::string& text, const std::filesystem::path& file) {
     // YAML::LoadAll() does not end for some damaged files.
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    StartOfDocument first, second;
+    FirstNode first, second;
     if (parser.HandleNextDocument(first) && parser.HandleNextDocument(second))
       Fail(file, second.mark(), "a second YAML document starts here; expected one per file");
   } catch (const YAML::ParserException& problem) {

@@ -42,7 +42,7 @@ struct NamedEstimate {
 struct ExtendedFit {
   Calibration calibration;
   // At the end of the fit, with its Jacobian, as Linearise() gives it from the baseline's misfit.
-  // Not usable if the fit was kept, the recordings are scans, or most frames are held out.
+  // Not usable if the fit was kept, the recordings are scans, or many frames are held out.
   LinearisedMisfit misfit;
 };
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -278,10 +280,11 @@ PolygonSoup ReadStl(const std::filesystem::path& file) {
 }
 
 PolygonSoup ReadOff(const std::filesystem::path& file) {
-  constexpr std::string_view kBinary = "OFF BINARY";
-  if (const std::string content = ReadWholeFile(file); content.starts_with(kBinary))
-    return ReadBinaryOff(file, std::string_view(content).substr(
-                                   std::min(content.find('\n'), content.size() - 1) + 1));
+  std::ifstream stream(file, std::ios::binary);
+  std::string first_line;
+  std::getline(stream, first_line);
+  if (first_line.starts_with("OFF BINARY"))
+    return ReadBinaryOff(file, std::string(std::istreambuf_iterator<char>(stream), {}));
   PolygonSoup soup;
   TextScanner scanner(file, '#');
   const OffHeader header = ReadOffHeader(scanner);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -19,7 +20,7 @@ namespace lacuna {
 namespace {
 
 PolygonSoup ReadPly(const std::filesystem::path& file) {
-  const std::string content = ReadWholeFile(file);
+  std::string content = ReadWholeFile(file);
   const PlyHeader header = ReadPlyHeader(file, content);
   CheckPlyBody(file, content, header);
   if (const PlyElement* vertices = header.Find("vertex"))
@@ -28,7 +29,7 @@ PolygonSoup ReadPly(const std::filesystem::path& file) {
           (property.is_list || !property.is_floating))
         throw InputError({file.string()},
                          fmt::format("holds \"{}\" not as floating-point numbers", property.name));
-  std::istringstream stream(content);
+  std::istringstream stream(std::move(content));
   std::vector<CGAL::Simple_cartesian<double>::Point_3> points;
   PolygonSoup soup;
   const bool is_whole = CGAL::IO::read_PLY(stream, points, soup.polygons);

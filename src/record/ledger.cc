@@ -49,12 +49,6 @@ json ErrorsToJson(const ModelErrors& errors) {
           {"has_held_out", errors.has_held_out}};
 }
 
-json ModelErrorsToJson(const ModelErrors& errors) {
-  json value = ErrorsToJson(errors);
-  value["held_out_rms_at_measured_places_m"] = errors.held_out_at_measured_places;
-  return value;
-}
-
 json DiagnosisToJson(const DiagnosisRecord& diagnosis, const std::vector<std::string>& added) {
   json tried = json::array();
   for (const RecordedEffect& effect : diagnosis.ranking) {
@@ -100,9 +94,10 @@ json ModelToJson(const Ledger& ledger, size_t index, const std::filesystem::path
                 {"usable", model.record.usable},
                 {"message", model.record.message},
                 {"noise_m", model.record.noise},
-                {"errors", ModelErrorsToJson(model.errors)},
+                {"errors", ErrorsToJson(model.errors)},
                 {"recordings", recordings},
                 {"parameters", parameters}};
+  entry["errors"]["held_out_rms_at_measured_places_m"] = model.errors.held_out_at_measured_places;
   if (model.record.scan_noise > 0) entry["scan_noise_m"] = model.record.scan_noise;
   if (model.parent >= 0) {
     entry["parent"] = ledger.models[static_cast<size_t>(model.parent)].name;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/error.h"
 #include "scan/delimited_table.h"
@@ -24,7 +26,7 @@ class HeaderReader {
       : file_(file), content_(content) {}
 
   PcdHeader Read() {
-    while (!has_data_) {
+    while (data_.empty()) {
       const size_t end = content_.find('\n', at_);
       if (end == std::string_view::npos)
         throw InputError({file_.string()}, "is not a PCD file or ends within its header");
@@ -34,9 +36,8 @@ class HeaderReader {
       at_ = end + 1;
       if (!line.empty() && line[0] != '#') Take(SplitFields(line, ' '));
     }
-    header_.body = at_;
     Complete();
-    return std::move(header_);
+    return {data_ == "ascii", at_};
   }
 
  private:
@@ -61,17 +62,16 @@ class HeaderReader {
       Fail(fmt::format("is not a PCD file, or its header is damaged: got \"{}\"", key));
     if (words.empty()) Fail(fmt::format("\"{}\" has no value", key));
     if (key == "FIELDS" || key == "COLUMNS") {
-      if (!header_.fields.empty()) Fail("names the fields a second time");
-      header_.fields.assign(words.begin(), words.end());
-      for (const std::string& field : header_.fields)
+      if (!fields_.empty()) Fail("names the fields a second time");
+      fields_.assign(words.begin(), words.end());
+      for (const std::string& field : fields_)
         if (!std::all_of(field.begin(), field.end(), [](char c) { return c > ' ' && c <= '~'; }))
           Fail("the name of a field holds characters that cannot be printed");
       return;
     }
     const bool is_per_field = key == "SIZE" || key == "TYPE" || key == "COUNT";
-    if (is_per_field && words.size() != header_.fields.size())
-      Fail(
-          fmt::format("{} has {} entries for {} fields", key, words.size(), header_.fields.size()));
+    if (is_per_field && words.size() != fields_.size())
+      Fail(fmt::format("{} has {} entries for {} fields", key, words.size(), fields_.size()));
     if (key == "SIZE") {
       sizes_.clear();
       for (const std::string_view word : words) {
@@ -80,17 +80,17 @@ class HeaderReader {
           Fail(fmt::format("got \"{}\"; expected a size of 1, 2, 4 or 8 bytes", word));
       }
     } else if (key == "TYPE") {
-      header_.types.clear();
+      types_.clear();
       for (const std::string_view word : words) {
         if (word != "F" && word != "I" && word != "U")
           Fail(fmt::format("got \"{}\"; expected F, I or U", word));
-        header_.types.push_back(word[0]);
+        types_.push_back(word[0]);
       }
     } else if (key == "COUNT") {
-      header_.counts.clear();
+      counts_.clear();
       for (const std::string_view word : words) {
-        header_.counts.push_back(CountIn(word));
-        if (header_.counts.back() == 0) Fail("got 0; a field has at least one value");
+        counts_.push_back(CountIn(word));
+        if (counts_.back() == 0) Fail("got 0; a field has at least one value");
       }
     } else if (key == "WIDTH") {
       width_ = CountIn(words[0]);
@@ -99,11 +99,9 @@ class HeaderReader {
     } else if (key == "POINTS") {
       points_ = CountIn(words[0]);
     } else if (key == "DATA") {
-      has_data_ = true;
-      header_.data = words[0] == "ascii"               ? PcdHeader::Data::kText
-                     : words[0] == "binary"            ? PcdHeader::Data::kBinary
-                     : words[0] == "binary_compressed" ? PcdHeader::Data::kCompressed
-                                                       : throw Unknown(words[0]);
+      if (words[0] != "ascii" && words[0] != "binary" && words[0] != "binary_compressed")
+        Fail(fmt::format("got \"{}\"; expected ascii, binary or binary_compressed", words[0]));
+      data_ = words[0];
     } else if (key == "VIEWPOINT") {
       if (words.size() != 7) Fail(fmt::format("VIEWPOINT has {} of 7 numbers", words.size()));
       for (const std::string_view word : words)
@@ -111,62 +109,56 @@ class HeaderReader {
     }
   }
 
-  InputError Unknown(std::string_view data) const {
-    return InputError({file_.string(), line_},
-                      fmt::format("got \"{}\"; expected ascii, binary or binary_compressed", data));
-  }
-
   void Complete() {
     const auto fail = [&](const std::string& message) {
       throw InputError({file_.string()}, message);
     };
-    if (header_.fields.empty()) fail("has a PCD header without FIELDS");
-    if (sizes_.empty() || header_.types.empty()) fail("has a PCD header without SIZE or TYPE");
+    if (fields_.empty()) fail("has a PCD header without FIELDS");
+    if (sizes_.empty() || types_.empty()) fail("has a PCD header without SIZE or TYPE");
     for (size_t k = 0; k < sizes_.size(); ++k)
-      if (header_.types[k] == 'F' && sizes_[k] < 4)
+      if (types_[k] == 'F' && sizes_[k] < 4)
         fail(fmt::format("holds \"{}\" as numbers of {} bytes; floating-point numbers have 4 or 8",
-                         header_.fields[k], sizes_[k]));
-    if (header_.counts.empty()) header_.counts.assign(header_.fields.size(), 1);
+                         fields_[k], sizes_[k]));
+    if (counts_.empty()) counts_.assign(fields_.size(), 1);
     if (!width_) fail("has a PCD header without WIDTH");
-    header_.points = points_.value_or(*width_ * height_);
-    if (header_.points != *width_ * height_)
-      fail(fmt::format("announces {} points and an image of {} × {}", header_.points, *width_,
-                       height_));
-    // A value takes a byte at least, as a text two with the blank behind it.
+    const size_t points = points_.value_or(*width_ * height_);
+    if (points != *width_ * height_)
+      fail(fmt::format("announces {} points and an image of {} × {}", points, *width_, height_));
+    // As a text, a value takes a byte at least.
     double values = 0, bytes = 0;
     for (size_t k = 0; k < sizes_.size(); ++k) {
-      values += static_cast<double>(header_.counts[k]);
-      bytes += static_cast<double>(header_.counts[k] * sizes_[k]);
+      values += static_cast<double>(counts_[k]);
+      bytes += static_cast<double>(counts_[k] * sizes_[k]);
     }
-    const double of_file = static_cast<double>(content_.size() - header_.body);
-    const double needed = header_.data == PcdHeader::Data::kText     ? values
-                          : header_.data == PcdHeader::Data::kBinary ? bytes
-                                                                     : bytes / kValuesPerByte;
-    if (static_cast<double>(header_.points) * needed > of_file)
-      fail(
-          fmt::format("is truncated or malformed: its header announces {} points", header_.points));
-    if (header_.data != PcdHeader::Data::kCompressed) return;
+    const double of_file = static_cast<double>(content_.size() - at_);
+    const double needed = data_ == "ascii"    ? values
+                          : data_ == "binary" ? bytes
+                                              : bytes / kValuesPerByte;
+    if (static_cast<double>(points) * needed > of_file)
+      fail(fmt::format("is truncated or malformed: its header announces {} points", points));
+    if (data_ != "binary_compressed") return;
     // The body begins with the numbers of its bytes, compressed and not.
     uint32_t numbers[2] = {};
-    if (content_.size() - header_.body < sizeof(numbers)) fail("ends before its points");
-    std::memcpy(numbers, content_.data() + header_.body, sizeof(numbers));
-    if (numbers[0] > content_.size() - header_.body - sizeof(numbers) ||
-        static_cast<double>(numbers[1]) != static_cast<double>(header_.points) * bytes)
+    if (content_.size() - at_ < sizeof(numbers)) fail("ends before its points");
+    std::memcpy(numbers, content_.data() + at_, sizeof(numbers));
+    if (numbers[0] > content_.size() - at_ - sizeof(numbers) ||
+        static_cast<double>(numbers[1]) != static_cast<double>(points) * bytes)
       fail(
           fmt::format("is truncated or malformed: {} compressed bytes stand for {}, {} points of "
                       "{} bytes are announced",
-                      numbers[0], numbers[1], header_.points, bytes));
+                      numbers[0], numbers[1], points, bytes));
   }
 
   const std::filesystem::path& file_;
   const std::string_view content_;
   size_t at_ = 0;
   int line_ = 0;
-  bool has_data_ = false;
-  std::vector<size_t> sizes_;
+  std::string_view data_;  // the kind of the body; empty until its line is read
+  std::vector<std::string> fields_;
+  std::vector<char> types_;  // F, I or U
+  std::vector<size_t> sizes_, counts_;
   std::optional<size_t> width_, points_;
   size_t height_ = 1;
-  PcdHeader header_;
 };
 
 }  // namespace

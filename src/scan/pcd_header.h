@@ -6,19 +6,12 @@
 #define LACUNA_SCAN_PCD_HEADER_H_
 
 #include <filesystem>
-#include <string>
 #include <string_view>
-#include <vector>
 
 namespace lacuna {
 
 struct PcdHeader {
-  enum class Data { kText, kBinary, kCompressed };
-  std::vector<std::string> fields;
-  std::vector<char> types;     // F, I or U, one for each field
-  std::vector<size_t> counts;  // of the values of each field
-  size_t points = 0;
-  Data data = Data::kText;
+  bool is_text = false;
   size_t body = 0;  // position of the first byte behind the header
 };
 

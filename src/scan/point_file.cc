@@ -68,7 +68,7 @@ void CheckContent(const std::filesystem::path& file, bool is_ply) {
     body = header.body;
   } else {
     const PcdHeader header = ReadPcdHeader(file, content);
-    is_text = header.data == PcdHeader::Data::kText;
+    is_text = header.is_text;
     body = header.body;
   }
   if (is_text) RefuseWords(file, content, body);

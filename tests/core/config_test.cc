@@ -95,7 +95,7 @@ TEST(Config, RefusesInvalidYamlAndOtherThanAMapping) {
   EXPECT_THROW(Config::Parse("", "a.yaml"), InputError);
   EXPECT_THROW(Config::Load("no/such/file.yaml"), InputError);
   ExpectInputError([] { Config::Parse("a: 1\n---\nb: 2\n", "a.yaml"); },
-                   "a.yaml:2:1: a second YAML document starts here; expected one per file");
+                   "a.yaml:3:1: a second YAML document starts here; expected one per file");
 }
 
 TEST(Config, InsertsPiecesWhoseEntriesTheFileOverrides) {

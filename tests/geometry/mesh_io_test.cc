@@ -401,6 +401,18 @@ TEST(ReadTriMesh, ReadsTheVariantsOfOff) {
             "4 2");
   EXPECT_EQ(Counts("a.off", "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n"),
             "3 1");
+  const auto binary = [](std::initializer_list<uint32_t> numbers) {
+    std::string content = "OFF BINARY\n";
+    for (const uint32_t number : numbers)
+      for (const int shift : {24, 16, 8, 0}) content.push_back(static_cast<char>(number >> shift));
+    return content;
+  };
+  constexpr uint32_t kOne = 0x3f800000;  // the bits of 1.0f
+  EXPECT_EQ(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne, 0, 0, 0, kOne, 0, 3, 0, 1, 2, 0})),
+            "3 1");
+  EXPECT_THAT(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne, 0, 0, 0, kOne, 0, 3, 0, 1, 7, 0})),
+              HasSubstr("face 1 of 1: there is no vertex 7"));
+  EXPECT_THAT(Counts("a.off", binary({3, 1, 0, 0, 0, 0, kOne})), HasSubstr("is truncated"));
   EXPECT_THAT(Counts("a.off", "4OFF\n1 0 0\n1 2 3 4\n"), HasSubstr("4OFF is not read"));
   EXPECT_THAT(Counts("a.off", "OFF\n4 2 0\n" + v + "3 0 1 2\n"),
               HasSubstr("the file ends where face 2 of 2 should follow"));
