@@ -1,15 +1,18 @@
 #include "fit/coefficient_fit.h"
 
 #include <ceres/ceres.h>
-#include <ceres/normal_prior.h>
 #include <glog/logging.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "core/interrupt.h"
 #include "fem/linear_solver.h"
 #include "fem/newton.h"
-#include "fit/force_response.h"
+#include "fem/node_rotations.h"
+#include "fit/stop_on_interrupt.h"
 
 namespace lacuna {
 namespace {
@@ -17,7 +20,12 @@ namespace {
 constexpr double kBalanceTolerance = 1e-10;  // Newton residual relative to the acting forces
 constexpr double kSolverTolerance = 1e-7;    // residual of the linear system of a Newton step
 constexpr int kNewtonIterations = 30;
-constexpr int kMaxLoadParts = 8;
+// The largest numbers of parts in which the unknowns are applied: at the start of the search, and
+// for a trial of it, which may fail since a shorter one follows.
+constexpr int kMaxPartsAtStart = 8, kMaxPartsOfTrial = 2;
+// The radius of the trust region in which the first search starts (Ceres' default), and by how much
+// more than the last radius of a search the next one starts with: its observations differ little.
+constexpr double kTrustRegionRadius = 1e4, kTrustRegionGrowth = 10;
 
 LinearSolverOptions WithTolerance(double tolerance) {
   LinearSolverOptions options;
@@ -25,20 +33,20 @@ LinearSolverOptions WithTolerance(double tolerance) {
   return options;
 }
 
-// Computes x(c) and ∂x/∂c at the coefficients that Ceres is about to evaluate.
+// Computes x(u), c(u) and their derivatives at the unknowns that Ceres is about to evaluate.
 class BalancedMotion : public ceres::EvaluationCallback {
  public:
-  BalancedMotion(const Model& model, const StepEquation& equation, const ForceModel& force_model,
-                 const Eigen::VectorXd& position, const Eigen::VectorXd* coefficients)
-      : model_(model),
-        force_model_(force_model),
-        equation_(equation),
-        coefficients_(coefficients),
-        held_(HeldAxes(model)),
+  BalancedMotion(const Model& model, const StepEquation& equation, const BalanceControl& control,
+                 const Eigen::VectorXd& position, const Eigen::VectorXd& balanced,
+                 const Eigen::VectorXd* unknowns)
+      : equation_(equation),
+        control_(control),
+        unknowns_(unknowns),
         gripped_place_(position),
-        newton_solver_(model.body->pattern, held_, WithTolerance(kSolverTolerance)),
+        newton_solver_(model.body->pattern, control.held(), WithTolerance(kSolverTolerance)),
         tangent_(model.body->pattern),
         differentiated_position_(position),
+        differentiated_unknowns_(balanced),
         position_(position) {}
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
@@ -47,80 +55,93 @@ class BalancedMotion : public ceres::EvaluationCallback {
       is_balanced_ = true;
       return;
     }
-    if (new_evaluation_point) is_balanced_ = Balance();
+    if (new_evaluation_point) is_balanced_ = Balance() && IsStable();
     if (evaluate_jacobians && is_balanced_) is_balanced_ = Differentiate();
   }
 
   bool is_balanced() const { return is_balanced_; }
   const Eigen::VectorXd& position() const { return position_; }
-  const Eigen::MatrixXd& sensitivity() const { return sensitivity_; }
-  int factorisations() const { return newton_solver_.factorisations() + response_factorisations_; }
+  Eigen::VectorXd Coefficients() const { return control_.Coefficients(*unknowns_, position_); }
+  const BalanceDerivative& derivative() const { return derivative_; }
+  int factorisations() const { return newton_solver_.factorisations(); }
 
  private:
   bool IsDifferentiatedHere() const {
-    return sensitivity_.size() > 0 && *coefficients_ == differentiated_coefficients_;
+    return derivative_.is_usable && *unknowns_ == differentiated_unknowns_;
   }
 
   // Solves for the balance, starting with a step along the tangent from the latest differentiated
-  // point. If this fails, the change of the coefficients is applied in increasingly many parts.
+  // point. If this fails, the change of the unknowns is applied in increasingly many parts.
   bool Balance() {
-    for (int parts = 1; parts <= kMaxLoadParts; parts *= 2) {
+    const Eigen::VectorXd& from = differentiated_unknowns_;
+    const int most = derivative_.is_usable ? kMaxPartsOfTrial : kMaxPartsAtStart;
+    for (int parts = 1; parts <= most; parts *= 2) {
       position_ = differentiated_position_;
-      if (sensitivity_.size() > 0 && parts == 1)
-        position_ += sensitivity_ * (*coefficients_ - differentiated_coefficients_);
-      const Eigen::VectorXd from = differentiated_coefficients_.size() > 0
-                                       ? differentiated_coefficients_
-                                       : Eigen::VectorXd::Zero(coefficients_->size());
+      if (derivative_.is_usable && parts == 1)
+        position_ += derivative_.position * (*unknowns_ - from);
       bool solved = true;
-      for (int part = 1; part <= parts && solved; ++part) {
+      for (int part = 1; part <= parts && solved && !InterruptRequested(); ++part) {
         const double share = static_cast<double>(part) / parts;
-        const Eigen::VectorXd force = force_model_.basis * (from + share * (*coefficients_ - from));
-        const NewtonProblem problem{equation_, force, held_, kBalanceTolerance, kNewtonIterations};
-        solved = SolveByNewton(problem, gripped_place_, &newton_solver_, &tangent_, &position_)
-                     .IsUsable();
+        solved = BalanceAt(from + share * (*unknowns_ - from));
       }
+      if (InterruptRequested()) return false;
       if (solved) return true;
     }
     return false;
   }
 
+  bool BalanceAt(const Eigen::VectorXd& unknowns) {
+    const Eigen::VectorXd force = control_.Force(unknowns);
+    Eigen::VectorXd target = gripped_place_;
+    control_.Place(unknowns, &target);
+    const NewtonProblem problem{equation_, force, control_.held(), kBalanceTolerance,
+                                kNewtonIterations};
+    return SolveByNewton(problem, target, &newton_solver_, &tangent_, &position_).IsUsable();
+  }
+
+  // Whether the balance is a stable equilibrium. A static body has others too, such as one that is
+  // about to snap through, from which the search would have no direction to go on.
+  bool IsStable() {
+    if (equation_.has_inertia()) return true;
+    equation_.Tangent(position_, /*convexify=*/false, &tangent_);
+    return newton_solver_.Factorise(tangent_, NodeRotations(equation_.body(), position_));
+  }
+
   bool Differentiate() {
-    ForceResponse response = RespondToForces(model_, equation_, force_model_, position_);
-    response_factorisations_ += response.factorisations;
-    if (!response.IsUsable()) return false;
-    sensitivity_ = std::move(response.sensitivity);
+    BalanceDerivative derivative = control_.Differentiate(position_, &newton_solver_);
+    if (!derivative.is_usable) return false;
+    derivative_ = std::move(derivative);
     differentiated_position_ = position_;
-    differentiated_coefficients_ = *coefficients_;
+    differentiated_unknowns_ = *unknowns_;
     return true;
   }
 
-  const Model& model_;
-  const ForceModel& force_model_;
   const StepEquation& equation_;
-  const Eigen::VectorXd* coefficients_;
-  HeldComponents held_;
+  const BalanceControl& control_;
+  const Eigen::VectorXd* unknowns_;
   Eigen::VectorXd gripped_place_;
   LinearSolver newton_solver_;
-  int response_factorisations_ = 0;
   BlockMatrix tangent_;
-  Eigen::VectorXd differentiated_position_, differentiated_coefficients_;  // the point of ∂x/∂c
+  // The point of the derivatives; before the first, the position that the search starts from and
+  // the unknowns that belong to it.
+  Eigen::VectorXd differentiated_position_, differentiated_unknowns_;
   Eigen::VectorXd position_;
-  Eigen::MatrixXd sensitivity_;  // 3n × K
+  BalanceDerivative derivative_;
   bool is_balanced_ = false;
 };
 
-// The whitened residual W (N x(c) − y) as a function of the coefficients.
+// The whitened residual W (N x(u) − y) as a function of the unknowns.
 class ReducedObservationCost : public ceres::CostFunction {
  public:
   ReducedObservationCost(const BalancedMotion& motion, const Observations& observations,
-                         Eigen::Index j, Eigen::Index coefficients)
+                         Eigen::Index j, Eigen::Index unknowns)
       : motion_(motion),
         node_(observations.node.col(j)),
         weight_(observations.weight.col(j)),
         target_(observations.target.col(j)),
         rows_(WhitenedDirections(observations, j)) {
     set_num_residuals(static_cast<int>(rows_.rows()));
-    mutable_parameter_block_sizes()->push_back(static_cast<int>(coefficients));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(unknowns));
   }
 
   bool Evaluate(double const* const* /*parameters*/, double* residuals,
@@ -131,14 +152,13 @@ class ReducedObservationCost : public ceres::CostFunction {
       deviation += weight_[a] * motion_.position().segment<3>(3 * node_[a]);
     Eigen::Map<Eigen::VectorXd>(residuals, rows_.rows()) = rows_ * deviation;
     if (jacobians == nullptr || jacobians[0] == nullptr) return true;
-    const Eigen::Index coefficients = motion_.sensitivity().cols();
-    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, coefficients);
+    const Eigen::MatrixXd& response = motion_.derivative().position;
+    Eigen::MatrixXd derivative = Eigen::MatrixXd::Zero(3, response.cols());
     for (int a = 0; a < 3; ++a) {
-      if (weight_[a] != 0)
-        derivative += weight_[a] * motion_.sensitivity().middleRows(3 * node_[a], 3);
+      if (weight_[a] != 0) derivative += weight_[a] * response.middleRows(3 * node_[a], 3);
     }
     Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-        jacobians[0], rows_.rows(), coefficients) = rows_ * derivative;
+        jacobians[0], rows_.rows(), response.cols()) = rows_ * derivative;
     return true;
   }
 
@@ -147,6 +167,47 @@ class ReducedObservationCost : public ceres::CostFunction {
   Eigen::Vector3i node_;
   Eigen::Vector3d weight_, target_;
   Eigen::Matrix<double, Eigen::Dynamic, 3> rows_;
+};
+
+// The deviation c(u) − c₀ from the prior as a function of the unknowns.
+class CoefficientPriorCost : public ceres::CostFunction {
+ public:
+  CoefficientPriorCost(const BalancedMotion& motion, const Eigen::VectorXd& expected)
+      : motion_(motion), expected_(expected) {
+    set_num_residuals(static_cast<int>(expected.size()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(expected.size()));
+  }
+
+  bool Evaluate(double const* const* /*parameters*/, double* residuals,
+                double** jacobians) const override {
+    if (!motion_.is_balanced()) return false;
+    const Eigen::Index count = expected_.size();
+    Eigen::Map<Eigen::VectorXd>(residuals, count) = motion_.Coefficients() - expected_;
+    if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        jacobians[0], count, count) = motion_.derivative().coefficients;
+    return true;
+  }
+
+ private:
+  const BalancedMotion& motion_;
+  Eigen::VectorXd expected_;
+};
+
+// Ends a search whose steps have become immaterial. A body that cannot follow its observations
+// leaves large residuals, with which the Gauss–Newton method converges only linearly.
+class StopWhereImmaterial : public ceres::IterationCallback {
+ public:
+  explicit StopWhereImmaterial(double decrease) : decrease_(decrease) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    const bool ends =
+        summary.iteration > 0 && summary.step_is_successful && summary.cost_change < decrease_;
+    return ends ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  double decrease_;
 };
 
 double RootMeanSquare(const std::vector<double>& values) {
@@ -159,21 +220,29 @@ double RootMeanSquare(const std::vector<double>& values) {
 
 struct CoefficientFitter::Implementation {
   Implementation(const Model& model, const StepEquation& equation, const ForceModel& force_model,
-                 const Eigen::VectorXd& position, const Eigen::VectorXd& start)
-      : coefficients(start),
-        basis(force_model.basis),
-        motion(model, equation, force_model, position, &coefficients) {}
+                 std::unique_ptr<BalanceControl> chosen, const Eigen::VectorXd& position,
+                 const Eigen::VectorXd& coefficients)
+      : basis(force_model.basis),
+        control(std::move(chosen)),
+        unknowns(control->Unknowns(position, coefficients)),
+        motion(model, equation, *control, position,
+               control->Unknowns(position, Eigen::VectorXd::Zero(coefficients.size())), &unknowns) {
+  }
 
-  Eigen::VectorXd coefficients;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& basis;
+  std::unique_ptr<BalanceControl> control;
+  Eigen::VectorXd unknowns;
   BalancedMotion motion;
+  double trust_region_radius = kTrustRegionRadius;  // in which the next search starts
 };
 
 CoefficientFitter::CoefficientFitter(const Model& model, const StepEquation& equation,
-                                     const ForceModel& force_model, const Eigen::VectorXd& position,
+                                     const ForceModel& force_model,
+                                     std::unique_ptr<BalanceControl> control,
+                                     const Eigen::VectorXd& position,
                                      const Eigen::VectorXd& coefficients)
-    : implementation_(
-          std::make_unique<Implementation>(model, equation, force_model, position, coefficients)) {
+    : implementation_(std::make_unique<Implementation>(
+          model, equation, force_model, std::move(control), position, coefficients)) {
   for (const char free : force_model.free) CHECK(!free);
 }
 
@@ -182,8 +251,8 @@ CoefficientFitter::~CoefficientFitter() = default;
 ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFitPrior& prior,
                                 const ForceFitOptions& options) {
   BalancedMotion& motion = implementation_->motion;
-  Eigen::VectorXd& coefficients = implementation_->coefficients;
-  const Eigen::Index count = coefficients.size();
+  Eigen::VectorXd& unknowns = implementation_->unknowns;
+  const Eigen::Index count = unknowns.size();
   const int factorisations_before = motion.factorisations();
   ForceFit fit;
   fit.multiplier = Eigen::VectorXd::Zero(motion.position().size());
@@ -196,21 +265,29 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
     ceres::LossFunction* loss =
         options.robust_threshold > 0 ? new ceres::HuberLoss(options.robust_threshold) : nullptr;
     observed.push_back(problem.AddResidualBlock(
-        new ReducedObservationCost(motion, observations, j, count), loss, coefficients.data()));
+        new ReducedObservationCost(motion, observations, j, count), loss, unknowns.data()));
   }
-  problem.AddResidualBlock(
-      new ceres::NormalPrior(Eigen::MatrixXd::Identity(count, count), prior.coefficients), nullptr,
-      coefficients.data());
+  problem.AddResidualBlock(new CoefficientPriorCost(motion, prior.coefficients), nullptr,
+                           unknowns.data());
 
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
+  solver.initial_trust_region_radius = implementation_->trust_region_radius;
   solver.num_threads = 1;  // Ceres sums over threads in no fixed order
   solver.logging_type = ceres::SILENT;
+  StopOnInterrupt stop;
+  StopWhereImmaterial stop_where_immaterial(options.immaterial_decrease);
+  solver.callbacks = {&stop, &stop_where_immaterial};
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  ThrowIfInterrupted();
 
+  if (!summary.iterations.empty()) {
+    implementation_->trust_region_radius = std::min(
+        kTrustRegionRadius, kTrustRegionGrowth * summary.iterations.back().trust_region_radius);
+  }
   fit.factorisations = motion.factorisations() - factorisations_before;
   fit.initial_cost = summary.initial_cost;
   fit.final_cost = summary.final_cost;
@@ -222,14 +299,18 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   observed_only.residual_blocks = observed;
   observed_only.apply_loss_function = false;
   std::vector<double> residuals;
-  // This evaluation also returns the motion to the best coefficients, which need not be the last
-  // ones that were tried.
+  // This evaluation also returns the motion to the best unknowns, which need not be the last ones
+  // that were tried.
   if (!problem.Evaluate(observed_only, nullptr, &residuals, nullptr, nullptr)) return fit;
   fit.weighted_rms = RootMeanSquare(residuals);
   fit.position = motion.position();
-  fit.coefficients = coefficients;
-  fit.force = implementation_->basis * coefficients;
-  if (summary.termination_type == ceres::CONVERGENCE) fit.status = ForceFit::Status::kConverged;
+  fit.coefficients = motion.Coefficients();
+  fit.force = implementation_->basis * fit.coefficients;
+  if (summary.termination_type == ceres::CONVERGENCE ||
+      summary.termination_type == ceres::USER_SUCCESS)
+    fit.status = ForceFit::Status::kConverged;
+  if (summary.termination_type == ceres::NO_CONVERGENCE)
+    fit.status = ForceFit::Status::kIterationLimit;
   return fit;
 }
 

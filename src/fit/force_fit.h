@@ -27,10 +27,23 @@ struct ForceFitOptions {
   double robust_threshold = 3;
   int max_iterations = 100;          // Levenberg–Marquardt steps with one factorisation each
   double function_tolerance = 1e-6;  // the iteration ends at this relative decrease of the cost
+  // Used only where the positions are eliminated: the iteration also ends at this decrease of the
+  // cost. It is immaterial, as it moves no coefficient by more than √(2·0.05) ≈ 0.3 of its standard
+  // deviation.
+  double immaterial_decrease = 0.05;
 };
 
 struct ForceFit {
-  enum class Status { kNotRun, kConverged, kNoConvergence, kNoUnknowns, kNothingObserved };
+  enum class Status {
+    kNotRun,
+    kConverged,
+    // Only where the positions are eliminated: the forces are in balance and lower the cost, but
+    // not to its minimum.
+    kIterationLimit,
+    kNoConvergence,
+    kNoUnknowns,
+    kNothingObserved
+  };
   Status status = Status::kNotRun;
   std::string message;
   // Vectors of length 3n are node-major.
@@ -42,7 +55,9 @@ struct ForceFit {
   double initial_cost = 0, final_cost = 0;
   double weighted_rms = 0;  // rms residual of the observations in standard deviations
   double imbalance = 0;     // rms of the forces that the model does not allow, as a length, m
-  bool IsUsable() const { return status == Status::kConverged; }
+  bool IsUsable() const {
+    return status == Status::kConverged || status == Status::kIterationLimit;
+  }
 };
 
 // The expected forces, for example those of the previous step.

@@ -15,21 +15,16 @@ constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
-ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
-                              const ForceModel& force_model, const Eigen::VectorXd& position) {
+ForceResponse RespondToForces(const StepEquation& equation, const ForceModel& force_model,
+                              const Eigen::VectorXd& position, LinearSolver* solver) {
   const Eigen::SparseMatrix<double> loads = force_model.basis;  // column-major: a load is a column
-  BlockMatrix tangent(model.body->pattern);
+  BlockMatrix tangent(equation.body().pattern);
   equation.Tangent(position, /*convexify=*/false, &tangent);
-  LinearSolverOptions options;
-  options.relative_tolerance = kTolerance;
-  LinearSolver solver(model.body->pattern, HeldComponents(HeldAxes(model)), options);
   ForceResponse response;
   response.sensitivity.resize(position.size(), loads.cols());
   Eigen::VectorXd column;
   for (Eigen::Index k = 0; k < loads.cols(); ++k) {
-    const bool solved = solver.Solve(tangent, loads.col(k), &column).IsUsable();
-    response.factorisations = solver.factorisations();
-    if (!solved) {
+    if (!solver->Solve(tangent, loads.col(k), &column).IsUsable()) {
       response.status = ForceResponse::Status::kLinearSolverFailed;
       return response;
     }
@@ -37,6 +32,14 @@ ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
   }
   response.status = ForceResponse::Status::kSolved;
   return response;
+}
+
+ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
+                              const ForceModel& force_model, const Eigen::VectorXd& position) {
+  LinearSolverOptions options;
+  options.relative_tolerance = kTolerance;
+  LinearSolver solver(model.body->pattern, HeldComponents(HeldAxes(model)), options);
+  return RespondToForces(equation, force_model, position, &solver);
 }
 
 Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "fem/linear_solver.h"
 #include "fem/model.h"
 #include "fem/step_equation.h"
 #include "fit/force_model.h"
@@ -16,13 +17,16 @@ struct ForceResponse {
   enum class Status { kNotRun, kSolved, kLinearSolverFailed };
   Status status = Status::kNotRun;
   Eigen::MatrixXd sensitivity;  // 3n × K, m: ∂x/∂c
-  int factorisations = 0;
   bool IsUsable() const { return status == Status::kSolved; }
 };
 
 // Computes ∂x/∂c = (∂r/∂x)⁻¹ B, with the basis B of the force model, by the implicit function
 // theorem at `position` (3n, m), where the step must be in balance. One factorisation serves all K
-// columns. If the linear solver fails, the status says so and the sensitivity is incomplete.
+// columns. `solver` must hold the components that the model holds. If it fails, the status says so
+// and the sensitivity is incomplete.
+ForceResponse RespondToForces(const StepEquation& equation, const ForceModel& force_model,
+                              const Eigen::VectorXd& position, LinearSolver* solver);
+// The same with a solver of its own.
 ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
                               const ForceModel& force_model, const Eigen::VectorXd& position);
 

@@ -8,7 +8,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/interrupt.h"
 #include "core/serial_openmp.h"
+#include "fit/stop_on_interrupt.h"
 
 namespace lacuna {
 namespace {
@@ -247,9 +249,12 @@ ceres::Solver::Summary SolveInOneThread(const ForceFitOptions& options, ceres::P
   solver.initial_trust_region_radius = 1e16;  // damping is relative to the stiff balance rows
   solver.num_threads = 1;  // the order in which Ceres sums over threads is not fixed
   solver.logging_type = ceres::SILENT;
+  StopOnInterrupt stop;
+  solver.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   const SerialOpenMp serial;
   ceres::Solve(solver, problem, &summary);
+  ThrowIfInterrupted();
   return summary;
 }
 

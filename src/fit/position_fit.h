@@ -30,7 +30,7 @@ struct PositionFitStart {
 };
 
 // All vectors of `start` and `prior` must have their full sizes. If Ceres finds no usable solution,
-// the result has the status kNoConvergence and its message.
+// the result has the status kNoConvergence and its message. Throws Interrupted after an interrupt.
 ForceFit FitPositions(const Model& model, const StepEquation& equation,
                       const ForceModel& force_model, const Observations& observations,
                       const PositionFitStart& start, const ForceFitPrior& prior,

@@ -3,6 +3,7 @@
 #include <glog/logging.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "fit/coefficient_fit.h"
 #include "fit/force_response.h"
@@ -17,10 +18,22 @@ Eigen::VectorXd OrZero(const Eigen::VectorXd& given, Eigen::Index size) {
 }
 
 // With more coefficients, the formulation with the positions as unknowns is cheaper.
-constexpr Eigen::Index kMaxEliminated = 12;
+constexpr Eigen::Index kMaxForces = 12;
+// Likewise for the places of the loaded nodes, which need fewer iterations in large deformations.
+constexpr Eigen::Index kMaxPlaces = 150;
 
 bool HasFreeNodes(const ForceModel& model) {
   return std::any_of(model.free.begin(), model.free.end(), [](char free) { return free; });
+}
+
+// How the positions are eliminated; null where they are the unknowns.
+std::unique_ptr<BalanceControl> ChooseControl(const Model& model, const StepEquation& equation,
+                                              const ForceModel& force_model) {
+  const Eigen::Index count = force_model.CoefficientCount();
+  if (HasFreeNodes(force_model) || count == 0 || count > kMaxPlaces) return nullptr;
+  if (std::unique_ptr<BalanceControl> places = ControlPlaces(model, equation, force_model))
+    return places;
+  return count <= kMaxForces ? ControlForces(model, equation, force_model) : nullptr;
 }
 
 }  // namespace
@@ -42,10 +55,9 @@ StepForceFitter::StepForceFitter(const Model& model, const StepEquation& equatio
                                Eigen::VectorXd::Zero(unknowns)};
   implementation_ = std::make_unique<Implementation>(
       Implementation{model, equation, force_model, start, nullptr});
-  const Eigen::Index count = force_model.CoefficientCount();
-  if (!HasFreeNodes(force_model) && count > 0 && count <= kMaxEliminated) {
+  if (std::unique_ptr<BalanceControl> control = ChooseControl(model, equation, force_model)) {
     implementation_->coefficients = std::make_unique<CoefficientFitter>(
-        model, equation, force_model, start.position, start.coefficients);
+        model, equation, force_model, std::move(control), start.position, start.coefficients);
   }
 }
 

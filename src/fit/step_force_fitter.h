@@ -2,10 +2,12 @@
 // Choi 2015, section 7).
 //
 // There are two formulations. Eliminating the positions leaves a small dense problem but costs one
-// back-substitution per coefficient and iteration (coefficient_fit.h). With the positions as
-// unknowns the Jacobian is sparse, and an iteration costs about six factorisations of the matrix of
-// the step, independently of the number of forces (position_fit.h). The first is cheaper for up to
-// about a dozen coefficients (tests/benchmark/README.md) and is chosen for these.
+// back-substitution per unknown and iteration (coefficient_fit.h). With the positions as unknowns
+// the Jacobian is sparse, and an iteration costs about six factorisations of the matrix of the
+// step, independently of the number of forces (position_fit.h). The first is cheaper for up to
+// about a dozen coefficients (tests/benchmark/README.md) and is chosen for these. It is also chosen
+// for up to 150 forces on single nodes, whose places then are the unknowns: it follows large
+// deformations of nonlinear materials, in which the second ends far from the balance.
 #ifndef LACUNA_FIT_STEP_FORCE_FITTER_H_
 #define LACUNA_FIT_STEP_FORCE_FITTER_H_
 

@@ -164,7 +164,15 @@ class Follower {
     }
     frame.force = AsPoints(fit.force + KnownForces());
     frame.residual = ResidualDisplacement(frame.position, state);
-    frame.solver = {true, "converged", "", iterations};
+    const bool is_stopped = fit.status == ForceFit::Status::kIterationLimit;
+    if (is_stopped) {
+      motion_.warnings.push_back(
+          fmt::format("frame {}: the search for the forces ended after {} iterations, before its "
+                      "minimum; the residual there is {:.3g} times the noise",
+                      study_.frames[k], study_.follow.fit.max_iterations, fit.weighted_rms));
+    }
+    frame.solver = {true, is_stopped ? "iteration limit" : "converged",
+                    is_stopped ? fit.message : "", iterations};
     motion_.frames.push_back(std::move(frame));
     return true;
   }

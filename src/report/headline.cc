@@ -303,8 +303,9 @@ std::vector<std::string> ReconstructionHeadline(const RunRecord& record) {
                 followed, record.frames.size(),
                 Millimetres(record.relative_animation_residual * record.object_size),
                 100 * record.relative_animation_residual);
-  return {how, fmt::format("Forces that may act anywhere make any model follow, so that this says "
-                           "nothing about which physics the model lacks.")};
+  return {how,
+          "Forces that are fitted frame by frame let a wrong model follow too, so that this says "
+          "nothing about which physics the model lacks."};
 }
 
 }  // namespace lacuna

@@ -9,6 +9,7 @@
 #include "fit/coefficient_fit.h"
 #include "fit/position_fit.h"
 #include "fit/step_force_fitter.h"
+#include "geometry/surface_tracks.h"
 #include "support/box_mesh.h"
 
 namespace lacuna {
@@ -194,9 +195,12 @@ TEST(ForceFit, BothFormulationsFindTheSameForces) {
       ObserveScan(bar.body->boundary, bar.body->mesh.nodes, truth.scan, kNoise, /*reach=*/0.05);
   ForceFitOptions options;
   options.function_tolerance = 1e-12;
+  options.immaterial_decrease = 0;
   options.max_iterations = 200;
-  const ForceFit eliminated = CoefficientFitter(bar.model, equation, forces, rest.position, zero)
-                                  .Fit(seen, {no_force, zero}, options);
+  const ForceFit eliminated =
+      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, equation, forces),
+                        rest.position, zero)
+          .Fit(seen, {no_force, zero}, options);
   ASSERT_TRUE(eliminated.IsUsable()) << eliminated.message;
   PositionFitStart start{rest.position, zero, no_force};
   ForceFit sparse;
@@ -209,6 +213,98 @@ TEST(ForceFit, BothFormulationsFindTheSameForces) {
   EXPECT_LT((sparse.position - eliminated.position).lpNorm<Eigen::Infinity>(), 1e-3 * kNoise);
   EXPECT_LT((sparse.force - eliminated.force).lpNorm<Eigen::Infinity>(),
             1e-3 * eliminated.force.lpNorm<Eigen::Infinity>());
+}
+
+// Four nodes of the tip, which are free.
+Eigen::VectorXi TipCorners(const Bar& bar) {
+  std::vector<int> corners;
+  for (const int node : bar.tip) {
+    const Eigen::Vector3d at = bar.body->mesh.nodes.col(node);
+    const bool is_edge_y = std::abs(at.y() - 0.015) > 0.0149;
+    const bool is_edge_z = std::abs(at.z() - 0.015) > 0.0149;
+    if (is_edge_y && is_edge_z) corners.push_back(node);
+  }
+  return Eigen::Map<Eigen::VectorXi>(corners.data(), corners.size());
+}
+
+TEST(ForceFit, PlacesAndForcesAsUnknownsFindTheSameForces) {
+  const Truth truth = ScanLoadedBar({0, 0.05, -0.1});
+  const Bar bar = MakeBar({6, 2, 2}, 1);
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  const ForceModel forces = NodalForces(*bar.body, TipCorners(bar), 0.05);
+  ASSERT_EQ(forces.CoefficientCount(), 12);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(forces.CoefficientCount());
+  const Eigen::VectorXd no_force = Eigen::VectorXd::Zero(rest.position.size());
+  const Observations seen =
+      ObserveScan(bar.body->boundary, bar.body->mesh.nodes, truth.scan, kNoise, /*reach=*/0.05);
+  ForceFitOptions options;
+  options.function_tolerance = 1e-12;
+  options.immaterial_decrease = 0;
+  std::unique_ptr<BalanceControl> places = ControlPlaces(bar.model, equation, forces);
+  ASSERT_NE(places, nullptr);
+  const ForceFit by_places =
+      CoefficientFitter(bar.model, equation, forces, std::move(places), rest.position, zero)
+          .Fit(seen, {no_force, zero}, options);
+  const ForceFit by_forces =
+      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, equation, forces),
+                        rest.position, zero)
+          .Fit(seen, {no_force, zero}, options);
+  ASSERT_TRUE(by_places.IsUsable()) << by_places.message;
+  ASSERT_TRUE(by_forces.IsUsable()) << by_forces.message;
+  EXPECT_NEAR(by_places.final_cost, by_forces.final_cost, 1e-6 * by_forces.final_cost);
+  EXPECT_LT((by_places.position - by_forces.position).lpNorm<Eigen::Infinity>(), 1e-2 * kNoise);
+  EXPECT_LT((by_places.force - by_forces.force).lpNorm<Eigen::Infinity>(),
+            1e-3 * by_forces.force.lpNorm<Eigen::Infinity>());
+}
+
+TEST(ForceFit, PlacesAreNoUnknownsWhereAForceActsOnSeveralNodesOrOnAHeldOne) {
+  const Bar bar = MakeBar({3, 2, 2}, 1);
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  const auto has_places = [&](const ForceModel& forces) {
+    return ControlPlaces(bar.model, equation, forces) != nullptr;
+  };
+  EXPECT_TRUE(has_places(NodalForces(*bar.body, bar.tip, 1)));
+  EXPECT_FALSE(has_places(FootprintForce(*bar.body, bar.tip, 1)));
+  EXPECT_FALSE(has_places(NodalForces(*bar.body, bar.body->boundary.node, 1)));
+}
+
+// The places of points of the surface before and after the load, without noise.
+struct TrackedTruth {
+  Eigen::Matrix3Xd before, after;  // 3 × n, m
+};
+
+TrackedTruth TrackLoadedBar(const Eigen::Vector3d& force) {
+  const Bar bar = MakeBar({14, 5, 4}, 2);
+  MotionHistory history = RestHistory(bar.model);
+  StepOptions options;
+  options.scheme = TimeScheme::kQuasiStatic;
+  const Eigen::VectorXd load = FootprintForce(*bar.body, bar.tip, 1.0).basis * force;
+  EXPECT_TRUE(Stepper(bar.model, options).Equilibrium(load, &history).IsUsable());
+  const TriMesh rest = BoundaryAt(bar.body->boundary, bar.body->mesh.nodes);
+  const auto samples = SampleSurface(rest, 300, 5);
+  const TriMesh loaded = BoundaryAt(bar.body->boundary, AsPoints(history.position));
+  return {EvaluateSamples(rest, samples).points, EvaluateSamples(loaded, samples).points};
+}
+
+TEST(ForceFit, FollowsAFarMotionOfASoftBodyInOneStep) {
+  // The tip of a bar of 100 mm moves by 76 mm at once, and the bar bends by more than 60°.
+  const TrackedTruth truth = TrackLoadedBar({0.3, 1.4, -2});
+  const Bar bar = MakeBar({6, 2, 2}, 1);
+  const MotionHistory rest = RestHistory(bar.model);
+  const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
+  const ForceModel forces = NodalForces(*bar.body, bar.tip, 0.5);
+  const SurfaceTracks tracks = TrackOnSurface(bar.body->boundary, truth.before);
+  const Observations seen =
+      ObserveMarkers(bar.body->boundary, tracks.at_rest, truth.after - tracks.offset, kNoise);
+  const ForceFit fit = StepForceFitter(bar.model, equation, forces, rest.position).Fit(seen);
+  ASSERT_TRUE(fit.IsUsable()) << fit.message;
+  const Eigen::Matrix3Xd found = PointsAt(tracks, bar.body->boundary, AsPoints(fit.position));
+  const double farthest = (truth.after - truth.before).colwise().norm().maxCoeff();
+  EXPECT_GT(farthest, 0.07);
+  EXPECT_LT((found - truth.after).colwise().norm().mean(), 0.01 * farthest);
+  EXPECT_LE(fit.factorisations, 40);
 }
 
 TEST(ForceFit, ReportsMissingUnknownsAndObservations) {
