@@ -52,12 +52,25 @@ BlockMap EllipticPlate(const Config& config) {
   };
 }
 
+BlockMap Paraboloid(const Config& config) {
+  const Eigen::Vector3d size = config.Vector("size", kLength);
+  const double radius = config.Quantity("radius", kLength, kPositive);
+  return [size, radius](const Eigen::Vector3d& uvw) -> Eigen::Vector3d {
+    const Eigen::Vector3d at = size.cwiseProduct(uvw.cwiseAbs2());
+    const double lower = at.head<2>().squaredNorm() / (2 * radius);
+    return {at.x(), at.y(), at.z() + (1 - at.z() / size.z()) * lower};
+  };
+}
+
 }  // namespace
 
 BlockMap ReadBlockMap(const Config& config) {
   using Reader = BlockMap (*)(const Config&);
   return config.Choice<Reader>(
-      "shape", {{"box", &Box}, {"panel", &Panel}, {"elliptic_plate", &EllipticPlate}})(config);
+      "shape", {{"box", &Box},
+                {"panel", &Panel},
+                {"elliptic_plate", &EllipticPlate},
+                {"paraboloid", &Paraboloid}})(config);
 }
 
 bool BlockPart::Contains(const Eigen::Vector3d& uvw) const {

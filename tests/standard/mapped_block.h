@@ -22,6 +22,9 @@ using BlockMap = std::function<Eigen::Vector3d(const Eigen::Vector3d& uvw)>;
 //   {shape: panel, corner_00: [x, y], …, thickness}   corner_10 is that at u = 1, v = 0
 //   {shape: elliptic_plate, inner: [x, y], outer: [x, y], thickness}  a quarter; u goes outwards,
 //                                                     v from the x axis to the y axis
+//   {shape: paraboloid, size: [x, y, z], radius}      a quarter of a block whose lower face, w = 0,
+//                                                     is z = (x² + y²)/(2 radius); cells become
+//                                                     smaller towards its vertex
 BlockMap ReadBlockMap(const Config& config);
 
 // A part of the block: the points at which the given coordinates have these values.
