@@ -66,11 +66,10 @@ BlockMap Paraboloid(const Config& config) {
 
 BlockMap ReadBlockMap(const Config& config) {
   using Reader = BlockMap (*)(const Config&);
-  return config.Choice<Reader>(
-      "shape", {{"box", &Box},
-                {"panel", &Panel},
-                {"elliptic_plate", &EllipticPlate},
-                {"paraboloid", &Paraboloid}})(config);
+  return config.Choice<Reader>("shape", {{"box", &Box},
+                                         {"panel", &Panel},
+                                         {"elliptic_plate", &EllipticPlate},
+                                         {"paraboloid", &Paraboloid}})(config);
 }
 
 bool BlockPart::Contains(const Eigen::Vector3d& uvw) const {
