@@ -70,6 +70,7 @@ class StepEquation {
   MotionHistory Advance(const Eigen::VectorXd& position) const;
 
   const Body& body() const { return *model_.body; }
+  const Eigen::VectorXd& start_position() const { return history_.position; }
   double end_time() const { return end_time_; }
   double time_step() const { return time_step_; }
   double rate() const { return weights_.rate; }  // γ, 1/s; 0 in statics

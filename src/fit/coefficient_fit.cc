@@ -59,6 +59,13 @@ class BalancedMotion : public ceres::EvaluationCallback {
     if (evaluate_jacobians && is_balanced_) is_balanced_ = Differentiate();
   }
 
+  // Forgets earlier derivatives. `unknowns` belong to `position`.
+  void StartFrom(const Eigen::VectorXd& position, const Eigen::VectorXd& unknowns) {
+    differentiated_position_ = position;
+    differentiated_unknowns_ = unknowns;
+    derivative_.is_usable = false;
+  }
+
   bool is_balanced() const { return is_balanced_; }
   const Eigen::VectorXd& position() const { return position_; }
   Eigen::VectorXd Coefficients() const { return control_.Coefficients(*unknowns_, position_); }
@@ -222,13 +229,24 @@ struct CoefficientFitter::Implementation {
   Implementation(const Model& model, const StepEquation& equation, const ForceModel& force_model,
                  std::unique_ptr<BalanceControl> chosen, const Eigen::VectorXd& position,
                  const Eigen::VectorXd& coefficients)
-      : basis(force_model.basis),
+      : equation(equation),
+        basis(force_model.basis),
         control(std::move(chosen)),
         unknowns(control->Unknowns(position, coefficients)),
         motion(model, equation, *control, position,
                control->Unknowns(position, Eigen::VectorXd::Zero(coefficients.size())), &unknowns) {
   }
 
+  // A start without a stable balance is replaced by the start of the step, under no forces.
+  void EnsureStart() {
+    motion.PrepareForEvaluation(/*evaluate_jacobians=*/true, /*new_evaluation_point=*/true);
+    if (motion.is_balanced()) return;
+    const Eigen::VectorXd& start = equation.start_position();
+    unknowns = control->Unknowns(start, Eigen::VectorXd::Zero(unknowns.size()));
+    motion.StartFrom(start, unknowns);
+  }
+
+  const StepEquation& equation;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& basis;
   std::unique_ptr<BalanceControl> control;
   Eigen::VectorXd unknowns;
@@ -254,6 +272,7 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   Eigen::VectorXd& unknowns = implementation_->unknowns;
   const Eigen::Index count = unknowns.size();
   const int factorisations_before = motion.factorisations();
+  implementation_->EnsureStart();
   ForceFit fit;
   fit.multiplier = Eigen::VectorXd::Zero(motion.position().size());
 
@@ -277,9 +296,9 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   solver.initial_trust_region_radius = implementation_->trust_region_radius;
   solver.num_threads = 1;  // Ceres sums over threads in no fixed order
   solver.logging_type = ceres::SILENT;
-  StopOnInterrupt stop;
+  const std::unique_ptr<ceres::IterationCallback> stop = StopOnInterrupt();
   StopWhereImmaterial stop_where_immaterial(options.immaterial_decrease);
-  solver.callbacks = {&stop, &stop_where_immaterial};
+  solver.callbacks = {stop.get(), &stop_where_immaterial};
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
   ThrowIfInterrupted();

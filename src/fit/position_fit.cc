@@ -249,8 +249,8 @@ ceres::Solver::Summary SolveInOneThread(const ForceFitOptions& options, ceres::P
   solver.initial_trust_region_radius = 1e16;  // damping is relative to the stiff balance rows
   solver.num_threads = 1;  // the order in which Ceres sums over threads is not fixed
   solver.logging_type = ceres::SILENT;
-  StopOnInterrupt stop;
-  solver.callbacks.push_back(&stop);
+  const std::unique_ptr<ceres::IterationCallback> stop = StopOnInterrupt();
+  solver.callbacks.push_back(stop.get());
   ceres::Solver::Summary summary;
   const SerialOpenMp serial;
   ceres::Solve(solver, problem, &summary);

@@ -35,7 +35,7 @@ std::vector<Number> NumbersOf(const std::string& bytes, size_t count) {
   if (bytes.size() != count * sizeof(Number))
     throw InputError("a packed array has another size than its shape");
   std::vector<Number> numbers(count);
-  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  if (count > 0) std::memcpy(numbers.data(), bytes.data(), bytes.size());
   return numbers;
 }
 
