@@ -43,7 +43,11 @@ export const KEYBOARD_HELP = 'Arrow keys turn the view, shift with an arrow key 
 // A text of the program, in which `backticks` enclose commands.
 export const sentence = (text) => String(text).split(/`([^`]{1,200})`/).map((part, k) => (k % 2 ? h('code', {}, part) : part));
 
-export const namesOf = (names) => (names?.length ? names.join(' with ') : 'nothing');
+// "a", "a and b", "a, b and c".
+export const namesOf = (names) => {
+  if (!names?.length) return 'nothing';
+  return names.length === 1 ? names[0] : `${names.slice(0, -1).join(', ')} and ${names.at(-1)}`;
+};
 
 export function modelLabel(model, index) {
   if (model.label) return model.label;
