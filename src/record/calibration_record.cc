@@ -221,6 +221,12 @@ void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem
   WriteFileAtomically(file, ToJson(record).dump(2) + "\n");
 }
 
+bool IsCalibrationOfAnotherFormat(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  const json document = json::parse(stream, nullptr, /*allow_exceptions=*/false);
+  return document.is_object() && document.value("schema_version", json()) != kSchemaVersion;
+}
+
 CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file) {
   std::ifstream stream(file);
   try {

@@ -112,6 +112,8 @@ ParameterEstimate EstimateFromJson(const nlohmann::json& value);
 void WriteCalibrationFile(const CalibrationRecord& record, const std::filesystem::path& file);
 // Throws InputError when the file is not a record of a calibration, or one in another format.
 CalibrationRecord ReadCalibrationFile(const std::filesystem::path& file);
+// Whether the file is a record in the format of another version of Lacuna.
+bool IsCalibrationOfAnotherFormat(const std::filesystem::path& file);
 
 }  // namespace lacuna
 

@@ -30,13 +30,22 @@ bool IsDiagnosisOf(const std::string& fit, const fs::path& folder) {
          value.value("of", json::object()).value("fit", "") == fit;
 }
 
+fs::path CalibrationFile(const fs::path& folder) {
+  return FinishedStage(folder, "calibration") / "calibration.json";
+}
+
+// A fit beside that of the report. One that an earlier version of Lacuna wrote is left out.
+bool IsShown(const fs::path& folder) {
+  return IsFittedRun(folder) && !IsCalibrationOfAnotherFormat(CalibrationFile(folder));
+}
+
 ReportedModel OpenModel(const fs::path& folder, const std::string& added,
                         std::vector<std::string>* notes) {
   ReportedModel model;
   model.folder = folder;
   model.name = NameOf(folder);
   model.added = added;
-  const fs::path fit = FinishedStage(folder, "calibration") / "calibration.json";
+  const fs::path fit = CalibrationFile(folder);
   model.fit = HashFile(fit);
   model.calibration = ReadCalibrationFile(fit);
   if (model.calibration.usable) model.errors = ErrorsOf(model.calibration);
@@ -80,7 +89,7 @@ bool OpenLedger(const fs::path& folder, ReportedRun* run) {
   try {
     for (const json& entry : ledger.at("models")) {
       const fs::path of_model = (folder / entry.at("run").get<std::string>()).lexically_normal();
-      if (!IsFittedRun(of_model)) break;
+      if (!IsShown(of_model)) break;
       models.push_back(OpenModel(of_model, entry.value("added", ""), &notes));
       if (!IsOf(entry, models.back())) break;
     }
@@ -125,7 +134,7 @@ ReportedRun OpenReportedRun(const fs::path& folder) {
   for (size_t plus = run.models.front().name.rfind('+'); plus != std::string::npos;
        plus = run.models.front().name.rfind('+')) {
     const std::string before = run.models.front().name.substr(0, plus);
-    if (before.empty() || !IsFittedRun(beside / before)) break;
+    if (before.empty() || !IsShown(beside / before)) break;
     run.models.front().added = run.models.front().name.substr(plus + 1);
     run.models.insert(run.models.begin(), OpenModel(beside / before, "", &run.notes));
   }

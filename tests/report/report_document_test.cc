@@ -7,7 +7,10 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/hash.h"
+#include "record/manifest.h"
 #include "record/packed_array.h"
+#include "report/reported_run.h"
 #include "support/small_ledger.h"
 #include "support/small_run.h"
 #include "support/temporary_folder.h"
@@ -221,6 +224,26 @@ TEST(ReportDocument, ALedgerOfOtherFitsIsLeftOut) {
   WriteSmallFit(folder / "bar", {}, changed);
   const json run = ReportDocument({folder / "bar"}).at("runs").at(0);
   EXPECT_TRUE(run.at("ledger").is_null());
+  EXPECT_EQ(run.at("models").size(), 1u);
+  EXPECT_THAT(run.at("notes").at(0).get<std::string>(), HasSubstr("ledger"));
+}
+
+TEST(ReportDocument, AnAddedModelOfAnotherVersionIsLeftOut) {
+  const TemporaryFolder folder;
+  WriteSmallChain(folder.Path());
+  const std::filesystem::path file = folder / "bar+drag/calibration/calibration.json";
+  json calibration = ReadJsonFile(file);
+  calibration["schema_version"] = 1;
+  std::ofstream(file) << calibration;
+  const std::filesystem::path manifest_file = folder / "bar+drag/manifest.json";
+  Manifest manifest = LoadManifest(manifest_file);
+  for (StoredFile& stored : manifest.stages.at("calibration").files) {
+    if (stored.name != "calibration.json") continue;
+    stored.size = std::filesystem::file_size(file);
+    stored.hash = HashFile(file);
+  }
+  SaveManifest(manifest, manifest_file);
+  const json run = ReportDocument({folder / "bar"}).at("runs").at(0);
   EXPECT_EQ(run.at("models").size(), 1u);
   EXPECT_THAT(run.at("notes").at(0).get<std::string>(), HasSubstr("ledger"));
 }
