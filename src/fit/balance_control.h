@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <utility>
 
 #include "fem/held_components.h"
 #include "fem/linear_solver.h"

@@ -26,6 +26,8 @@ constexpr int kMaxPartsAtStart = 8, kMaxPartsOfTrial = 2;
 // The radius of the trust region in which the first search starts (Ceres' default), and by how much
 // more than the last radius of a search the next one starts with: its observations differ little.
 constexpr double kTrustRegionRadius = 1e4, kTrustRegionGrowth = 10;
+// Below this radius steps are those of steepest descent, and too short to tell a minimum.
+constexpr double kSmallRadius = 1e-2;
 
 LinearSolverOptions WithTolerance(double tolerance) {
   LinearSolverOptions options;
@@ -59,7 +61,7 @@ class BalancedMotion : public ceres::EvaluationCallback {
     if (evaluate_jacobians && is_balanced_) is_balanced_ = Differentiate();
   }
 
-  // Forgets earlier derivatives. `unknowns` belong to `position`.
+  // Forgets earlier derivatives. A balance is sought from `position`, and in parts from `unknowns`.
   void StartFrom(const Eigen::VectorXd& position, const Eigen::VectorXd& unknowns) {
     differentiated_position_ = position;
     differentiated_unknowns_ = unknowns;
@@ -81,15 +83,19 @@ class BalancedMotion : public ceres::EvaluationCallback {
   // point. If this fails, the change of the unknowns is applied in increasingly many parts.
   bool Balance() {
     const Eigen::VectorXd& from = differentiated_unknowns_;
-    const int most = derivative_.is_usable ? kMaxPartsOfTrial : kMaxPartsAtStart;
+    int most = derivative_.is_usable ? kMaxPartsOfTrial : kMaxPartsAtStart;
+    if (*unknowns_ == from) most = 1;
     for (int parts = 1; parts <= most; parts *= 2) {
       position_ = differentiated_position_;
-      if (derivative_.is_usable && parts == 1)
+      if (derivative_.is_usable && parts == 1) {
         position_ += derivative_.position * (*unknowns_ - from);
+        control_.Place(*unknowns_, &position_);
+      }
       bool solved = true;
       for (int part = 1; part <= parts && solved && !InterruptRequested(); ++part) {
         const double share = static_cast<double>(part) / parts;
-        solved = BalanceAt(from + share * (*unknowns_ - from));
+        solved = BalanceAt(part == parts ? *unknowns_
+                                         : Eigen::VectorXd(from + share * (*unknowns_ - from)));
       }
       if (InterruptRequested()) return false;
       if (solved) return true;
@@ -201,8 +207,9 @@ class CoefficientPriorCost : public ceres::CostFunction {
   Eigen::VectorXd expected_;
 };
 
-// Ends a search whose steps have become immaterial. A body that cannot follow its observations
-// leaves large residuals, with which the Gauss–Newton method converges only linearly.
+// Ends a search whose steps have become small (ForceFitOptions::immaterial_decrease). A body that
+// cannot follow its observations leaves large residuals, with which the Gauss–Newton method
+// converges only linearly.
 class StopWhereImmaterial : public ceres::IterationCallback {
  public:
   explicit StopWhereImmaterial(double decrease) : decrease_(decrease) {}
@@ -231,23 +238,26 @@ struct CoefficientFitter::Implementation {
                  const Eigen::VectorXd& coefficients)
       : equation(equation),
         basis(force_model.basis),
+        start_coefficients(coefficients),
         control(std::move(chosen)),
         unknowns(control->Unknowns(position, coefficients)),
         motion(model, equation, *control, position,
                control->Unknowns(position, Eigen::VectorXd::Zero(coefficients.size())), &unknowns) {
   }
 
-  // A start without a stable balance is replaced by the start of the step, under no forces.
+  // A start without a stable balance is replaced by the start of the step, with the coefficients
+  // that were given.
   void EnsureStart() {
     motion.PrepareForEvaluation(/*evaluate_jacobians=*/true, /*new_evaluation_point=*/true);
     if (motion.is_balanced()) return;
     const Eigen::VectorXd& start = equation.start_position();
-    unknowns = control->Unknowns(start, Eigen::VectorXd::Zero(unknowns.size()));
+    unknowns = control->Unknowns(start, start_coefficients);
     motion.StartFrom(start, unknowns);
   }
 
   const StepEquation& equation;
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& basis;
+  Eigen::VectorXd start_coefficients;
   std::unique_ptr<BalanceControl> control;
   Eigen::VectorXd unknowns;
   BalancedMotion motion;
@@ -304,8 +314,9 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   ThrowIfInterrupted();
 
   if (!summary.iterations.empty()) {
-    implementation_->trust_region_radius = std::min(
-        kTrustRegionRadius, kTrustRegionGrowth * summary.iterations.back().trust_region_radius);
+    implementation_->trust_region_radius =
+        std::clamp(kTrustRegionGrowth * summary.iterations.back().trust_region_radius, 1.0,
+                   kTrustRegionRadius);
   }
   fit.factorisations = motion.factorisations() - factorisations_before;
   fit.initial_cost = summary.initial_cost;
@@ -328,8 +339,13 @@ ForceFit CoefficientFitter::Fit(const Observations& observations, const ForceFit
   if (summary.termination_type == ceres::CONVERGENCE ||
       summary.termination_type == ceres::USER_SUCCESS)
     fit.status = ForceFit::Status::kConverged;
-  if (summary.termination_type == ceres::NO_CONVERGENCE)
-    fit.status = ForceFit::Status::kIterationLimit;
+  if (summary.termination_type == ceres::NO_CONVERGENCE) fit.status = ForceFit::Status::kEndedEarly;
+  // Ceres takes steps that became short because no trial had a stable balance for convergence.
+  const ceres::IterationSummary& last = summary.iterations.back();
+  if (!last.step_is_successful && last.trust_region_radius < kSmallRadius) {
+    fit.status = ForceFit::Status::kEndedEarly;
+    fit.message = "no lower cost with a stable balance was found nearby";
+  }
   return fit;
 }
 

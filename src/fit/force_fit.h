@@ -25,11 +25,11 @@ struct ForceFitOptions {
   // Residuals beyond this many standard deviations contribute linearly (Huber's loss); 0 disables
   // the robust loss.
   double robust_threshold = 3;
-  int max_iterations = 100;          // Levenberg–Marquardt steps with one factorisation each
+  int max_iterations = 100;          // Levenberg–Marquardt steps
   double function_tolerance = 1e-6;  // the iteration ends at this relative decrease of the cost
-  // Used only where the positions are eliminated: the iteration also ends at this decrease of the
-  // cost. It is immaterial, as it moves no coefficient by more than √(2·0.05) ≈ 0.3 of its standard
-  // deviation.
+  // Used only where the positions are eliminated: the iteration also ends where a step lowers the
+  // cost by less than this, so that the step moves no coefficient by more than √(2·0.05) ≈ 0.3 of
+  // its standard deviation. Where convergence is slow, the minimum may be farther away than that.
   double immaterial_decrease = 0.05;
 };
 
@@ -37,9 +37,9 @@ struct ForceFit {
   enum class Status {
     kNotRun,
     kConverged,
-    // Only where the positions are eliminated: the forces are in balance and lower the cost, but
-    // not to its minimum.
-    kIterationLimit,
+    // Only where the positions are eliminated: the forces are in balance, but the search ended
+    // before the minimum of the cost; the message says why.
+    kEndedEarly,
     kNoConvergence,
     kNoUnknowns,
     kNothingObserved
@@ -55,9 +55,7 @@ struct ForceFit {
   double initial_cost = 0, final_cost = 0;
   double weighted_rms = 0;  // rms residual of the observations in standard deviations
   double imbalance = 0;     // rms of the forces that the model does not allow, as a length, m
-  bool IsUsable() const {
-    return status == Status::kConverged || status == Status::kIterationLimit;
-  }
+  bool IsUsable() const { return status == Status::kConverged || status == Status::kEndedEarly; }
 };
 
 // The expected forces, for example those of the previous step.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fit/balance_control.h"
 #include "fit/coefficient_fit.h"
 #include "fit/force_response.h"
 #include "fit/position_fit.h"

@@ -33,7 +33,8 @@ class StepForceFitter {
                   const Eigen::VectorXd& position, const Eigen::VectorXd& coefficients = {});
   ~StepForceFitter();
 
-  // A fit that cannot be performed or does not converge says why in its status and message.
+  // A fit that cannot be performed or does not converge says why in its status and message. Throws
+  // Interrupted after an interrupt.
   ForceFit Fit(const Observations& observations, const ForceFitPrior& prior = {},
                const ForceFitOptions& options = {});
 

@@ -164,15 +164,15 @@ class Follower {
     }
     frame.force = AsPoints(fit.force + KnownForces());
     frame.residual = ResidualDisplacement(frame.position, state);
-    const bool is_stopped = fit.status == ForceFit::Status::kIterationLimit;
+    const bool is_stopped = fit.status == ForceFit::Status::kEndedEarly;
     if (is_stopped) {
       motion_.warnings.push_back(
-          fmt::format("frame {}: the search for the forces ended after {} iterations, before its "
-                      "minimum; the residual there is {:.3g} times the noise",
-                      study_.frames[k], study_.follow.fit.max_iterations, fit.weighted_rms));
+          fmt::format("frame {}: the search for the forces ended before its minimum ({}); the "
+                      "residual there is {:.3g} times the noise",
+                      study_.frames[k], fit.message, fit.weighted_rms));
     }
-    frame.solver = {true, is_stopped ? "iteration limit" : "converged",
-                    is_stopped ? fit.message : "", iterations};
+    frame.solver = {true, is_stopped ? "ended early" : "converged", is_stopped ? fit.message : "",
+                    iterations};
     motion_.frames.push_back(std::move(frame));
     return true;
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -292,9 +293,11 @@ GatheredRun GatherStudy(const fs::path& folder) {
   }
   const std::string path = FromProject(folder, folder);
   json commands = json::array();
-  if (has_table && !table.at("rows").empty())
-    commands.push_back(fmt::format("lacuna table1 --output {} --seeds {}", path,
-                                   table.at("rows").front().at("seeds").get<int>()));
+  if (has_table) {
+    std::set<int> seeds;
+    for (const json& search : table.at("searches")) seeds.insert(search.at("seed").get<int>());
+    commands.push_back(fmt::format("lacuna table1 --output {} --seeds {}", path, seeds.size()));
+  }
   commands.push_back("lacuna report " + path);
   gathered.comparable.name = name;
   gathered.document = {

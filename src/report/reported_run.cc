@@ -96,7 +96,8 @@ bool OpenLedger(const fs::path& folder, ReportedRun* run) {
     const json& all = ledger.at("models");
     if (models.size() != all.size() || models.empty() || !IsOf(all.back(), models.back())) {
       run->notes.push_back(
-          "The ledger of models does not belong to the fits in the folders and is not shown; "
+          "The ledger of models does not belong to the fits in the folders, or one of these is of "
+          "another version of Lacuna; it is not shown; "
           "`lacuna diagnose --until-done` makes a new one.");
       return false;
     }
@@ -134,7 +135,12 @@ ReportedRun OpenReportedRun(const fs::path& folder) {
   for (size_t plus = run.models.front().name.rfind('+'); plus != std::string::npos;
        plus = run.models.front().name.rfind('+')) {
     const std::string before = run.models.front().name.substr(0, plus);
-    if (before.empty() || !IsShown(beside / before)) break;
+    if (before.empty() || !IsFittedRun(beside / before)) break;
+    if (!IsShown(beside / before)) {
+      run.notes.push_back(fmt::format(
+          "The run {} is of another version of Lacuna and is not shown; fit it again.", before));
+      break;
+    }
     run.models.front().added = run.models.front().name.substr(plus + 1);
     run.models.insert(run.models.begin(), OpenModel(beside / before, "", &run.notes));
   }

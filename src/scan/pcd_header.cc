@@ -124,7 +124,7 @@ class HeaderReader {
     const size_t points = points_.value_or(*width_ * height_);
     if (points != *width_ * height_)
       fail(fmt::format("announces {} points and an image of {} × {}", points, *width_, height_));
-    // As a text, a value takes a byte at least.
+    // In text, a value takes at least one byte.
     double values = 0, bytes = 0;
     for (size_t k = 0; k < sizes_.size(); ++k) {
       values += static_cast<double>(counts_[k]);

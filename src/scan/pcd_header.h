@@ -12,7 +12,7 @@ namespace lacuna {
 
 struct PcdHeader {
   bool is_text = false;
-  size_t body = 0;  // position of the first byte behind the header
+  size_t body = 0;  // position of the first byte after the header
 };
 
 // `content`: the whole file. Throws InputError with the file and the line for a header that is
