@@ -13,7 +13,8 @@ namespace {
 
 std::string Percent(double error) {
   if (!std::isfinite(error)) return "–";
-  return error < 0.995 ? fmt::format("{:.2g} %", 100 * error) : fmt::format("{:.0f} %", 100 * error);
+  return error < 0.995 ? fmt::format("{:.2g} %", 100 * error)
+                       : fmt::format("{:.0f} %", 100 * error);
 }
 
 std::string NameOf(const Wanted& wanted) {
