@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "fem/block_matrix.h"
 #include "fit/force_response.h"
 
 namespace lacuna {
@@ -11,10 +10,8 @@ namespace {
 
 class ForceControl : public BalanceControl {
  public:
-  ForceControl(const Model& model, const StepEquation& equation, const ForceModel& force_model)
-      : BalanceControl(HeldComponents(HeldAxes(model))),
-        equation_(equation),
-        force_model_(force_model) {}
+  ForceControl(const Model& model, const ForceModel& force_model)
+      : BalanceControl(HeldComponents(HeldAxes(model))), force_model_(force_model) {}
 
   Eigen::VectorXd Unknowns(const Eigen::VectorXd& /*position*/,
                            const Eigen::VectorXd& coefficients) const override {
@@ -32,16 +29,14 @@ class ForceControl : public BalanceControl {
     return unknowns;
   }
 
-  BalanceDerivative Differentiate(const Eigen::VectorXd& position,
-                                  LinearSolver* solver) const override {
-    ForceResponse response = RespondToForces(equation_, force_model_, position, solver);
+  BalanceDerivative Differentiate(const BlockMatrix& tangent, LinearSolver* solver) const override {
+    ForceResponse response = RespondToForces(tangent, force_model_, solver);
     const Eigen::Index count = force_model_.CoefficientCount();
     return {std::move(response.sensitivity), Eigen::MatrixXd::Identity(count, count),
             response.IsUsable()};
   }
 
  private:
-  const StepEquation& equation_;
   const ForceModel& force_model_;
 };
 
@@ -112,15 +107,13 @@ class PlaceControl : public BalanceControl {
 
   // With the free components f and the loaded ones l, K_ff ∂x_f/∂u = −K_fl, and the reactions
   // change by the loaded rows of K ∂x/∂u.
-  BalanceDerivative Differentiate(const Eigen::VectorXd& position,
-                                  LinearSolver* solver) const override {
-    BlockMatrix tangent(model_.body->pattern);
-    equation_.Tangent(position, /*convexify=*/false, &tangent);
+  BalanceDerivative Differentiate(const BlockMatrix& tangent, LinearSolver* solver) const override {
+    const Eigen::Index size = 3 * model_.body->NodeCount();
     BalanceDerivative derivative;
-    derivative.position.resize(position.size(), Count());
+    derivative.position.resize(size, Count());
     derivative.coefficients.resize(Count(), Count());
     for (Eigen::Index k = 0; k < Count(); ++k) {
-      Eigen::VectorXd motion = Eigen::VectorXd::Unit(position.size(), At(k).component);
+      Eigen::VectorXd motion = Eigen::VectorXd::Unit(size, At(k).component);
       Eigen::VectorXd force, others;
       tangent.Multiply(motion, &force);
       force *= -1;
@@ -154,9 +147,8 @@ class PlaceControl : public BalanceControl {
 
 }  // namespace
 
-std::unique_ptr<BalanceControl> ControlForces(const Model& model, const StepEquation& equation,
-                                              const ForceModel& force_model) {
-  return std::make_unique<ForceControl>(model, equation, force_model);
+std::unique_ptr<BalanceControl> ControlForces(const Model& model, const ForceModel& force_model) {
+  return std::make_unique<ForceControl>(model, force_model);
 }
 
 std::unique_ptr<BalanceControl> ControlPlaces(const Model& model, const StepEquation& equation,

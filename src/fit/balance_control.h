@@ -13,6 +13,7 @@
 #include <memory>
 #include <utility>
 
+#include "fem/block_matrix.h"
 #include "fem/held_components.h"
 #include "fem/linear_solver.h"
 #include "fem/model.h"
@@ -45,8 +46,9 @@ class BalanceControl {
   // The coefficients c (K) at a balanced position.
   virtual Eigen::VectorXd Coefficients(const Eigen::VectorXd& unknowns,
                                        const Eigen::VectorXd& position) const = 0;
-  // The derivatives at a balanced position. `solver` holds the components of held().
-  virtual BalanceDerivative Differentiate(const Eigen::VectorXd& position,
+  // The derivatives at a balanced position, where `tangent` is the exact ∂r/∂x. `solver` holds the
+  // components of held().
+  virtual BalanceDerivative Differentiate(const BlockMatrix& tangent,
                                           LinearSolver* solver) const = 0;
 
  private:
@@ -54,8 +56,7 @@ class BalanceControl {
 };
 
 // u are the coefficients of the forces. The references must outlive the control.
-std::unique_ptr<BalanceControl> ControlForces(const Model& model, const StepEquation& equation,
-                                              const ForceModel& force_model);
+std::unique_ptr<BalanceControl> ControlForces(const Model& model, const ForceModel& force_model);
 
 // u are the places of the loaded components in metres. Null where the force model has a coefficient
 // that is not a force on one free component of one node, or two for the same component.

@@ -112,16 +112,19 @@ class BalancedMotion : public ceres::EvaluationCallback {
     return SolveByNewton(problem, target, &newton_solver_, &tangent_, &position_).IsUsable();
   }
 
+  void AssembleTangent() { equation_.Tangent(position_, /*convexify=*/false, &tangent_); }
+
   // Whether the balance is a stable equilibrium. A static body has others too, such as one that is
   // about to snap through, from which the search would have no direction to go on.
   bool IsStable() {
     if (equation_.has_inertia()) return true;
-    equation_.Tangent(position_, /*convexify=*/false, &tangent_);
+    AssembleTangent();
     return newton_solver_.Factorise(tangent_, NodeRotations(equation_.body(), position_));
   }
 
   bool Differentiate() {
-    BalanceDerivative derivative = control_.Differentiate(position_, &newton_solver_);
+    if (equation_.has_inertia()) AssembleTangent();  // in statics IsStable has done so
+    BalanceDerivative derivative = control_.Differentiate(tangent_, &newton_solver_);
     if (!derivative.is_usable) return false;
     derivative_ = std::move(derivative);
     differentiated_position_ = position_;

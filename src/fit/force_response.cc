@@ -15,13 +15,11 @@ constexpr double kTolerance = 1e-7;
 
 }  // namespace
 
-ForceResponse RespondToForces(const StepEquation& equation, const ForceModel& force_model,
-                              const Eigen::VectorXd& position, LinearSolver* solver) {
+ForceResponse RespondToForces(const BlockMatrix& tangent, const ForceModel& force_model,
+                              LinearSolver* solver) {
   const Eigen::SparseMatrix<double> loads = force_model.basis;  // column-major: a load is a column
-  BlockMatrix tangent(equation.body().pattern);
-  equation.Tangent(position, /*convexify=*/false, &tangent);
   ForceResponse response;
-  response.sensitivity.resize(position.size(), loads.cols());
+  response.sensitivity.resize(loads.rows(), loads.cols());
   Eigen::VectorXd column;
   for (Eigen::Index k = 0; k < loads.cols(); ++k) {
     if (!solver->Solve(tangent, loads.col(k), &column).IsUsable()) {
@@ -39,7 +37,9 @@ ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
   LinearSolverOptions options;
   options.relative_tolerance = kTolerance;
   LinearSolver solver(model.body->pattern, HeldComponents(HeldAxes(model)), options);
-  return RespondToForces(equation, force_model, position, &solver);
+  BlockMatrix tangent(model.body->pattern);
+  equation.Tangent(position, /*convexify=*/false, &tangent);
+  return RespondToForces(tangent, force_model, &solver);
 }
 
 Eigen::MatrixXd CoefficientCovariance(const ForceResponse& response,

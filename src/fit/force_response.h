@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "fem/block_matrix.h"
 #include "fem/linear_solver.h"
 #include "fem/model.h"
 #include "fem/step_equation.h"
@@ -21,12 +22,12 @@ struct ForceResponse {
 };
 
 // Computes ∂x/∂c = (∂r/∂x)⁻¹ B, with the basis B of the force model, by the implicit function
-// theorem at `position` (3n, m), where the step must be in balance. One factorisation serves all K
-// columns. `solver` must hold the components that the model holds. If it fails, the status says so
-// and the sensitivity is incomplete.
-ForceResponse RespondToForces(const StepEquation& equation, const ForceModel& force_model,
-                              const Eigen::VectorXd& position, LinearSolver* solver);
-// The same with a solver of its own.
+// theorem where the step is in balance. `tangent` is the exact ∂r/∂x there; `solver` must hold the
+// components that the model holds. If it fails, the status says so and the sensitivity is
+// incomplete.
+ForceResponse RespondToForces(const BlockMatrix& tangent, const ForceModel& force_model,
+                              LinearSolver* solver);
+// The same at a balanced `position` (3n, m).
 ForceResponse RespondToForces(const Model& model, const StepEquation& equation,
                               const ForceModel& force_model, const Eigen::VectorXd& position);
 

@@ -34,7 +34,7 @@ std::unique_ptr<BalanceControl> ChooseControl(const Model& model, const StepEqua
   if (HasFreeNodes(force_model) || count == 0 || count > kMaxPlaces) return nullptr;
   if (std::unique_ptr<BalanceControl> places = ControlPlaces(model, equation, force_model))
     return places;
-  return count <= kMaxForces ? ControlForces(model, equation, force_model) : nullptr;
+  return count <= kMaxForces ? ControlForces(model, force_model) : nullptr;
 }
 
 }  // namespace

@@ -16,13 +16,6 @@ namespace {
 // A recording is recommended only if the right name is at least this probable with it.
 constexpr double kWorthMaking = 0.5;
 
-std::string Joined(const std::vector<std::string>& phrases) {
-  if (phrases.empty()) return "";
-  if (phrases.size() == 1) return phrases.front();
-  const std::vector<std::string> first(phrases.begin(), phrases.end() - 1);
-  return fmt::format("{} and {}", fmt::join(first, ", "), phrases.back());
-}
-
 std::string Question(const PlanRecord& plan) {
   std::vector<std::string> rivals;
   double now = 0;
@@ -33,7 +26,7 @@ std::string Question(const PlanRecord& plan) {
   std::string text =
       rivals.size() == 1
           ? fmt::format("Whether {} is missing, or something else, is open.", plan.rivals[0].title)
-          : fmt::format("The diagnosis cannot tell apart {}.", Joined(rivals));
+          : fmt::format("The diagnosis cannot tell apart {}.", EnumerationText(rivals));
   text += fmt::format(" Recordings like these lead to the right name in {} of such cases.",
                       PercentText(now));
   if (!plan.also_left.empty())
@@ -74,7 +67,7 @@ std::string Inseparable(const PlanRecord& plan) {
                                   title(all[k].second), largest));
   }
   if (pairs.empty()) return "";
-  return fmt::format(" None of them tells apart {}; λ = {:g} is needed.", Joined(pairs),
+  return fmt::format(" None of them tells apart {}; λ = {:g} is needed.", EnumerationText(pairs),
                      kSeparableLambda);
 }
 
@@ -90,12 +83,12 @@ std::string Advice(const PlanRecord& plan) {
     return fmt::format(
         "None of the {} recordings that were tried is likely to decide it. The best, "
         "{} ({:.2g} s), would lead to the right name in {} of cases: {}.{}",
-        plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability), Joined(named),
-        Inseparable(plan));
+        plan.outcomes.size(), best.what, best.seconds, PercentText(best.probability),
+        EnumerationText(named), Inseparable(plan));
   return fmt::format(
       "Record next: {} ({:.2g} s). With it the right name is expected in {} of "
       "cases: {}.",
-      best.what, best.seconds, PercentText(best.probability), Joined(named));
+      best.what, best.seconds, PercentText(best.probability), EnumerationText(named));
 }
 
 std::string LambdaText(double lambda) {

@@ -1,6 +1,7 @@
 #include "report/quantity_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,13 @@ std::string DirectionText(const Eigen::Vector3d& vector) {
   std::string text = name(axes[0]);
   if (std::abs(unit[axes[0]]) < kCosineOf30Degrees) text += " and " + name(axes[1]);
   return text;
+}
+
+std::string EnumerationText(const std::vector<std::string>& phrases) {
+  if (phrases.empty()) return "";
+  if (phrases.size() == 1) return phrases.front();
+  return fmt::format("{} and {}", fmt::join(phrases.begin(), phrases.end() - 1, ", "),
+                     phrases.back());
 }
 
 }  // namespace lacuna

@@ -1,9 +1,10 @@
-// Text of quantities, directions and probabilities in sentences.
+// Text of quantities, directions, probabilities and enumerations in sentences.
 #ifndef LACUNA_REPORT_QUANTITY_TEXT_H_
 #define LACUNA_REPORT_QUANTITY_TEXT_H_
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 namespace lacuna {
 
@@ -16,6 +17,9 @@ std::string ProbabilityText(double p_value);
 
 // A probability from 0 to 1 as "78 %", "< 1 %" or "> 99 %".
 std::string PercentText(double probability);
+
+// "a", "a and b", "a, b and c"; empty for no phrases.
+std::string EnumerationText(const std::vector<std::string>& phrases);
 
 // "12 Pa"; the text alone without a unit.
 std::string WithUnit(const std::string& text, const std::string& unit);

@@ -34,9 +34,8 @@ fs::path CalibrationFile(const fs::path& folder) {
   return FinishedStage(folder, "calibration") / "calibration.json";
 }
 
-// A fit beside that of the report. One that an earlier version of Lacuna wrote is left out.
-bool IsShown(const fs::path& folder) {
-  return IsFittedRun(folder) && !IsCalibrationOfAnotherFormat(CalibrationFile(folder));
+bool IsOfAnotherVersion(const fs::path& folder) {
+  return IsCalibrationOfAnotherFormat(CalibrationFile(folder));
 }
 
 ReportedModel OpenModel(const fs::path& folder, const std::string& added,
@@ -89,7 +88,7 @@ bool OpenLedger(const fs::path& folder, ReportedRun* run) {
   try {
     for (const json& entry : ledger.at("models")) {
       const fs::path of_model = (folder / entry.at("run").get<std::string>()).lexically_normal();
-      if (!IsShown(of_model)) break;
+      if (!IsFittedRun(of_model) || IsOfAnotherVersion(of_model)) break;
       models.push_back(OpenModel(of_model, entry.value("added", ""), &notes));
       if (!IsOf(entry, models.back())) break;
     }
@@ -136,7 +135,7 @@ ReportedRun OpenReportedRun(const fs::path& folder) {
        plus = run.models.front().name.rfind('+')) {
     const std::string before = run.models.front().name.substr(0, plus);
     if (before.empty() || !IsFittedRun(beside / before)) break;
-    if (!IsShown(beside / before)) {
+    if (IsOfAnotherVersion(beside / before)) {
       run.notes.push_back(fmt::format(
           "The run {} is of another version of Lacuna and is not shown; fit it again.", before));
       break;

@@ -92,11 +92,8 @@ struct ReasonSentence {
   }
 };
 
-// "a", "a and b", "a, b and c".
 std::string NamesOf(const std::vector<std::string>& names) {
-  if (names.empty()) return "nothing";
-  if (names.size() == 1) return names.front();
-  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+  return names.empty() ? "nothing" : EnumerationText(names);
 }
 
 // The probabilities at both levels: of families, and of their members.

@@ -83,8 +83,8 @@ void Compare(int cells, double length) {
   const Eigen::VectorXd no_force = Eigen::VectorXd::Zero(rest.position.size());
 
   const Cost eliminated = Measure([&] {
-    return CoefficientFitter(model, equation, smooth, ControlForces(model, equation, smooth),
-                             rest.position, zero)
+    return CoefficientFitter(model, equation, smooth, ControlForces(model, smooth), rest.position,
+                             zero)
         .Fit(observations, {no_force, zero}, {});
   });
   const Cost sparse = Measure([&] {

@@ -40,6 +40,10 @@ Bar MakeBar(const std::array<int, 3>& cells, int order) {
   return bar;
 }
 
+Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
+}
+
 // A scan of the truth under a force at its tip: surface points with noise.
 struct Truth {
   PointCloud scan;
@@ -47,26 +51,29 @@ struct Truth {
 };
 constexpr double kNoise = 1e-4;  // m
 
-Truth ScanLoadedBar(const Eigen::Vector3d& force) {
+// The surface of the truth at rest and under a force at its tip.
+struct Surfaces {
+  TriMesh rest, loaded;
+};
+
+Surfaces LoadBar(const Eigen::Vector3d& force) {
   const Bar bar = MakeBar({14, 5, 4}, 2);
   MotionHistory history = RestHistory(bar.model);
   StepOptions options;
   options.scheme = TimeScheme::kQuasiStatic;
   const Eigen::VectorXd load = FootprintForce(*bar.body, bar.tip, 1.0).basis * force;
   EXPECT_TRUE(Stepper(bar.model, options).Equilibrium(load, &history).IsUsable());
-  const Eigen::Matrix3Xd nodes =
-      Eigen::Map<Eigen::Matrix3Xd>(history.position.data(), 3, bar.body->NodeCount());
-  const TriMesh surface = BoundaryAt(bar.body->boundary, nodes);
+  return {bar.body->boundary.surface, BoundaryAt(bar.body->boundary, AsPoints(history.position))};
+}
+
+Truth ScanLoadedBar(const Eigen::Vector3d& force) {
+  const TriMesh surface = LoadBar(force).loaded;
   Truth truth{EvaluateSamples(surface, SampleSurface(surface, 3000, 5)), force};
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0, kNoise);
   for (Eigen::Index j = 0; j < truth.scan.Size(); ++j)
     truth.scan.points.col(j) += noise(random) * truth.scan.normals.col(j);
   return truth;
-}
-
-Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
-  return Eigen::Map<const Eigen::Matrix3Xd>(stacked.data(), 3, stacked.size() / 3);
 }
 
 // Fits to the scan alone with eight updates of the correspondences, as the reconstruction does.
@@ -198,7 +205,7 @@ TEST(ForceFit, BothFormulationsFindTheSameForces) {
   options.immaterial_decrease = 0;
   options.max_iterations = 200;
   const ForceFit eliminated =
-      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, equation, forces),
+      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, forces),
                         rest.position, zero)
           .Fit(seen, {no_force, zero}, options);
   ASSERT_TRUE(eliminated.IsUsable()) << eliminated.message;
@@ -247,7 +254,7 @@ TEST(ForceFit, PlacesAndForcesAsUnknownsFindTheSameForces) {
       CoefficientFitter(bar.model, equation, forces, std::move(places), rest.position, zero)
           .Fit(seen, {no_force, zero}, options);
   const ForceFit by_forces =
-      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, equation, forces),
+      CoefficientFitter(bar.model, equation, forces, ControlForces(bar.model, forces),
                         rest.position, zero)
           .Fit(seen, {no_force, zero}, options);
   ASSERT_TRUE(by_places.IsUsable()) << by_places.message;
@@ -270,40 +277,25 @@ TEST(ForceFit, PlacesAreNoUnknownsWhereAForceActsOnSeveralNodesOrOnAHeldOne) {
   EXPECT_FALSE(has_places(NodalForces(*bar.body, bar.body->boundary.node, 1)));
 }
 
-// The places of points of the surface before and after the load, without noise.
-struct TrackedTruth {
-  Eigen::Matrix3Xd before, after;  // 3 × n, m
-};
-
-TrackedTruth TrackLoadedBar(const Eigen::Vector3d& force) {
-  const Bar bar = MakeBar({14, 5, 4}, 2);
-  MotionHistory history = RestHistory(bar.model);
-  StepOptions options;
-  options.scheme = TimeScheme::kQuasiStatic;
-  const Eigen::VectorXd load = FootprintForce(*bar.body, bar.tip, 1.0).basis * force;
-  EXPECT_TRUE(Stepper(bar.model, options).Equilibrium(load, &history).IsUsable());
-  const TriMesh rest = BoundaryAt(bar.body->boundary, bar.body->mesh.nodes);
-  const auto samples = SampleSurface(rest, 300, 5);
-  const TriMesh loaded = BoundaryAt(bar.body->boundary, AsPoints(history.position));
-  return {EvaluateSamples(rest, samples).points, EvaluateSamples(loaded, samples).points};
-}
-
 TEST(ForceFit, FollowsAFarMotionOfASoftBodyInOneStep) {
   // The tip of a bar of 100 mm moves by 76 mm at once, and the bar bends by more than 60°.
-  const TrackedTruth truth = TrackLoadedBar({0.3, 1.4, -2});
+  const Surfaces truth = LoadBar({0.3, 1.4, -2});
+  const auto samples = SampleSurface(truth.rest, 300, 5);
+  const Eigen::Matrix3Xd before = EvaluateSamples(truth.rest, samples).points;
+  const Eigen::Matrix3Xd after = EvaluateSamples(truth.loaded, samples).points;
   const Bar bar = MakeBar({6, 2, 2}, 1);
   const MotionHistory rest = RestHistory(bar.model);
   const StepEquation equation(bar.model, rest, TimeScheme::kQuasiStatic, 0);
   const ForceModel forces = NodalForces(*bar.body, bar.tip, 0.5);
-  const SurfaceTracks tracks = TrackOnSurface(bar.body->boundary, truth.before);
+  const SurfaceTracks tracks = TrackOnSurface(bar.body->boundary, before);
   const Observations seen =
-      ObserveMarkers(bar.body->boundary, tracks.at_rest, truth.after - tracks.offset, kNoise);
+      ObserveMarkers(bar.body->boundary, tracks.at_rest, after - tracks.offset, kNoise);
   const ForceFit fit = StepForceFitter(bar.model, equation, forces, rest.position).Fit(seen);
   ASSERT_TRUE(fit.IsUsable()) << fit.message;
   const Eigen::Matrix3Xd found = PointsAt(tracks, bar.body->boundary, AsPoints(fit.position));
-  const double farthest = (truth.after - truth.before).colwise().norm().maxCoeff();
+  const double farthest = (after - before).colwise().norm().maxCoeff();
   EXPECT_GT(farthest, 0.07);
-  EXPECT_LT((found - truth.after).colwise().norm().mean(), 0.01 * farthest);
+  EXPECT_LT((found - after).colwise().norm().mean(), 0.01 * farthest);
   EXPECT_LE(fit.factorisations, 40);
 }
 
