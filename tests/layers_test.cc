@@ -29,8 +29,8 @@ const std::map<std::string, int> kLayers = {
     {"meshing", 3},    {"registration", 3}, {"record", 3}, {"fem", 4},        {"analysis", 4},
     {"effects", 5},    {"fit", 5},          {"report", 5}, {"experiment", 6}, {"reconstruction", 7},
     {"prediction", 7}, {"calibration", 8},  {"paper", 8},  {"comparison", 9}, {"diagnosis", 9},
-    {"exchange", 9},   {"plan", 10},        {"sweep", 10}, {"trials", 10},    {"app", 11},
-    {"python", 11},
+    {"exchange", 9},   {"plan", 10},        {"sweep", 10}, {"trials", 11},    {"app", 12},
+    {"python", 12},
 };
 
 // A run of yesterday can be explained without running it again.

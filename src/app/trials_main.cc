@@ -10,6 +10,7 @@
 #include "core/interrupt.h"
 #include "core/logging.h"
 #include "core/progress.h"
+#include "trials/follow_up.h"
 #include "trials/interval_trials.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
@@ -51,6 +52,11 @@ int Main(int argc, char** argv) {
   run->add_option("folder", folder, "Folder of the cases")->required();
   run->add_option("--workers", workers, "Number of processes that run at the same time")
       ->check(CLI::Range(1, 64));
+  CLI::App* follow = app.add_subcommand(
+      "follow", "Make the next recording that a plan proposes for each case left open");
+  follow->add_option("folder", folder, "Folder of the cases")->required();
+  follow->add_option("--workers", workers, "Number of processes that run at the same time")
+      ->check(CLI::Range(1, 64));
   CLI::App* redecide = app.add_subcommand(
       "redecide", "Decide again with the rules as they are now, from the stored evidence");
   redecide->add_option("folder", folder, "Folder of the cases")->required();
@@ -68,6 +74,7 @@ int Main(int argc, char** argv) {
   try {
     if (make->parsed()) return MakeTrials(ReadTrialSuite(Config::Load(suite)), folder, workers);
     if (run->parsed()) return RunTrials(folder, workers);
+    if (follow->parsed()) return RunFollowUps(folder, workers);
     if (intervals->parsed()) return Intervals(suite, folder, workers);
     if (redecide->parsed()) fmt::print("{} cases decided\n", RedecideTrials(folder));
     return Report(folder);

@@ -18,21 +18,11 @@ namespace {
 
 constexpr int kMarkers = 8;
 
-Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {
-  Eigen::Matrix3Xd places(3, kMarkers);
-  for (int m = 0; m < kMarkers; ++m) {
-    const double angle = 0.5 * std::numbers::pi * (m % 4);
-    places.col(m) << size[0] * (0.15 + 0.85 * m / (kMarkers - 1)), 0.5 * size[1] * std::cos(angle),
-        0.5 * size[2] * std::sin(angle);
-  }
-  return places;
-}
-
 void AddNoise(const TrialCase& trial, int recording, std::vector<Eigen::Matrix3Xd>* frames) {
   const double memory = trial.noise_correlation_time > 0
                             ? std::exp(-kTrialSpacing / trial.noise_correlation_time)
                             : 0;
-  Eigen::Matrix3Xd noise = Eigen::Matrix3Xd::Zero(3, kMarkers);
+  Eigen::Matrix3Xd noise = Eigen::Matrix3Xd::Zero(3, frames->front().cols());
   for (size_t f = 0; f < frames->size(); ++f) {
     for (Eigen::Index k = 0; k < noise.size(); ++k) {
       const double fresh = trial.noise * Gauss(trial, 20 + recording, f, k);
@@ -96,12 +86,8 @@ std::string ShapeAndClamp() {
 
 void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motion,
                   const std::filesystem::path& folder) {
-  const TetMesh& mesh = motion.body->mesh;
-  const Embedding at = Embed(mesh, MarkerPlaces(trial.true_size));
-  std::vector<Eigen::Matrix3Xd> frames;
-  for (const Eigen::Matrix3Xd& position : motion.positions)
-    frames.push_back(PointsAt(at, mesh, position));
-  AddNoise(trial, recording, &frames);
+  std::vector<Eigen::Matrix3Xd> frames =
+      SeenMarkers(trial, recording, motion, MarkerPlaces(trial.true_size));
   SpoilFrame(trial, recording, &frames);
   std::vector<double> times;
   for (size_t f = 0; f < frames.size(); ++f)
@@ -152,6 +138,28 @@ void WriteScans(const TrialCase& trial, int recording, const TrueMotion& motion,
 
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j) {
   return Normal(RandomBits({trial.seed, stream, i, j}));
+}
+
+Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {
+  Eigen::Matrix3Xd places(3, kMarkers);
+  for (int m = 0; m < kMarkers; ++m) {
+    const double angle = 0.5 * std::numbers::pi * (m % 4);
+    places.col(m) << size[0] * (0.15 + 0.85 * m / (kMarkers - 1)), 0.5 * size[1] * std::cos(angle),
+        0.5 * size[2] * std::sin(angle);
+  }
+  return places;
+}
+
+std::vector<Eigen::Matrix3Xd> SeenMarkers(const TrialCase& trial, int recording,
+                                          const TrueMotion& motion,
+                                          const Eigen::Matrix3Xd& places) {
+  const TetMesh& mesh = motion.body->mesh;
+  const Embedding at = Embed(mesh, places);
+  std::vector<Eigen::Matrix3Xd> frames;
+  for (const Eigen::Matrix3Xd& position : motion.positions)
+    frames.push_back(PointsAt(at, mesh, position));
+  AddNoise(trial, recording, &frames);
+  return frames;
 }
 
 void WriteRecording(const TrialCase& trial, int recording, const TrueMotion& motion,

@@ -28,6 +28,14 @@ struct TrueMotion {
   std::vector<Eigen::Matrix3Xd> positions;  // for each frame: 3 × nodes, m
 };
 
+// The places of the eight markers on the surface of a bar of this size: 3 × markers, m.
+Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size);
+
+// What a motion-capture system sees of the points at `places` (3 × markers, m) on the true bar, in
+// each frame of the motion, with noise. `recording` is the number of the recording in its case.
+std::vector<Eigen::Matrix3Xd> SeenMarkers(const TrialCase& trial, int recording,
+                                          const TrueMotion& motion, const Eigen::Matrix3Xd& places);
+
 // Number (i, j) of a stream of standard normal draws; it depends on the seed of the case and on
 // these three numbers alone.
 double Gauss(const TrialCase& trial, uint64_t stream, uint64_t i, uint64_t j);

@@ -97,6 +97,7 @@ TrialReport ReportTrials(const std::filesystem::path& folder) {
     ++report.confusion[truth][said];
   }
   report.rates = RatesOf(finished);
+  report.follow_ups = ReportFollowUps(folder);
   for (auto& [group, tally] : tallies) {
     tally.median_before = Median(before[group]);
     tally.median_after = Median(after[group]);
@@ -129,7 +130,7 @@ std::string ReportInWords(const TrialReport& report) {
     for (const auto& [name, count] : said) parts.push_back(fmt::format("{} {}", count, name));
     text += fmt::format("  {:32} {}\n", truth, fmt::join(parts, ", "));
   }
-  text += "\n" + RatesInWords(report.rates);
+  text += "\n" + RatesInWords(report.rates) + FollowUpsInWords(report.follow_ups);
   if (!report.unfinished.empty())
     text += fmt::format("\n{} cases without an outcome\n", report.unfinished.size());
   return text;
@@ -157,6 +158,7 @@ void SaveTrialReport(const TrialReport& report, const std::filesystem::path& fol
                         {"confusion", report.confusion},
                         {"unfinished", report.unfinished}};
   all.update(RatesToJson(report.rates));
+  all["follow_ups"] = FollowUpsToJson(report.follow_ups);
   WriteFileAtomically(folder / "report.json", all.dump(2) + "\n");
   WriteFileAtomically(folder / "report.txt", ReportInWords(report));
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "trials/follow_up.h"
 #include "trials/trial_rates.h"
 
 namespace lacuna {
@@ -35,6 +36,7 @@ struct TrialReport {
   // Hidden effect ("nothing" for a control) → the effect named, or the verdict → number of cases.
   std::map<std::string, std::map<std::string, int>> confusion;
   TrialRates rates;
+  FollowUpReport follow_ups;
   std::vector<std::string> unfinished;  // cases without an outcome
 };
 

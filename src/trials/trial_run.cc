@@ -77,21 +77,21 @@ void Compare(const TrialCase& trial, const CalibrationProblem& problem,
 
 // The input of the decision with the hidden effect among the hypotheses, of a case in which the
 // diagnosis does not know it.
-std::filesystem::path WithRemoved(const std::filesystem::path& folder) {
-  return folder / "decision_with_removed";
+std::filesystem::path WithRemoved(const std::filesystem::path& output) {
+  return output / "decision_with_removed";
 }
 
 // `decided`: what the decision of the case was made from.
 std::optional<RecordedPower> Simulated(const TrialCase& trial, const DecisionInput& decided,
-                                       const std::filesystem::path& folder) {
+                                       const std::filesystem::path& output) {
   if (trial.hidden.size() != 1) return std::nullopt;
   const std::string& truth = trial.hidden.front().type;
   const bool is_known = trial.group != "removed";
   // A residual that does not show the effect leaves no name.
   const RecordedPower invisible{.truth = {truth}, .open = 1, .most_wrong = ""};
   if (is_known) return PowerToFind(decided, truth, true).value_or(invisible);
-  if (!std::filesystem::exists(WithRemoved(folder) / "decision.json")) return std::nullopt;
-  return PowerToFind(LoadDecisionInput(WithRemoved(folder)), truth, false).value_or(invisible);
+  if (!std::filesystem::exists(WithRemoved(output) / "decision.json")) return std::nullopt;
+  return PowerToFind(LoadDecisionInput(WithRemoved(output)), truth, false).value_or(invisible);
 }
 
 // The same study with the time step that the diagnosis has chosen.
@@ -105,9 +105,14 @@ DecisionInput InputWithRemoved(const CalibrationProblem& problem, const Eigen::V
 
 }  // namespace
 
-TrialOutcome RunCase(const std::filesystem::path& folder) {
+std::filesystem::path DecisionOf(const std::filesystem::path& output) {
+  return output / "decision";
+}
+
+TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& experiment,
+                     const std::filesystem::path& output) {
   const auto began = std::chrono::steady_clock::now();
-  PredictionStudy study = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  PredictionStudy study = ReadPredictionStudy(Config::Load(experiment));
   const ReferenceBody reference = MakeReferenceBody(study);
   Progress progress({.style = ProgressStyle::kSilent});
   const Calibration calibration =
@@ -122,8 +127,8 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
     for (std::string type; std::getline(stream, type);) options.without.push_back(type);
   }
   const Diagnosis diagnosis = Diagnose(problem, calibration.parameters, options, &progress);
-  SaveDecisionInput(diagnosis.decision_input, folder / "decision");
-  WriteDiagnosisFile(RecordOf(diagnosis), folder / "diagnosis.json");
+  SaveDecisionInput(diagnosis.decision_input, DecisionOf(output));
+  WriteDiagnosisFile(RecordOf(diagnosis), output / "diagnosis.json");
 
   TrialOutcome outcome;
   outcome.verdict = diagnosis.verdict;
@@ -156,8 +161,8 @@ TrialOutcome RunCase(const std::filesystem::path& folder) {
   if (!trial.hidden.empty()) Compare(trial, problem, calibration.parameters, diagnosis, &outcome);
   if (trial.group == "removed")
     SaveDecisionInput(InputWithRemoved(problem, calibration.parameters, diagnosis.time_step),
-                      WithRemoved(folder));
-  outcome.simulated = Simulated(trial, diagnosis.decision_input, folder);
+                      WithRemoved(output));
+  outcome.simulated = Simulated(trial, diagnosis.decision_input, output);
   return outcome;
 }
 
@@ -223,10 +228,10 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
 int RedecideTrials(const std::filesystem::path& folder) {
   int decided = 0;
   for (const std::filesystem::path& own : CasesIn(folder)) {
-    if (!std::filesystem::exists(own / "decision" / "decision.json") ||
+    if (!std::filesystem::exists(DecisionOf(own) / "decision.json") ||
         !std::filesystem::exists(own / "outcome.json"))
       continue;
-    const DecisionInput input = LoadDecisionInput(own / "decision");
+    const DecisionInput input = LoadDecisionInput(DecisionOf(own));
     const Decision decision = Decide(input);
     TrialOutcome outcome = LoadOutcome(own / "outcome.json");
     outcome.verdict = decision.verdict;
@@ -250,7 +255,7 @@ int RunTrials(const std::filesystem::path& folder, int workers) {
     const Claim claim(own / "claimed");
     if (!claim.holds() || std::filesystem::exists(own / "outcome.json")) return;
     try {
-      SaveOutcome(RunCase(own), own / "outcome.json");
+      SaveOutcome(RunCase(own, own / "experiment.yaml", own), own / "outcome.json");
     } catch (const InputError& problem) {
       keep_failure(k, problem.what());
     }

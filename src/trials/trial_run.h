@@ -43,10 +43,14 @@ struct TrialOutcome {
   double seconds = 0;         // wall time of fit and diagnosis
 };
 
-// Fits and diagnoses the case in `folder` according to its experiment.yaml and writes
-// diagnosis.json there. The truth is opened only afterwards. Throws InputError if the case cannot
-// be read or fitted.
-TrialOutcome RunCase(const std::filesystem::path& folder);
+// Fits and diagnoses the case in `folder` according to `experiment`, and keeps diagnosis.json and
+// what it was decided from in `output`. The truth is opened only afterwards. Throws InputError if
+// the case cannot be read or fitted.
+TrialOutcome RunCase(const std::filesystem::path& folder, const std::filesystem::path& experiment,
+                     const std::filesystem::path& output);
+
+// The folder of diagnosis output from which RunCase() decided (diagnosis/decision_store.h).
+std::filesystem::path DecisionOf(const std::filesystem::path& output);
 
 // Write and read outcome.json. Both throw InputError if the file cannot be used.
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);

@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "effects/attached_mass.h"
 #include "effects/catalogue.h"
 #include "effects/effect_text.h"
 #include "effects/gravity.h"
@@ -68,7 +69,26 @@ std::vector<double> FrameTimes(const TrialCase& trial, int recording) {
   return times;
 }
 
-TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
+// What is done in the recordings with which a case comes.
+TrialProcedure ProcedureOf(const TrialCase& trial, int recording) {
+  return {FrameTimes(trial, recording),
+          [recording](double time) { return ClampMotionAt(recording, time).Place(); },
+          trial.hold_forces[static_cast<size_t>(recording)]};
+}
+
+// The entry of a parameter under fit.parameters.
+std::string Fitted(const TrialCase& trial, const std::string& name) {
+  std::string entry = "{name: " + name;
+  for (const TrialPrior& prior : trial.priors)
+    if (prior.name == name)
+      entry += fmt::format(", mean: {0} {2}, deviation: {1} {2}", prior.mean, prior.deviation,
+                           prior.unit);
+  return entry + "}";
+}
+
+}  // namespace
+
+TrueMotion SimulateTruth(const TrialCase& trial, const TrialProcedure& procedure, bool rough) {
   // A clamp that extends further holds more of the bar, so that its free part is shorter.
   Eigen::Vector3d size = trial.true_size;
   size[0] -= trial.clamp_error;
@@ -83,11 +103,17 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
   Model model;
   model.body = std::make_shared<const Body>(MakeBody(mesh.mesh, kTrialDensity));
   model.effects = TrueEffects(trial);
+  if (procedure.weight) {
+    const Eigen::Vector3d gravity =
+        GravityOf(model.effects).value_or(Eigen::Vector3d(Eigen::Vector3d::Zero()));
+    model.effects.push_back(MakeAttachedMass(procedure.weight->mass, procedure.weight->place,
+                                             procedure.weight->radius, gravity));
+  }
   const Eigen::Matrix3Xd& nodes = model.body->mesh.nodes;
   const Eigen::VectorXi clamped = NodesBetween(nodes, -1, trial.clamp_error + kTrialFace);
   const Eigen::Matrix3Xd rest = nodes(Eigen::all, clamped);
-  model.grips = {{clamped, [rest, recording](double time) -> Eigen::Matrix3Xd {
-                    return ClampMotionAt(recording, time).Place() * rest;
+  model.grips = {{clamped, [rest, &procedure](double time) -> Eigen::Matrix3Xd {
+                    return procedure.clamp(time) * rest;
                   }}};
   const Eigen::VectorXd share = BoundaryShares(
       *model.body, NodesBetween(nodes, trial.true_size[0] - kTrialFace, trial.true_size[0] + 1));
@@ -96,10 +122,12 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
   options.time_step = rough ? kRoughStep : trial.true_step;
   options.held_force.resize(3 * share.size());
   for (Eigen::Index i = 0; i < share.size(); ++i)
-    options.held_force.segment<3>(3 * i) = share[i] * trial.hold_forces[recording];
+    options.held_force.segment<3>(3 * i) = share[i] * procedure.hold_force;
+  if (const Eigen::Matrix3Xd moved = procedure.clamp(kRelease) * nodes; moved != nodes)
+    options.held_guess = moved.reshaped();
   TrueMotion motion{model.body, {}};
-  const PredictionSummary summary = Predict(
-      model, options, FrameTimes(trial, recording), {}, [&](int, const PredictedState& state) {
+  const PredictionSummary summary =
+      Predict(model, options, procedure.times, {}, [&](int, const PredictedState& state) {
         motion.positions.emplace_back(state.position.reshaped(3, nodes.cols()));
       });
   if (!summary.IsUsable())
@@ -107,18 +135,6 @@ TrueMotion Simulate(const TrialCase& trial, int recording, bool rough) {
         fmt::format("{}: the truth cannot be simulated: {}", trial.name, summary.message));
   return motion;
 }
-
-// The entry of a parameter under fit.parameters.
-std::string Fitted(const TrialCase& trial, const std::string& name) {
-  std::string entry = "{name: " + name;
-  for (const TrialPrior& prior : trial.priors)
-    if (prior.name == name)
-      entry += fmt::format(", mean: {0} {2}, deviation: {1} {2}", prior.mean, prior.deviation,
-                           prior.unit);
-  return entry + "}";
-}
-
-}  // namespace
 
 void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough) {
   MakeFolder(folder);
@@ -155,7 +171,7 @@ void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, b
                        : fmt::format("place_deviation: {} m\n", 2 * kTrialPlaceError));
   for (int r = 0; r < trial.recordings; ++r) {
     const std::string name = fmt::format("recording_{}", r + 1);
-    WriteRecording(trial, r, Simulate(trial, r, rough), folder / name);
+    WriteRecording(trial, r, SimulateTruth(trial, ProcedureOf(trial, r), rough), folder / name);
     yaml += fmt::format(
         "  - recording: {}\n    fit_until: {} s\n    hold:\n      release: {} s\n      region: "
         "{{half_space: {{point: [{} m, 0 m, 0 m], normal: [1, 0, 0]}}}}\n",

@@ -7,16 +7,39 @@
 #ifndef LACUNA_TRIALS_TRIAL_SIMULATION_H_
 #define LACUNA_TRIALS_TRIAL_SIMULATION_H_
 
+#include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
 
 #include "trials/trial_case.h"
+#include "trials/trial_recording.h"
 
 namespace lacuna {
 
-// Writes <folder>/recording_1, … and experiment.yaml, whose model lacks the hidden effects. With
-// `rough` the truth has elements and time steps like those of the model; such a recording serves to
-// find out how large a hidden effect must be to be detectable. Throws InputError, with the reason,
-// if the true motion cannot be simulated or a file cannot be written.
+// What is done to the bar while it is recorded.
+struct TrialProcedure {
+  std::vector<double> times;                       // s, at which the frames are taken
+  std::function<Eigen::Isometry3d(double)> clamp;  // its motion from its undeformed place, time s
+  Eigen::Vector3d hold_force;                      // N, of the hand until the release
+  // A known mass is fixed to the bar, by a ball of this radius about this place.
+  struct Weight {
+    double mass = 0;                                  // kg
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m
+    double radius = 0;                                // m
+  };
+  std::optional<Weight> weight = {};
+};
+
+// The motion of the true bar. With `rough` it has elements and time steps like those of the model.
+// Throws InputError, with the reason, if it cannot be simulated.
+TrueMotion SimulateTruth(const TrialCase& trial, const TrialProcedure& procedure,
+                         bool rough = false);
+
+// Writes <folder>/recording_1, … and experiment.yaml, whose model lacks the hidden effects. A
+// `rough` recording serves to find out how large a hidden effect must be to be detectable. Throws
+// InputError, with the reason, if the true motion cannot be simulated or a file cannot be written.
 void SimulateCase(const TrialCase& trial, const std::filesystem::path& folder, bool rough = false);
 
 }  // namespace lacuna

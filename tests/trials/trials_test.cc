@@ -9,10 +9,14 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "experiment/reference_body.h"
+#include "plan/planned_recording.h"
+#include "plan/protocol.h"
+#include "prediction/played_recording.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/recording.h"
 #include "support/temporary_folder.h"
+#include "trials/follow_up.h"
 #include "trials/trial_report.h"
 #include "trials/trial_run.h"
 #include "trials/trial_simulation.h"
@@ -70,6 +74,46 @@ TEST(TrialSimulation, TheTrueModelFitsTheDepthCameras) {
   ASSERT_TRUE(at_truth.usable) << at_truth.message;
   EXPECT_LT(RootMeanSquare(at_truth.residual), 1.5);
   EXPECT_GT(RootMeanSquare(problem.Predict(problem.Start(), false).residual), 5);
+}
+
+double Distance(const std::vector<Eigen::Matrix3Xd>& a, const std::vector<Eigen::Matrix3Xd>& b) {
+  double sum = 0;
+  for (size_t f = 0; f < a.size(); ++f) sum += (a[f] - b[f]).squaredNorm() / a[f].size();
+  return std::sqrt(sum / a.size());
+}
+
+// The true bar does what each stock protocol says: the model with the true parameters predicts it.
+TEST(FollowUps, TheTrueBarFollowsThePlan) {
+  const TemporaryFolder folder;
+  const TrialCase trial = DrawCase("planned", "control", 5, 1, false, "");
+  SimulateCase(trial, folder.Path(), /*rough=*/true);
+  const PredictionStudy read = ReadPredictionStudy(Config::Load(folder / "experiment.yaml"));
+  const TetMesh mesh = MakeReferenceBody(read).mesh;
+  const CalibrationProblem problem(read, mesh);
+  Eigen::VectorXd values = problem.Start();
+  values.head(3) << trial.young_modulus, trial.poisson_ratio, trial.damping;
+  const PredictionStudy study = problem.StudyAt(values);
+  std::vector<Eigen::Matrix3Xd> repeated;
+  std::vector<std::string> names;
+  for (const Protocol& protocol : StockProtocols(study, mesh)) {
+    PlannedRecording planned = PlanRecording(protocol, study, mesh);
+    planned.item.hold->force = PlannedHoldForce(protocol, trial.hold_forces[0]);
+    const RecordingModel model(study, planned.item, mesh, problem.body(), {});
+    const PlayedRecording played = Play(model, PlayedNuisances(model));
+    ASSERT_TRUE(played.summary.IsUsable()) << protocol.name;
+    const Markers seen = RecordTruth(trial, protocol, study, mesh, 2, /*rough=*/true);
+    EXPECT_LT(Distance(seen.positions, played.markers), 8e-4) << protocol.name;
+    names.push_back(protocol.name);
+    if (protocol.name == "repeat") {
+      repeated = seen.positions;
+    } else if (seen.positions.size() == repeated.size() &&
+               seen.positions[0].cols() == repeated[0].cols()) {
+      EXPECT_GT(Distance(seen.positions, repeated), 1e-3) << protocol.name;
+    }
+  }
+  for (const char* name : {"repeat", "longer", "pull twice", "turn about y", "shake along z",
+                           "added mass", "more markers"})
+    EXPECT_THAT(names, Contains(name));
 }
 
 TEST(TrialSuite, RefusesAnUnknownEffect) {
@@ -242,6 +286,54 @@ TEST(TrialReport, CountsCorrectWrongAndAmbiguousVerdicts) {
   EXPECT_EQ(rates.family.part, 3);
   EXPECT_EQ(rates.removed_member.part, 1);
   EXPECT_THAT(ReportInWords(report), HasSubstr("drag (removed)"));
+}
+
+TEST(FollowUps, AreCountedBesideWhatThePlanPredicted) {
+  const TemporaryFolder folder;
+  TrialSuite suite = SmallSuite();
+  suite.controls = suite.hard_controls = 0;
+  suite.removed.clear();
+  suite.factors = {1, 1, 1};
+  const std::vector<TrialCase> cases = CasesOf(suite);
+  ASSERT_EQ(cases.size(), 3u);
+  TrialOutcome open, right, wrong;
+  open.verdict = Verdict::kAmbiguous;
+  open.named = {"mass_damping", "drag"};
+  right.verdict = wrong.verdict = Verdict::kMissing;
+  right.named = {"drag"};
+  wrong.named = {"mass_damping"};
+  EXPECT_TRUE(IsOpen(cases[0], open));
+  EXPECT_FALSE(IsOpen(cases[0], right));
+  const auto keep = [&](const TrialCase& trial, const std::string& follow_up) {
+    Write(folder.Path(), trial, open);
+    const std::filesystem::path own = folder / trial.name / "follow_up";
+    for (const auto& [kind, outcome] : {std::pair{"best", right}, std::pair{"random", wrong}}) {
+      MakeFolder(own / kind);
+      SaveOutcome(outcome, own / kind / "outcome.json");
+    }
+    WriteFileAtomically(own / "follow_up.json", follow_up);
+  };
+  const std::string best =
+      R"({"protocol": "pull twice", "predicted": 0.9, "predicted_for_truth": 0.8, "folder": "best"})";
+  const std::string random =
+      R"({"protocol": "repeat", "predicted": 0.2, "predicted_for_truth": null, "folder": "random"})";
+  keep(cases[0], R"({"message": "", "best": )" + best + R"(, "random": )" + random + "}");
+  keep(cases[1], R"({"message": "", "best": )" + best + R"(, "random": null})");
+  keep(cases[2], R"({"message": "no rivals", "best": null, "random": null})");
+
+  const FollowUpReport report = ReportFollowUps(folder.Path());
+  EXPECT_EQ(report.open, 3);
+  EXPECT_EQ(report.not_made, 1);
+  ASSERT_EQ(report.tallies.size(), 2u);
+  EXPECT_EQ(report.tallies[0].cases, 2);
+  EXPECT_EQ(report.tallies[0].named, 2);
+  EXPECT_NEAR(report.tallies[0].predicted, 1.8, 1e-12);
+  EXPECT_EQ(report.tallies[1].cases, 1);
+  EXPECT_EQ(report.tallies[1].named, 0);
+  EXPECT_EQ(report.tallies[1].wrong, 1);
+  EXPECT_THAT(ReportInWords(ReportTrials(folder.Path())), HasSubstr("predicted 90 %"));
+  WriteFileAtomically(folder / cases[2].name / "follow_up/follow_up.json", "{}");
+  EXPECT_THROW(ReportFollowUps(folder.Path()), InputError);
 }
 
 }  // namespace
