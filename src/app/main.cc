@@ -4,9 +4,11 @@
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/logging.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/suggestion.h"
@@ -70,9 +73,13 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", lacuna::ProgramVersion());
   app.allow_extras();  // reported below, with a suggestion
   int threads = 0;
+  uint64_t memory_limit = 0;
   lacuna::OutputOptions output;
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
+  app.add_option("--memory-limit", memory_limit,
+                 "Refuse what needs more memory, such as 4GB; default: the machine's memory")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
   app.add_flag("-v,--verbose", output.verbose, "Log the progress of the stages in detail");
 
   std::function<int()> command;
@@ -114,6 +121,7 @@ int main(int argc, char** argv) {
     return kUnusableInput;
   }
   if (threads > 0) lacuna::SetThreadCount(threads);
+  if (memory_limit > 0) lacuna::SetMemoryLimit(memory_limit);
   if (output.verbose) lacuna::SetLogLevel(lacuna::LogLevel::kInfo);
 
   try {
@@ -124,6 +132,10 @@ int main(int argc, char** argv) {
   } catch (const lacuna::Interrupted& interrupted) {
     Say("stopped; run the same command again to resume");
     return interrupted.ExitCode();
+  } catch (const std::bad_alloc&) {
+    Say(fmt::format("more memory is needed than the limit of {:.2g} GB",
+                    1e-9 * static_cast<double>(lacuna::MemoryLimit())));
+    return kUnusableInput;
   } catch (const std::exception& problem) {
     Say(problem.what());
     return kUnusableInput;

@@ -45,6 +45,26 @@ inline std::vector<ParameterCard> ElasticSettings() {
   return settings;
 }
 
+// Young's modulus that a branch adds to the material; `meaning` says which, in m.
+inline ParameterCard BranchModulus(const char* meaning) {
+  return {.name = "modulus",
+          .meaning = meaning,
+          .dimension = kPressure,
+          .bounds = kNotNegative,
+          .null_value = 0,
+          .plausible_min = 0,
+          .plausible_max = 3e5,
+          .default_value = kMustBeGiven,
+          .log_scale = false};
+}
+
+inline ParameterCard BranchPoissonRatio() {
+  ParameterCard ratio = ElasticParameters()[1];
+  ratio.meaning = "Poisson's ratio of the branch (of the material if omitted)";
+  ratio.setting = true;
+  return ratio;
+}
+
 }  // namespace lacuna
 
 #endif  // LACUNA_EFFECTS_ELASTIC_PARAMETERS_H_

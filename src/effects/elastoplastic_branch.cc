@@ -15,6 +15,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
 #include "fem/memory_branch.h"
 
 namespace lacuna {
@@ -87,29 +88,22 @@ class ElastoplasticLaw {
                 "Computational Inelasticity, Springer 1998, ch. 3; finite strain: A. E. Green, "
                 "P. M. Naghdi, A General Theory of an Elastic-plastic Continuum, Archive for "
                 "Rational Mechanics and Analysis 18, 1965",
-            .parameters =
-                {{.name = "modulus",
-                  .meaning = "Young's modulus that the branch adds before it yields (three times "
-                             "its shear modulus), m; for soft solids a tenth to once that of the "
-                             "material",
-                  .dimension = kPressure,
-                  .bounds = kNotNegative,
-                  .null_value = 0,
-                  .plausible_min = 0,
-                  .plausible_max = 3e5,
-                  .default_value = kMustBeGiven,
-                  .log_scale = false},
-                 {.name = "yield_strain",
-                  .meaning = "stretch at which a bar starts to flow, ε_y; from stiff pastes to "
-                             "soft foams",
-                  .dimension = kDimensionless,
-                  .bounds = kPositive,
-                  .null_value = kNoNullValue,
-                  .plausible_min = 1e-3,
-                  .plausible_max = 0.3,
-                  .default_value = kMustBeGiven,
-                  .log_scale = true,
-                  .trial = {.min = 0.005, .max = 0.03, .draw = 2}}},
+            .parameters = {BranchModulus(
+                               "Young's modulus that the branch adds before it yields (three times "
+                               "its shear modulus), m; for soft solids a tenth to once that of the "
+                               "material"),
+                           {.name = "yield_strain",
+                            .meaning =
+                                "stretch at which a bar starts to flow, ε_y; from stiff pastes to "
+                                "soft foams",
+                            .dimension = kDimensionless,
+                            .bounds = kPositive,
+                            .null_value = kNoNullValue,
+                            .plausible_min = 1e-3,
+                            .plausible_max = 0.3,
+                            .default_value = kMustBeGiven,
+                            .log_scale = true,
+                            .trial = {.min = 0.005, .max = 0.03, .draw = 2}}},
             .residual_when_missing =
                 "After unloading the body does not return to its rest shape; the permanent set is "
                 "largest where the strain was largest. Force against displacement is a loop whose "

@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
 #include "fem/memory_branch.h"
 
 namespace lacuna {
@@ -79,17 +80,9 @@ class SofteningLaw {
             "L. Mullins, Softening of Rubber by Deformation, Rubber Chemistry and Technology "
             "42, 1969; J. C. Simo, On a Fully Three-dimensional Finite-strain Viscoelastic "
             "Damage Model, Computer Methods in Applied Mechanics and Engineering 60, 1987",
-        .parameters = {{.name = "modulus",
-                        .meaning =
-                            "Young's modulus that the undamaged body has in addition to that of a "
-                            "fully softened one, m; for filled rubbers up to that of the material",
-                        .dimension = kPressure,
-                        .bounds = kNotNegative,
-                        .null_value = 0,
-                        .plausible_min = 0,
-                        .plausible_max = 3e5,
-                        .default_value = kMustBeGiven,
-                        .log_scale = false},
+        .parameters = {BranchModulus(
+                           "Young's modulus that the undamaged body has in addition to that of a "
+                           "fully softened one, m; for filled rubbers up to that of the material"),
                        {.name = "softening_strain",
                         .meaning = "largest past strain at which half of the modulus is gone, κ₀",
                         .dimension = kDimensionless,
@@ -100,16 +93,7 @@ class SofteningLaw {
                         .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 0.03, .max = 0.2, .draw = 3}},
-                       {.name = "poisson_ratio",
-                        .meaning = "Poisson's ratio of the branch (of the material if omitted)",
-                        .dimension = kDimensionless,
-                        .bounds = {-1, 0.5, true, true},
-                        .null_value = kNoNullValue,
-                        .plausible_min = 0.2,
-                        .plausible_max = 0.499,
-                        .default_value = kMustBeGiven,
-                        .log_scale = false,
-                        .setting = true}},
+                       BranchPoissonRatio()},
         .residual_when_missing =
             "The same load displaces the body further the second time. Force against displacement "
             "of the first loading lies above that of all later ones, which agree with each other "

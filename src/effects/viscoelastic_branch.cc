@@ -19,6 +19,7 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "effects/elastic_parameters.h"
 #include "effects/standard_cards.h"
 #include "fem/memory_branch.h"
 
@@ -85,17 +86,9 @@ class ViscoelasticLaw {
             "Nonlinear Solid Mechanics, Wiley 2000, sec. 6.10; update: R. L. Taylor, K. S. "
             "Pister, G. L. Goudreau, Thermomechanical Analysis of Viscoelastic Solids, "
             "International Journal for Numerical Methods in Engineering 2, 1970",
-        .parameters = {{.name = "modulus",
-                        .meaning =
-                            "Young's modulus that the branch adds to a sudden stretch, m; for soft "
-                            "solids a tenth to once that of the material",
-                        .dimension = kPressure,
-                        .bounds = kNotNegative,
-                        .null_value = 0,
-                        .plausible_min = 0,
-                        .plausible_max = 3e5,
-                        .default_value = kMustBeGiven,
-                        .log_scale = false},
+        .parameters = {BranchModulus(
+                           "Young's modulus that the branch adds to a sudden stretch, m; for soft "
+                           "solids a tenth to once that of the material"),
                        {.name = "relaxation_time",
                         .meaning =
                             "time in which the stress of the branch falls to 37 % in a hold, τ; a "
@@ -108,16 +101,7 @@ class ViscoelasticLaw {
                         .default_value = kMustBeGiven,
                         .log_scale = true,
                         .trial = {.min = 0.02, .max = 0.3, .draw = 1}},
-                       {.name = "poisson_ratio",
-                        .meaning = "Poisson's ratio of the branch (of the material if omitted)",
-                        .dimension = kDimensionless,
-                        .bounds = {-1, 0.5, true, true},
-                        .null_value = kNoNullValue,
-                        .plausible_min = 0.2,
-                        .plausible_max = 0.499,
-                        .default_value = kMustBeGiven,
-                        .log_scale = false,
-                        .setting = true}},
+                       BranchPoissonRatio()},
         .residual_when_missing =
             "The body creeps under a constant load, or the force relaxes while the body is held, "
             "with the shape of the elastic deformation. Fast loading appears stiffer than slow "

@@ -1,13 +1,16 @@
 #include "fem/cholmod_factor.h"
 
+#include <fmt/format.h>
 #include <glog/logging.h>
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
+#include "core/memory_limit.h"
 #include "core/serial_openmp.h"
 
 namespace lacuna {
@@ -129,6 +132,7 @@ struct CholmodFactor::Implementation {
     matrix.sorted = matrix.packed = true;
     cholmod_free_factor(&factor, &common);
     factor = cholmod_analyze(&matrix, &common);
+    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     CHECK(factor != nullptr) << "CHOLMOD's symbolic analysis failed with status " << common.status;
   }
 
@@ -175,9 +179,14 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
   Implementation& self = *implementation_;
   const double* values = matrix.values();
   for (size_t k = 0; k < self.values.size(); ++k) self.values[k] = values[self.lower.source[k]];
+  if (self.factor->xtype == CHOLMOD_PATTERN)  // memory is taken now
+    RequireMemory(sizeof(double) * static_cast<double>(self.factor->xsize),
+                  fmt::format("the factor of a stiffness matrix of {} unknowns", self.matrix.nrow),
+                  "larger elements (mesh.max_volume) or linear ones (mesh.order) need less");
   const SerialOpenMp serial;
   cholmod_factorize(&self.matrix, self.factor, &self.common);
-  CHECK_GE(self.common.status, CHOLMOD_OK) << "CHOLMOD could not factorise (out of memory?)";
+  if (self.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  CHECK_GE(self.common.status, CHOLMOD_OK) << "CHOLMOD could not factorise";
   // CHOLMOD factorises a matrix with NaN without an error; the condition number reveals it.
   return self.common.status == CHOLMOD_OK && self.factor->minor == self.factor->n &&
          (self.matrix.nrow == 0 || cholmod_rcond(self.factor, &self.common) > 0);

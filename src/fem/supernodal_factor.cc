@@ -1,10 +1,12 @@
 #include "fem/supernodal_factor.h"
 
+#include <fmt/format.h>
 #include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 
 namespace lacuna {
@@ -102,6 +104,10 @@ void SupernodalFactor::PlaceInMemory() {
     base += stack.highest;
   }
   for (int s = 0; s < supernodes; ++s) update_begin_[s] += stack_of(s).height;
+  RequireMemory(
+      sizeof(float) * static_cast<double>(panel_begin_.back() + base),
+      fmt::format("the factor of a stiffness matrix of {} unknowns", 3 * order().node.size()),
+      "larger elements (mesh.max_volume) or linear ones (mesh.order) need less");
   factor_.assign(panel_begin_.back(), 0.0f);
   updates_.assign(base, 0.0f);
   front_vectors_.assign(vector_begin_.back(), 0.0f);

@@ -21,7 +21,8 @@ namespace lacuna {
 // Not thread-safe: one object per simulation, because a solve uses internal working memory.
 class SupernodalFactor {
  public:
-  // Performs the symbolic analysis for all matrices of a pattern. No reference is kept.
+  // Performs the symbolic analysis for all matrices of a pattern. No reference is kept. Throws
+  // InputError where the factor does not fit into memory (core/memory_limit.h).
   SupernodalFactor(const BlockPattern& pattern, const EliminationOrder& order);
 
   // Computes the numeric factor. There is no usable factor unless the result is kPositive; kInDoubt
