@@ -200,7 +200,7 @@ GatheredRun GatherReconstruction(const fs::path& folder) {
   return gathered;
 }
 
-// --- Studies of many runs: Table 1, its ablation, sealed cases ---
+// --- Studies of many runs: Table 1, its ablation, sealed cases, intervals ---
 
 constexpr double kNotableRatio = 1.2;  // of a found modulus to the true one
 
@@ -265,9 +265,31 @@ json FindTrials(const fs::path& folder) {
   return report.is_object() && report.contains("tallies") ? report : json();
 }
 
+// How often intervals contain the truth; null where there is no such file. Throws InputError for a
+// damaged one.
+json FindIntervals(const fs::path& folder) {
+  const fs::path file = folder / "intervals.json";
+  if (!fs::exists(file)) return nullptr;
+  json report = ReadJsonFile(file);
+  return report.is_object() && report.contains("parameters") ? report : json();
+}
+
+// One sentence for each parameter.
+std::vector<std::string> IntervalsHeadline(const json& intervals) {
+  std::vector<std::string> sentences;
+  if (intervals.is_null()) return sentences;
+  for (const json& one : intervals.at("parameters"))
+    sentences.push_back(
+        fmt::format("The 95 % interval of {} contains the truth in {:.0f} % of {} "
+                    "draws.",
+                    one.at("name").get<std::string>(), 100 * one.at("covered_95").get<double>(),
+                    one.at("draws").get<int>()));
+  return sentences;
+}
+
 bool IsStudy(const fs::path& folder) {
   return fs::exists(folder / "table1.json") || fs::exists(folder / "ablation.json") ||
-         !FindTrials(folder).is_null();
+         !FindTrials(folder).is_null() || !FindIntervals(folder).is_null();
 }
 
 GatheredRun GatherStudy(const fs::path& folder) {
@@ -291,6 +313,14 @@ GatheredRun GatherStudy(const fs::path& folder) {
     throw InputError({(folder / "report.json").string()},
                      std::string("is not a report of sealed cases: ") + problem.what());
   }
+  const json intervals = FindIntervals(folder);
+  try {
+    for (const std::string& sentence : IntervalsHeadline(intervals))
+      gathered.sentences.push_back(sentence);
+  } catch (const json::exception& problem) {
+    throw InputError({(folder / "intervals.json").string()},
+                     std::string("is not a table of intervals: ") + problem.what());
+  }
   const std::string path = FromProject(folder, folder);
   json commands = json::array();
   if (has_table) {
@@ -303,7 +333,9 @@ GatheredRun GatherStudy(const fs::path& folder) {
   gathered.document = {
       {"name", name},
       {"folder", path},
-      {"kind", has_table || has_ablation ? "table1" : "trials"},
+      {"kind", has_table || has_ablation ? "table1"
+               : trials.is_null()        ? "intervals"
+                                         : "trials"},
       {"models", json::array()},
       {"ledger", nullptr},
       {"noise", nullptr},
@@ -311,6 +343,7 @@ GatheredRun GatherStudy(const fs::path& folder) {
       {"table1", table},
       {"ablation", has_ablation ? ReadJsonFile(folder / "ablation.json") : json()},
       {"trials", trials},
+      {"intervals", intervals},
       {"notes", json::array()},
       {"provenance", {{"program", "Lacuna " + ProgramVersion()}, {"commands", commands}}}};
   return gathered;
@@ -322,7 +355,8 @@ GatheredRun Gather(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json"))
     throw InputError(
         {folder.string()},
-        "is not a run: it holds no manifest.json, table1.json, ablation.json or report.json");
+        "is not a run: it holds no manifest.json, table1.json, ablation.json, report.json or "
+        "intervals.json");
   const Manifest manifest = LoadManifest(folder / "manifest.json");
   if (!manifest.finished)
     throw InputError({folder.string()},

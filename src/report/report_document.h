@@ -10,7 +10,7 @@
 namespace lacuna {
 
 // Reads the folders of runs of `lacuna fit` or `reconstruct`, or of the results of `table1`,
-// `ablation` or `lacuna-trials`; at least one (CHECK).
+// `ablation`, `lacuna-trials report` or `lacuna-trials intervals`; at least one (CHECK).
 // Nothing is computed, and the same folders give the same document. Throws InputError when a folder
 // is no finished run, when a file is damaged, or when several runs are not of one kind or have
 // errors that cannot be compared (run_differences.h).

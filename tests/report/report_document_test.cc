@@ -146,6 +146,31 @@ TEST(ReportDocument, SealedCasesHaveOneSentenceForEachKindOfTruth) {
   EXPECT_THAT(WhyRefused({folder.Path()}), HasSubstr("report.json"));
 }
 
+TEST(ReportDocument, IntervalsAreShownWithHowOftenTheyHold) {
+  const TemporaryFolder folder;
+  json report = {{"schema_version", 1},
+                 {"parameters",
+                  {{{"name", "young_modulus"},
+                    {"draws", 101},
+                    {"covered_50", 0.5},
+                    {"covered_80", 0.76},
+                    {"covered_95", 0.92},
+                    {"mean", -0.23},
+                    {"spread", 1.04},
+                    {"p_uniform", 0.28},
+                    {"positions", {0.1, 0.5, 0.9}}}}}};
+  std::ofstream(folder / "intervals.json") << report;
+  const json document = ReportDocument({folder.Path()});
+  EXPECT_THAT(document.at("sentences"),
+              ElementsAre("The 95 % interval of young_modulus contains the truth in 92 % of 101 "
+                          "draws."));
+  EXPECT_EQ(document.at("runs").at(0).at("kind"), "intervals");
+  EXPECT_EQ(document.at("runs").at(0).at("intervals"), report);
+  report["parameters"][0].erase("draws");
+  std::ofstream(folder / "intervals.json") << report;
+  EXPECT_THAT(WhyRefused({folder.Path()}), HasSubstr("intervals.json"));
+}
+
 TEST(ReportDocument, ScenesHaveTheFramesOfTheMotionAndAllFramesAsSeries) {
   const TemporaryFolder folder;
   WriteSmallChain(folder.Path());

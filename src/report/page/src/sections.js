@@ -8,12 +8,12 @@ import { planSection } from './plan.js';
 import { provenanceSection } from './provenance.js';
 import { reconstructionSection } from './reconstruction.js';
 import { runsSection } from './runs.js';
-import { ablationSection, table1Section, trialsSection } from './studies.js';
+import { ablationSection, intervalsSection, table1Section, trialsSection } from './studies.js';
 import { validationSection } from './validation.js';
 
 export function sections(context) {
   return [runsSection, reconstructionSection, errorSection, forceSection, physicsSection, planSection, parameterSection,
-    agreementSection, table1Section, ablationSection, trialsSection, provenanceSection].map((build) => build(context)).filter(Boolean);
+    agreementSection, table1Section, ablationSection, trialsSection, intervalsSection, provenanceSection].map((build) => build(context)).filter(Boolean);
 }
 
 // Sections that unpack arrays first, each with the section before which it belongs.

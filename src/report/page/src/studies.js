@@ -1,4 +1,5 @@
-// Studies over many runs: Table 1 of the paper, the ablation of its search, and sealed cases.
+// Studies over many runs: Table 1 of the paper, the ablation of its search, sealed cases, and
+// intervals that are compared with the truth.
 import { chart } from './chart.js';
 import { cellColour } from './colours.js';
 import { h, svg } from './dom.js';
@@ -78,6 +79,23 @@ function rateTable(rates) {
     shown.map((one, k) => [k === 0 || shown[k - 1].truth !== one.truth ? name(one.truth) : '', name(one.what), `${one.cases} of ${one.of}`, share(one.cases / one.of), share(one.predicted)]));
 }
 
+// What further recordings decided, beside what the plan had predicted.
+function followUpTable(followUps) {
+  const shown = (followUps?.recordings ?? []).filter((one) => one.cases > 0);
+  return table('One more recording of the cases that are left open', [['recording'], ['cases', true], ['named', true, 'the hidden effect, and no other'], ['another named', true], ['predicted', true, 'by the plan']],
+    shown.map((one) => [name(one.choice), String(one.cases), share(one.named / one.cases), String(one.wrong), share(one.predicted)]));
+}
+
+export function intervalsSection({ data }) {
+  return section('intervals', 'Intervals', 'Do the intervals hold?', 'Each draw simulates a recording with known parameters and fits them. The 50, 80 and 95 % intervals should contain the truth in as many draws.',
+    (data.runs ?? []).filter((run) => run.intervals).map(({ intervals: { parameters } }) => [
+      table(null, [['parameter'], ['draws', true], ['in 50 %', true], ['in 80 %', true], ['in 95 %', true], ['mean', true, 'of (truth − centre)/σ; 0 is right'], ['spread', true, 'its standard deviation; 1 is right'], ['χ² p', true, 'that positions in the interval are uniform']],
+        parameters.map((one) => [name(one.name), String(one.draws), share(one.covered_50), share(one.covered_80), share(one.covered_95), fixed(one.mean, 2), fixed(one.spread, 2), number(one.p_uniform, 2)])),
+      h('p', { class: 'explain' }, 'The plots show the share of draws whose truth lies below each quantile of its interval’s distribution. On the dashed diagonal, intervals mean what they say; above it, estimates are too high.'),
+      grid(parameters.map((one) => chart({ title: name(one.name), x: 'quantile, %', y: 'share of draws, %', xRange: [0, 100], yRange: [0, 100], height: 240,
+        series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: one.positions.map((position) => 100 * position), y: one.positions.map((_, k) => (100 * (k + 1)) / one.positions.length), colour: 'series-last' }] })), 'small')]));
+}
+
 export function trialsSection({ data }) {
   const of = (part, whole) => (whole > 0 ? `${part} of ${whole}` : NONE);
   return section('trials', 'Sealed cases', 'Sealed cases', 'Synthetic recordings whose hidden effect the diagnosis does not read. They measure how often a verdict is right.',
@@ -86,6 +104,6 @@ export function trialsSection({ data }) {
         (trials.tallies ?? []).map((one) => [name(one.group), String(one.cases), String(one.top1), String(one.top2), String(one.wrong), String(one.ranked_first), of(one.at_noise, one.fitted), of(one.within_15_percent, one.fitted), of(one.covered, one.intervals), sigmas(one.median_error_before), one.fitted > 0 ? sigmas(one.median_error_after) : NONE,
           name(Object.entries(one.verdicts ?? {}).map(([verdict, count]) => `${count} ${verdict}`).join(', '))])),
       h('p', { class: 'explain' }, 'Controls hide nothing; hard controls have a faulty measurement; a removed effect is not in the catalogue that the diagnosis tries. 1 rec and 2 rec are the numbers of recordings; 2 x is the size of the hidden effect relative to the detectable one. Errors are medians on held-out frames.'),
-      rateTable(trials.rates), confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
+      rateTable(trials.rates), followUpTable(trials.follow_ups), confusion(trials.confusion), grid(calibrationCurve(trials.calibration)),
       trials.unfinished?.length ? h('p', { class: 'explain' }, `${counted(trials.unfinished.length, 'case')} without an outcome.`) : null]));
 }
