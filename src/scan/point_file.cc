@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -57,21 +59,36 @@ void RefuseWords(const std::filesystem::path& file, std::string_view content, si
   }
 }
 
-// Refuses files that PCL would accept silently, or with which it would leave its memory.
-void CheckContent(const std::filesystem::path& file, bool is_ply) {
-  const std::string content = ReadFilledFile(file);
-  bool is_text = false;
-  size_t body = 0;
-  if (is_ply) {
-    const PlyHeader header = ReadPlyHeader(file, content);
-    is_text = header.is_text;
-    body = header.body;
-  } else {
-    const PcdHeader header = ReadPcdHeader(file, content);
-    is_text = header.is_text;
-    body = header.body;
+// The readers of PCL give a negative status where a file cannot be read. What PCL would accept
+// silently, or with which it would leave its memory, is refused before.
+
+int ReadPly(const std::filesystem::path& file, const std::string& content,
+            pcl::PCLPointCloud2* cloud) {
+  const PlyHeader header = ReadPlyHeader(file, content);
+  if (header.is_text) RefuseWords(file, content, header.body);
+  return pcl::PLYReader().read(file.string(), *cloud);
+}
+
+// PCL takes lines at the beginning of the points for further lines of the header, so that it is
+// given header and points apart.
+int ReadPcd(const std::filesystem::path& file, const std::string& content,
+            pcl::PCLPointCloud2* cloud) {
+  const PcdHeader header = ReadPcdHeader(file, content);
+  if (header.is_text) RefuseWords(file, content, header.body);
+  pcl::PCDReader reader;
+  std::istringstream head(content.substr(0, header.body));
+  Eigen::Vector4f origin;
+  Eigen::Quaternionf orientation;
+  int version = 0, kind = 0;
+  unsigned body = 0;
+  if (reader.readHeader(head, *cloud, origin, orientation, version, kind, body) < 0) return -1;
+  if (header.is_text) {
+    std::istringstream points(content.substr(header.body));
+    return reader.readBodyASCII(points, *cloud, version);
   }
-  if (is_text) RefuseWords(file, content, body);
+  constexpr int kCompressed = 2;
+  return reader.readBodyBinary(reinterpret_cast<const unsigned char*>(content.data()), *cloud,
+                               version, kind == kCompressed, static_cast<unsigned>(header.body));
 }
 
 // One coordinate of all points.
@@ -112,13 +129,14 @@ Eigen::Matrix3Xd Fields(const std::filesystem::path& file, const pcl::PCLPointCl
 }
 
 PointCloud ReadWithPcl(const std::filesystem::path& file, bool is_ply) {
-  CheckContent(file, is_ply);
+  const std::string content = ReadFilledFile(file);
   pcl::PCLPointCloud2 cloud;
   int status = -1;
   try {
     const SilentPcl silent;
-    status = is_ply ? pcl::PLYReader().read(file.string(), cloud)
-                    : pcl::PCDReader().read(file.string(), cloud);
+    status = is_ply ? ReadPly(file, content, &cloud) : ReadPcd(file, content, &cloud);
+  } catch (const InputError&) {
+    throw;
   } catch (const std::exception& problem) {
     Fail(file, fmt::format("cannot be read: {}", problem.what()));
   }

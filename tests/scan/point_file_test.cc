@@ -127,6 +127,20 @@ TEST(PointFile, WritesWhatItReads) {
   EXPECT_EQ(ReadPointFile(folder.Path() / "b.ply", {}).normals, cloud.normals);
 }
 
+// The first bytes of the points may look like lines of a header.
+TEST(PointFile, ReadsPcdWhosePointsLookLikeAHeader) {
+  const TestFolder folder;
+  std::string body = "WIDTH 1200000000\nHEIGHT 1\nPOINTS 1200000000\nDATA binary\n";
+  while (body.size() % 12 != 0) body += '\n';
+  const int count = static_cast<int>(body.size() / 12);
+  const PointCloud cloud =
+      ReadPointFile(folder.Write("a.pcd", PcdHeader("binary", count) + body), {});
+  ASSERT_EQ(cloud.Size(), count);
+  float first = 0;
+  std::memcpy(&first, body.data(), sizeof(first));
+  EXPECT_EQ(cloud.points(0, 0), first);
+}
+
 TEST(PointFile, RefusesTruncatedAndMalformedFiles) {
   const TestFolder folder;
   const std::string ply = PlyHeader("binary_little_endian", "float", 4) + Binary<float>(false);
