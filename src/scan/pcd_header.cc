@@ -61,6 +61,9 @@ class HeaderReader {
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
       Fail(fmt::format("is not a PCD file, or its header is damaged: got \"{}\"", key));
     if (words.empty()) Fail(fmt::format("\"{}\" has no value", key));
+    if (std::find(taken_.begin(), taken_.end(), key) != taken_.end())
+      Fail(fmt::format("has a second line {}", key));
+    taken_.push_back(key);
     if (key == "FIELDS" || key == "COLUMNS") {
       if (!fields_.empty()) Fail("names the fields a second time");
       fields_.assign(words.begin(), words.end());
@@ -153,7 +156,8 @@ class HeaderReader {
   const std::string_view content_;
   size_t at_ = 0;
   int line_ = 0;
-  std::string_view data_;  // the kind of the body; empty until its line is read
+  std::vector<std::string_view> taken_;  // keys so far
+  std::string_view data_;                // the kind of the body; empty until its line is read
   std::vector<std::string> fields_;
   std::vector<char> types_;  // F, I or U
   std::vector<size_t> sizes_, counts_;

@@ -155,6 +155,7 @@ TEST(PointFile, RefusesTruncatedAndMalformedFiles) {
       {"less.pcd", PcdHeader("ascii", 5) + Text(), "is truncated or malformed"},
       {"word.pcd", PcdHeader("ascii", 1) + "1 2 q\n", "got \"q\""},
       {"junk.pcd", "hello\n", "is not a PCD file"},
+      {"twice.pcd", "POINTS 4\n" + PcdHeader("ascii", 4) + Text(), "has a second line POINTS"},
       {"huge.pcd", PcdHeader("binary", 2000000000) + "x", "huge.pcd"},
       {"empty.ply", "", "is empty"},
       {"empty.pcd", "", "is empty"},
