@@ -2,18 +2,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
-#include <string>
 
 #include "app/commands.h"
-#include "app/explain.h"
 #include "effects/catalogue.h"
 
 namespace lacuna {
 namespace {
 
-int Effects(const std::string& type) {
-  if (!type.empty()) return Explain(type);
+int Effects() {
   for (const auto kind : {CatalogueEntry::Kind::kMaterial, CatalogueEntry::Kind::kEffect}) {
     fmt::print("{}\n", kind == CatalogueEntry::Kind::kMaterial ? "material: {law: ...}"
                                                                : "effects: [{type: ...}]");
@@ -29,9 +25,7 @@ int Effects(const std::string& type) {
 void AddEffects(CLI::App* app, std::function<int()>* command) {
   CLI::App* effects =
       app->add_subcommand("effects", "List the physical effects that a model can have");
-  auto type = std::make_shared<std::string>();
-  effects->add_option("name", *type, "Describe this effect in full");
-  effects->callback([command, type] { *command = [type] { return Effects(*type); }; });
+  effects->callback([command] { *command = Effects; });
 }
 
 }  // namespace lacuna

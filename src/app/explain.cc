@@ -1,6 +1,4 @@
 // lacuna explain
-#include "app/explain.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -220,8 +218,6 @@ Snippet SnippetOf(const CatalogueEntry& entry) {
           is_material ? "material: " + text + "\n" : "effects:\n  - " + text + "\n"};
 }
 
-}  // namespace
-
 int Explain(const std::string& type) {
   if (const NuisanceCard* nuisance = FindNuisance(type)) return ExplainNuisance(*nuisance);
   const CatalogueEntry& entry = RequireEntry(type);
@@ -244,6 +240,8 @@ int Explain(const std::string& type) {
   fmt::print("\nExample ({})\n{}", snippet.origin, snippet.yaml);
   return 0;
 }
+
+}  // namespace
 
 void AddExplain(CLI::App* app, std::function<int()>* command) {
   CLI::App* explain = app->add_subcommand("explain", "Describe one effect in full");
