@@ -133,8 +133,7 @@ int main(int argc, char** argv) {
     Say("stopped; run the same command again to resume");
     return interrupted.ExitCode();
   } catch (const std::bad_alloc&) {
-    Say(fmt::format("more memory is needed than the limit of {:.2g} GB",
-                    1e-9 * static_cast<double>(lacuna::MemoryLimit())));
+    Say("there is not enough memory");
     return kUnusableInput;
   } catch (const std::exception& problem) {
     Say(problem.what());

@@ -182,7 +182,7 @@ bool CholmodFactor::Factorise(const BlockMatrix& matrix) {
   if (self.factor->xtype == CHOLMOD_PATTERN)  // memory is taken now
     RequireMemory(sizeof(double) * static_cast<double>(self.factor->xsize),
                   fmt::format("the factor of a stiffness matrix of {} unknowns", self.matrix.nrow),
-                  "larger elements (mesh.max_volume) or linear ones (mesh.order) need less");
+                  kCoarserMesh);
   const SerialOpenMp serial;
   cholmod_factorize(&self.matrix, self.factor, &self.common);
   if (self.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/interrupt.h"
+#include "core/memory_limit.h"
 #include "geometry/hermite.h"
 
 namespace lacuna {
@@ -148,6 +149,7 @@ PredictionSummary Predict(
   visits.Until(options.start_time, 0, from, from);
   while (visits.AreLeft()) {
     ThrowIfInterrupted();
+    ThrowIfOverMemoryLimit();
     before = history;
     const auto [length, end] = NextStep(options.step.scheme, options.time_step, summary.steps,
                                         history.time, visits.NextTime());

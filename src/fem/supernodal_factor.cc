@@ -107,7 +107,7 @@ void SupernodalFactor::PlaceInMemory() {
   RequireMemory(
       sizeof(float) * static_cast<double>(panel_begin_.back() + base),
       fmt::format("the factor of a stiffness matrix of {} unknowns", 3 * order().node.size()),
-      "larger elements (mesh.max_volume) or linear ones (mesh.order) need less");
+      kCoarserMesh);
   factor_.assign(panel_begin_.back(), 0.0f);
   updates_.assign(base, 0.0f);
   front_vectors_.assign(vector_begin_.back(), 0.0f);

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/memory_limit.h"
 #include "experiment/grip_tracks.h"
 #include "experiment/known_loads.h"
 #include "fit/step_force_fitter.h"
@@ -117,6 +118,7 @@ class Follower {
       StepForceFitter fitter(model_, equation, forces_, start, coefficients_);
       for (int round = 0; round < study_.follow.alignment_rounds; ++round) {
         ThrowIfInterrupted();
+        ThrowIfOverMemoryLimit();
         const Observations seen = Observe(AsPoints(start), state, correspondence);
         frame.observations = static_cast<int>(seen.Count());
         // The prior of free forces is centred at those of the last frame, and that of coefficients
@@ -360,6 +362,7 @@ FollowedMotion FollowFrames(const ReconstructionStudy& study, const ReferenceBod
   }
   for (size_t k = first; k < states.size(); ++k) {
     ThrowIfInterrupted();
+    ThrowIfOverMemoryLimit();
     const bool followed = follower.Follow(k);
     progress->Report(static_cast<int64_t>(k + 1), motion.frames.back().weighted_rms);
     if (followed) continue;

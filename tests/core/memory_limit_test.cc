@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <new>
-#include <string>
 #include <vector>
 
 #include "core/error.h"
@@ -16,33 +14,31 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-TEST(MemoryLimit, IsTheMachinesMemoryUnlessItIsSet) {
+class MemoryLimitTest : public ::testing::Test {
+ protected:
+  ~MemoryLimitTest() override { SetMemoryLimit(0); }
+};
+
+TEST_F(MemoryLimitTest, IsTheMachinesMemoryUnlessItIsSet) {
   EXPECT_GT(MemoryInUse(), 1e6);
   EXPECT_LT(MemoryInUse(), MemoryLimit());
   RequireMemory(1e6, "a small thing", "");
+  ThrowIfOverMemoryLimit();
   EXPECT_THAT([] { RequireMemory(1e15, "the factor", "take larger elements"); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("the factor needs 1e+06 GB"),
                                               HasSubstr("more than the limit of"),
                                               HasSubstr("take larger elements"))));
 }
 
-// In a process of its own, whose limit cannot be raised again.
-TEST(MemoryLimitDeathTest, RefusesWhatIsAnnouncedAndWhatIsNot) {
-  EXPECT_EXIT(
-      {
-        SetMemoryLimit(MemoryInUse() + 200'000'000);
-        int refused = 0;
-        refused += !MemoryShortage(3e8, "the factor", "take larger elements").empty();
-        RequireMemory(1e7, "a small thing", "");
-        try {
-          std::vector<char> large(2'000'000'000, 1);
-          refused += large[7] - 1;
-        } catch (const std::bad_alloc&) {
-          ++refused;
-        }
-        _exit(refused);
-      },
-      ::testing::ExitedWithCode(2), "");
+TEST_F(MemoryLimitTest, RefusesWhatIsAnnouncedAndWatchesWhatIsNot) {
+  SetMemoryLimit(MemoryInUse() + 100'000'000);
+  EXPECT_EQ(MemoryShortage(1e7, "a small thing", ""), "");
+  EXPECT_THAT(MemoryShortage(3e8, "the factor", ""), HasSubstr("the factor needs 0.3 GB"));
+  ThrowIfOverMemoryLimit();
+  const std::vector<char> large(300'000'000, 1);
+  EXPECT_THAT([] { ThrowIfOverMemoryLimit(); },
+              ThrowsMessage<InputError>(HasSubstr("of memory are in use, more than the limit")));
+  EXPECT_EQ(large.back(), 1);
 }
 
 }  // namespace
