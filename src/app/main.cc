@@ -78,8 +78,10 @@ int main(int argc, char** argv) {
   app.add_option("--threads", threads, "Threads to use; results do not depend on it")
       ->check(CLI::Range(1, 1024));
   app.add_option("--memory-limit", memory_limit,
-                 "Refuse what needs more memory, such as 4GB; default: the machine's memory")
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
+                 "Refuse to begin what needs more memory than this, for example 4GB; for each "
+                 "process; default: the machine's memory")
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
+      ->check(CLI::Range(uint64_t{1'000'000}, uint64_t{1'000'000'000'000'000}));
   app.add_flag("-v,--verbose", output.verbose, "Log the progress of the stages in detail");
 
   std::function<int()> command;

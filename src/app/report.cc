@@ -40,10 +40,10 @@ void AddReport(CLI::App* app, OutputOptions* output, std::function<int()>* comma
   CLI::App* report = app->add_subcommand(
       "report", "Write what a run found as one HTML page, with the motion in 3D");
   report->footer(
-      "RUN is the folder of a finished `lacuna fit`, `reconstruct`, `table1` or `ablation`. The "
-      "page\n"
-      "needs nothing but a browser, and no network. Nothing is computed again; `compare`\n"
-      "and `diagnose` add to what it shows. Several runs are shown side by side, if their errors\n"
+      "RUN is the folder of a finished `lacuna fit`, `reconstruct`, `table1` or `ablation`, or of\n"
+      "`lacuna-trials report` or `intervals`. The page needs nothing but a browser, and no\n"
+      "network. Nothing is computed again; `compare` and `diagnose` add to what it shows. Several "
+      "runs are shown side by side, if their errors\n"
       "refer to the same frames of the same recordings. docs/report.md explains the page.");
   auto arguments = std::make_shared<ReportArguments>();
   report->add_option("run", arguments->runs, "Folders of the runs")->required();

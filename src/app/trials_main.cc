@@ -26,6 +26,17 @@ int Report(const std::filesystem::path& folder) {
   return 0;
 }
 
+void Redecide(const std::filesystem::path& folder) {
+  int decided = 0;
+  for (const std::filesystem::path& own : CasesIn(folder)) {
+    const TrialCase trial = LoadCase(own / "truth.json");
+    decided += RedecideOutcome(trial, own);
+    for (const std::filesystem::path& follow_up : FollowUpFolders(own))
+      RedecideOutcome(trial, follow_up);
+  }
+  fmt::print("{} cases decided\n", decided);
+}
+
 int Intervals(const std::filesystem::path& suite, const std::filesystem::path& folder,
               int workers) {
   const int status = RunIntervalSuite(ReadIntervalSuite(Config::Load(suite)), folder, workers);
@@ -76,7 +87,7 @@ int Main(int argc, char** argv) {
     if (run->parsed()) return RunTrials(folder, workers);
     if (follow->parsed()) return RunFollowUps(folder, workers);
     if (intervals->parsed()) return Intervals(suite, folder, workers);
-    if (redecide->parsed()) fmt::print("{} cases decided\n", RedecideTrials(folder));
+    if (redecide->parsed()) Redecide(folder);
     return Report(folder);
   } catch (const InputError& problem) {
     WriteLineToStandardError(problem.what());

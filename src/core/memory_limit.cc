@@ -6,14 +6,15 @@
 #include <atomic>
 #include <fstream>
 
-#include "core/error.h"
-
 namespace lacuna {
 namespace {
 
-constexpr double kGigabyte = 1e9;
-
 std::atomic<uint64_t> limit = 0;  // 0: none was set
+
+std::string InWords(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.0f} MB", 1e-6 * bytes)
+                     : fmt::format("{:.1f} GB", 1e-9 * bytes);
+}
 
 uint64_t PageSize() { return static_cast<uint64_t>(sysconf(_SC_PAGESIZE)); }
 
@@ -32,27 +33,21 @@ uint64_t MemoryInUse() {
   return PageSize() * resident;
 }
 
-std::string MemoryShortage(double bytes, const std::string& what, const std::string& advice) {
+void RequireMemory(double bytes, const std::string& what, const std::string& advice) {
   const double in_use = static_cast<double>(MemoryInUse());
   const double most = static_cast<double>(MemoryLimit());
-  if (in_use + bytes <= most) return "";
-  return fmt::format(
-      "{} needs {:.2g} GB beside the {:.2g} GB in use, more than the limit of {:.2g} GB; {}", what,
-      bytes / kGigabyte, in_use / kGigabyte, most / kGigabyte, advice);
-}
-
-void RequireMemory(double bytes, const std::string& what, const std::string& advice) {
-  const std::string shortage = MemoryShortage(bytes, what, advice);
-  if (!shortage.empty()) throw InputError(shortage);
+  if (in_use + bytes <= most) return;
+  throw OutOfMemory(fmt::format("{} needs {} beside the {} in use, more than the limit of {}; {}",
+                                what, InWords(bytes), InWords(in_use), InWords(most), advice));
 }
 
 void ThrowIfOverMemoryLimit() {
   if (limit == 0) return;
   const double in_use = static_cast<double>(MemoryInUse());
-  if (in_use <= static_cast<double>(limit)) return;
-  throw InputError(
-      fmt::format("{:.2g} GB of memory are in use, more than the limit of {:.2g} GB; {}",
-                  in_use / kGigabyte, static_cast<double>(limit) / kGigabyte, kCoarserMesh));
+  const double most = static_cast<double>(limit);
+  if (in_use <= most) return;
+  throw OutOfMemory(fmt::format("{} of memory are in use, more than the limit of {}; {}",
+                                InWords(in_use), InWords(most), kCoarserMesh));
 }
 
 }  // namespace lacuna

@@ -1,15 +1,24 @@
 // A limit on the memory of the process, so that what does not fit is refused before it is begun.
 //
-// The few large things of a computation, such as the factor of a stiffness matrix, are announced
-// before they are allocated, and long loops watch what is in use. It is no limit of the operating
-// system: under one (RLIMIT_DATA) OpenBLAS waits for ever for memory that it cannot get.
+// Meshes and the factors of stiffness matrices are announced before they are allocated, and the
+// time steps of predictions and reconstructions watch what is in use. What several threads announce
+// at the same time is not added up. It is no limit of the operating system: under one (RLIMIT_DATA)
+// OpenBLAS waits for ever for memory that it cannot get.
 #ifndef LACUNA_CORE_MEMORY_LIMIT_H_
 #define LACUNA_CORE_MEMORY_LIMIT_H_
 
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 namespace lacuna {
+
+// Ends a command. It is no InputError, so that nobody takes what does not fit into memory for what
+// cannot be computed.
+class OutOfMemory : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // Sets the limit of this process and of those that it forks, bytes.
 void SetMemoryLimit(uint64_t bytes);
@@ -20,15 +29,12 @@ uint64_t MemoryLimit();
 // What the process occupies now, bytes.
 uint64_t MemoryInUse();
 
-// Where `bytes` more than what is in use exceed the limit: "<what> needs 5.2 GB beside the 0.4 GB
-// in use, more than the limit of 4 GB; <advice>". Empty where they fit. `advice` says what would
-// need less.
-std::string MemoryShortage(double bytes, const std::string& what, const std::string& advice);
-
-// Throws that as an InputError.
+// Throws OutOfMemory where `bytes` more than what is in use exceed the limit: "<what> needs 5.2 GB
+// beside the 400 MB in use, more than the limit of 4.0 GB; <advice>". `advice` says what would need
+// less.
 void RequireMemory(double bytes, const std::string& what, const std::string& advice);
 
-// Throws InputError where more is in use than a limit that was set. For loops whose turns take a
+// Throws OutOfMemory where more is in use than a limit that was set. For loops whose turns take a
 // millisecond or more.
 void ThrowIfOverMemoryLimit();
 

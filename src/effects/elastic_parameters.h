@@ -45,7 +45,8 @@ inline std::vector<ParameterCard> ElasticSettings() {
   return settings;
 }
 
-// Young's modulus that a branch adds to the material; `meaning` says which, in m.
+// Young's modulus m (Pa) that a branch adds to the material. `meaning`: the text of its card, which
+// introduces the symbol m.
 inline ParameterCard BranchModulus(const char* meaning) {
   return {.name = "modulus",
           .meaning = meaning,
@@ -58,8 +59,9 @@ inline ParameterCard BranchModulus(const char* meaning) {
           .log_scale = false};
 }
 
+// Poisson's ratio of such a branch, a setting.
 inline ParameterCard BranchPoissonRatio() {
-  ParameterCard ratio = ElasticParameters()[1];
+  ParameterCard ratio = ElasticParameters().back();
   ratio.meaning = "Poisson's ratio of the branch (of the material if omitted)";
   ratio.setting = true;
   return ratio;

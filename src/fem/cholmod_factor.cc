@@ -213,6 +213,7 @@ void CholmodFactor::Solve(const Eigen::Ref<const Eigen::MatrixXd>& B, Eigen::Mat
   right.dtype = CHOLMOD_DOUBLE;
   const int solved = cholmod_solve2(CHOLMOD_A, self.factor, &right, nullptr, &work.solution,
                                     nullptr, &work.y, &work.e, &work.common);
+  if (work.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   CHECK(solved) << "CHOLMOD's triangular solve failed with status " << work.common.status;
   const double* solution = static_cast<const double*>(work.solution->x);
   for (Eigen::Index c = 0; c < B.cols(); ++c)

@@ -24,7 +24,7 @@ class CholmodFactor {
   CholmodFactor& operator=(CholmodFactor&&) noexcept;
 
   // Computes the numeric factor. Returns false, and leaves no usable factor, if the matrix is not
-  // positive definite on the free nodes or contains NaN. Throws InputError where the factor does
+  // positive definite on the free nodes or contains NaN. Throws OutOfMemory where the factor does
   // not fit into memory (core/memory_limit.h).
   bool Factorise(const BlockMatrix& matrix);
 

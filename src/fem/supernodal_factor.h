@@ -22,7 +22,7 @@ namespace lacuna {
 class SupernodalFactor {
  public:
   // Performs the symbolic analysis for all matrices of a pattern. No reference is kept. Throws
-  // InputError where the factor does not fit into memory (core/memory_limit.h).
+  // OutOfMemory where the factor does not fit into memory (core/memory_limit.h).
   SupernodalFactor(const BlockPattern& pattern, const EliminationOrder& order);
 
   // Computes the numeric factor. There is no usable factor unless the result is kPositive; kInDoubt

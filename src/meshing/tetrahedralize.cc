@@ -230,14 +230,9 @@ MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options) {
     return result;
   }
 
-  const std::string shortage =
-      MemoryShortage(kBytesPerTet * least_tets,
-                     fmt::format("a mesh of at least {:.2g} million tetrahedra", 1e-6 * least_tets),
-                     "a larger max_volume needs less");
-  if (!shortage.empty()) {
-    Fail(MeshStatus::kOutOfMemory, shortage, result);
-    return result;
-  }
+  RequireMemory(kBytesPerTet * least_tets,
+                fmt::format("a mesh of at least {:.2g} million tetrahedra", 1e-6 * least_tets),
+                "a larger max_volume needs less");
 
   // TetGen uses the random numbers of the process, and its geometric predicates keep their
   // constants in global variables.

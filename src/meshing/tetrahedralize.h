@@ -57,8 +57,8 @@ struct MeshResult {
 // volume; several separate bodies are allowed, cavities are refused. The same input gives the same
 // mesh, bit by bit. A coarse surface that must be preserved, or sharp angles between its edges, can
 // prevent a bound from being met everywhere; `quality` and `notes` then say so, but the mesh is
-// still usable. Failures are reported in `status` and `message`, never by an exception; only
-// options out of their ranges are programming errors (CHECK).
+// still usable. Failures are reported in `status` and `message`; options out of their ranges are
+// programming errors (CHECK). Throws OutOfMemory (core/memory_limit.h).
 MeshResult MeshTetrahedra(const TriMesh& surface, const TetOptions& options);
 
 }  // namespace lacuna

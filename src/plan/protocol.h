@@ -33,7 +33,7 @@ struct Protocol {
   struct Weight {
     double mass = 0;                                  // kg
     Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m, on the undeformed object
-    double radius = 0;                                // m: of the region that it loads
+    double radius = 0;  // m, standard deviation of its distribution about the place
   };
   std::optional<Weight> weight = {};
   int more_markers = 0;  // further markers, evenly over the free surface

@@ -265,13 +265,16 @@ json FindTrials(const fs::path& folder) {
   return report.is_object() && report.contains("tallies") ? report : json();
 }
 
-// How often intervals contain the truth; null where there is no such file. Throws InputError for a
-// damaged one.
+// How often intervals contain the truth; null where there is no such file, or that of one draw.
+// Throws InputError for a damaged one.
 json FindIntervals(const fs::path& folder) {
   const fs::path file = folder / "intervals.json";
   if (!fs::exists(file)) return nullptr;
   json report = ReadJsonFile(file);
-  return report.is_object() && report.contains("parameters") ? report : json();
+  const json parameters = report.is_object() ? report.value("parameters", json()) : json();
+  const bool is_of_draws = parameters.is_array() && !parameters.empty() &&
+                           parameters.front().is_object() && parameters.front().contains("draws");
+  return is_of_draws ? report : json();
 }
 
 // One sentence for each parameter.

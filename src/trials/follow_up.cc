@@ -12,9 +12,9 @@
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/workers.h"
+#include "diagnosis/decision.h"
 #include "diagnosis/decision_store.h"
 #include "plan/planned_experiment.h"
-#include "plan/planned_recording.h"
 #include "plan/planner.h"
 #include "prediction/prediction_study_reader.h"
 #include "scan/marker_frames.h"
@@ -33,6 +33,7 @@ constexpr uint64_t kRandomProtocol = 80;  // stream of draws
 constexpr int kBestNumber = 2, kRandomNumber = 3;
 
 fs::path FolderOf(const fs::path& own) { return own / "follow_up"; }
+fs::path FileOf(const fs::path& own) { return FolderOf(own) / "follow_up.json"; }
 
 // A case whose model was fitted, with its plan.
 struct PlannedCase {
@@ -43,6 +44,7 @@ struct PlannedCase {
   PlanRecord plan;
 };
 
+// From the diagnosis that the case keeps, with the rules as they are now.
 PlannedCase Plan(const fs::path& own) {
   Progress progress({.style = ProgressStyle::kSilent});
   PlannedCase planned;
@@ -51,102 +53,94 @@ PlannedCase Plan(const fs::path& own) {
   study.output = FolderOf(own) / "fit";
   RunCalibration(study, &progress);
   planned.fitted = OpenRun(study.output);
-  const DiagnosisRecord diagnosis = ReadDiagnosisFile(own / "diagnosis.json");
+  const DecisionInput decision = LoadDecisionInput(DecisionOf(own));
+  DiagnosisRecord diagnosis = ReadDiagnosisFile(own / "diagnosis.json");
+  diagnosis.decision = Decide(decision).record;
   planned.time_step = diagnosis.time_step;
   planned.protocols = StockProtocols(planned.fitted.study, planned.fitted.mesh);
-  const DecisionInput decision = LoadDecisionInput(DecisionOf(own));
   planned.plan = MakePlan({planned.fitted, diagnosis, decision}, planned.protocols, &progress);
   return planned;
 }
 
-// Another recording of the plan that lasts as long as the best one; null: there is none.
-const PlannedOutcome* ChooseAtRandom(const PlannedCase& planned) {
+// Another recording of the plan that lasts as long as the best one. Throws InputError where there
+// is none.
+const PlannedOutcome& ChooseAtRandom(const PlannedCase& planned) {
   const std::vector<PlannedOutcome>& all = planned.plan.outcomes;
   std::vector<const PlannedOutcome*> others;
   for (const PlannedOutcome& outcome : all)
     if (&outcome != &all.front() && outcome.IsPlayable() &&
         std::abs(outcome.seconds - all.front().seconds) < 0.5 * kTrialSpacing)
       others.push_back(&outcome);
-  if (others.empty()) return nullptr;
-  return others[RandomBits({planned.trial.seed, kRandomProtocol}) % others.size()];
+  if (others.empty()) throw InputError("no other recording of the plan lasts as long");
+  return *others[RandomBits({planned.trial.seed, kRandomProtocol}) % others.size()];
 }
 
-// The places of the markers on the true bar: those that the case has, then those that the protocol
-// adds where the model has them.
+// The places of the markers on the true bar. Those that the case has stand where it has put them;
+// those that the protocol adds stand beside their recorded places like the others.
 Eigen::Matrix3Xd TruePlaces(const TrialCase& trial, const Markers& markers) {
   const Eigen::Vector3d stretch = trial.true_size.cwiseQuotient(trial.size);
   Eigen::Matrix3Xd places = stretch.asDiagonal() * markers.places;
   const Eigen::Matrix3Xd own = MarkerPlaces(trial.true_size);
   places.leftCols(own.cols()) = own;
+  for (Eigen::Index m = own.cols(); m < places.cols(); ++m) places.col(m) -= PlaceError(trial, m);
   return places;
 }
 
-// Makes the recording of the true bar and diagnoses it together with those of the case.
+// Makes the recording with the true bar and diagnoses it together with those of the case, unless
+// that was done before.
 FollowUp Follow(const PlannedCase& planned, const PlannedOutcome& outcome, int number,
                 const fs::path& own, const fs::path& folder) {
+  FollowUp made;
+  made.protocol = outcome.name;
+  for (size_t k = 0; k < planned.plan.rivals.size(); ++k)
+    if (planned.trial.Hides(planned.plan.rivals[k].effect)) made.predicted = outcome.named[k];
+  if (fs::exists(folder / "outcome.json")) {
+    made.outcome = LoadOutcome(folder / "outcome.json");
+    return made;
+  }
   const Protocol& protocol =
       *std::find_if(planned.protocols.begin(), planned.protocols.end(),
                     [&](const Protocol& one) { return one.name == outcome.name; });
+  const PredictionStudy& study = planned.fitted.study;
+  size_t changed = 0;
+  while (study.recordings.at(changed).name != protocol.recording) ++changed;
+  const PlannedRecording recording = PlanRecording(protocol, study, planned.fitted.mesh);
+  const Markers seen = RecordTruth(planned.trial, protocol, recording,
+                                   planned.trial.hold_forces.at(changed), number);
   WritePlannedExperiment(planned.fitted, planned.time_step, protocol, folder);
   // As docs/plan.md tells the user: what was measured replaces what was predicted.
   fs::remove_all(folder / "measured");
   fs::copy(folder / "predicted", folder / "measured");
-  const PredictionStudy& study = planned.fitted.study;
-  WriteMarkerFrames(folder / "measured",
-                    PlanRecording(protocol, study, planned.fitted.mesh).item.recording.times,
-                    RecordTruth(planned.trial, protocol, study, planned.fitted.mesh, number));
-
-  FollowUp made;
-  made.protocol = outcome.name;
-  made.predicted = outcome.probability;
-  for (size_t k = 0; k < planned.plan.rivals.size(); ++k)
-    if (planned.trial.Hides(planned.plan.rivals[k].effect))
-      made.predicted_for_truth = outcome.named[k];
+  WriteMarkerFrames(folder / "measured", recording.item.recording.times, seen);
   made.outcome = RunCase(own, folder / "experiment.yaml", folder);
   SaveOutcome(made.outcome, folder / "outcome.json");
   return made;
 }
 
-fs::path FileOf(const fs::path& own) { return FolderOf(own) / "follow_up.json"; }
-
-nlohmann::json ToJson(const std::optional<FollowUp>& made, const std::string& folder) {
+nlohmann::json ToJson(const std::optional<FollowUp>& made) {
   if (!made) return {};
-  return {
-      {"protocol", made->protocol},
-      {"predicted", made->predicted},
-      {"predicted_for_truth",
-       made->predicted_for_truth ? nlohmann::json(*made->predicted_for_truth) : nlohmann::json()},
-      {"folder", folder}};
+  return {{"protocol", made->protocol},
+          {"predicted", made->predicted ? nlohmann::json(*made->predicted) : nlohmann::json()}};
 }
 
 std::optional<FollowUp> FromJson(const nlohmann::json& json, const fs::path& folder) {
   if (json.is_null()) return std::nullopt;
   FollowUp made;
   made.protocol = json.at("protocol");
-  made.predicted = json.at("predicted");
-  if (!json.at("predicted_for_truth").is_null())
-    made.predicted_for_truth = json.at("predicted_for_truth");
-  made.outcome = LoadOutcome(folder / json.at("folder").get<std::string>() / "outcome.json");
+  if (!json.at("predicted").is_null()) made.predicted = json.at("predicted");
+  made.outcome = LoadOutcome(folder / "outcome.json");
   return made;
 }
 
-void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
-  const nlohmann::json all = {{"schema_version", 1},
-                              {"message", made.message},
-                              {"best", ToJson(made.best, "best")},
-                              {"random", ToJson(made.random, "random")}};
-  WriteFileAtomically(FileOf(own), all.dump(2) + "\n");
-}
-
 CaseFollowUps MakeFollowUps(const fs::path& own) {
+  const fs::path best = FollowUpFolders(own)[0], random = FollowUpFolders(own)[1];
   CaseFollowUps made;
   try {
     const PlannedCase planned = Plan(own);
-    const PlannedOutcome& best = planned.plan.outcomes.front();
-    if (!best.IsPlayable()) throw InputError("no recording of the plan can be played");
-    made.best = Follow(planned, best, kBestNumber, own, FolderOf(own) / "best");
-    if (const PlannedOutcome* random = ChooseAtRandom(planned))
-      made.random = Follow(planned, *random, kRandomNumber, own, FolderOf(own) / "random");
+    if (!planned.plan.outcomes.front().IsPlayable())
+      throw InputError("no recording of the plan can be played");
+    made.best = Follow(planned, planned.plan.outcomes.front(), kBestNumber, own, best);
+    made.random = Follow(planned, ChooseAtRandom(planned), kRandomNumber, own, random);
   } catch (const InputError& problem) {
     made.message = problem.what();
   }
@@ -155,30 +149,25 @@ CaseFollowUps MakeFollowUps(const fs::path& own) {
 
 void Count(const TrialCase& trial, const FollowUp& made, FollowUpTally* tally) {
   ++tally->cases;
-  tally->predicted += made.predicted;
   const bool is_stated = made.outcome.verdict == Verdict::kMissing;
   const bool is_right =
       is_stated && made.outcome.named == std::vector<std::string>{trial.hidden.front().type};
   tally->named += is_right;
   tally->wrong += is_stated && !is_right;
+  if (!made.predicted) return;
+  ++tally->predicted_cases;
+  tally->predicted += *made.predicted;
 }
 
 }  // namespace
 
-Markers RecordTruth(const TrialCase& trial, const Protocol& protocol, const PredictionStudy& study,
-                    const TetMesh& mesh, int number, bool rough) {
-  const PlannedRecording planned = PlanRecording(protocol, study, mesh);
-  const auto changed =
-      std::find_if(study.recordings.begin(), study.recordings.end(),
-                   [&](const PredictedRecording& item) { return item.name == protocol.recording; });
-  const Eigen::Vector3d& force =
-      trial.hold_forces.at(static_cast<size_t>(changed - study.recordings.begin()));
+Markers RecordTruth(const TrialCase& trial, const Protocol& protocol,
+                    const PlannedRecording& planned, const Eigen::Vector3d& hold_force, int number,
+                    bool rough) {
   const RecordedGrip& clamp = planned.item.recording.object.grips.at(0);
-  TrialProcedure procedure{planned.item.recording.times,
-                           [&](double time) { return MotionAt(clamp, time); },
-                           PlannedHoldForce(protocol, force)};
-  if (protocol.weight)
-    procedure.weight = {protocol.weight->mass, protocol.weight->place, protocol.weight->radius};
+  const TrialProcedure procedure{planned.item.recording.times,
+                                 [&](double time) { return MotionAt(clamp, time); },
+                                 PlannedHoldForce(protocol, hold_force), protocol.weight};
   Markers markers = planned.item.recording.markers;
   markers.positions = SeenMarkers(trial, number, SimulateTruth(trial, procedure, rough),
                                   TruePlaces(trial, markers));
@@ -191,6 +180,10 @@ bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome) {
          std::find(open.begin(), open.end(), outcome.verdict) != open.end();
 }
 
+std::vector<fs::path> FollowUpFolders(const fs::path& own) {
+  return {FolderOf(own) / "best", FolderOf(own) / "random"};
+}
+
 int RunFollowUps(const fs::path& folder, int workers) {
   std::vector<fs::path> open;
   for (const fs::path& own : CasesIn(folder))
@@ -198,14 +191,23 @@ int RunFollowUps(const fs::path& folder, int workers) {
         IsOpen(LoadCase(own / "truth.json"), LoadOutcome(own / "outcome.json")))
       open.push_back(own);
   const auto keep_failure = [&](size_t k, const std::string& reason) {
-    SaveFollowUps({.message = reason, .best = {}, .random = {}}, open[k]);
+    WriteFileAtomically(FolderOf(open[k]) / "failed.txt", reason + "\n");
   };
   return ShareOut(open.size(), {.workers = workers, .crashed = keep_failure}, [&](size_t k) {
     MakeFolder(FolderOf(open[k]));
     const Claim claim(FolderOf(open[k]) / "claimed");
     if (!claim.holds() || fs::exists(FileOf(open[k]))) return;
     SaveFollowUps(MakeFollowUps(open[k]), open[k]);
+    fs::remove(FolderOf(open[k]) / "failed.txt");
   });
+}
+
+void SaveFollowUps(const CaseFollowUps& made, const fs::path& own) {
+  const nlohmann::json all = {{"schema_version", 1},
+                              {"message", made.message},
+                              {"best", ToJson(made.best)},
+                              {"random", ToJson(made.random)}};
+  WriteFileAtomically(FileOf(own), all.dump(2) + "\n");
 }
 
 std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
@@ -213,8 +215,8 @@ std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
   if (!stream) return std::nullopt;
   try {
     const auto json = nlohmann::json::parse(stream);
-    return CaseFollowUps{json.at("message"), FromJson(json.at("best"), FolderOf(own)),
-                         FromJson(json.at("random"), FolderOf(own))};
+    return CaseFollowUps{json.at("message"), FromJson(json.at("best"), FollowUpFolders(own)[0]),
+                         FromJson(json.at("random"), FollowUpFolders(own)[1])};
   } catch (const nlohmann::json::exception& problem) {
     throw InputError(fmt::format("{}: {}", FileOf(own).string(), problem.what()));
   }
@@ -222,17 +224,23 @@ std::optional<CaseFollowUps> LoadFollowUps(const fs::path& own) {
 
 FollowUpReport ReportFollowUps(const fs::path& folder) {
   FollowUpReport report;
-  FollowUpTally best{.choice = "best of the plan"}, random{.choice = "random"};
+  FollowUpTally best{.choice = "best of the plan"}, random{.choice = "another one at random"};
   for (const fs::path& own : CasesIn(folder)) {
-    const std::optional<CaseFollowUps> made = LoadFollowUps(own);
-    if (!made) continue;
+    if (!fs::exists(own / "outcome.json")) continue;
     const TrialCase trial = LoadCase(own / "truth.json");
+    if (!IsOpen(trial, LoadOutcome(own / "outcome.json"))) continue;
     ++report.open;
-    report.not_made += !made->best;
-    if (made->best) Count(trial, *made->best, &best);
-    if (made->random) Count(trial, *made->random, &random);
+    const std::optional<CaseFollowUps> made = LoadFollowUps(own);
+    report.waiting += !made;
+    if (!made) continue;
+    if (!made->best || !made->random) {
+      ++report.unpaired;
+      continue;
+    }
+    Count(trial, *made->best, &best);
+    Count(trial, *made->random, &random);
   }
-  if (report.open > 0) report.tallies = {best, random};
+  if (report.waiting < report.open) report.tallies = {best, random};
   return report;
 }
 
@@ -240,17 +248,20 @@ std::string FollowUpsInWords(const FollowUpReport& report) {
   if (report.tallies.empty()) return "";
   std::string text = fmt::format(
       "one effect is missing and left open: diagnosed with one more recording\n"
-      "  {} cases, {} of them without a further recording\n",
-      report.open, report.not_made);
+      "  {} cases, {} of them not followed yet, {} without two recordings to compare\n",
+      report.open, report.waiting, report.unpaired);
   for (const FollowUpTally& tally : report.tallies) {
     text += fmt::format("  {:54}", tally.choice + ": it is named, and no other");
     if (tally.cases == 0) {
       text += " no such case\n";
       continue;
     }
-    text += fmt::format(" {:3} of {:3} ({:.0f} %), another in {}; predicted {:.0f} %\n",
-                        tally.named, tally.cases, 100.0 * tally.named / tally.cases, tally.wrong,
-                        100 * tally.predicted / tally.cases);
+    text += fmt::format(" {:3} of {:3} ({:.0f} %), another in {}", tally.named, tally.cases,
+                        100.0 * tally.named / tally.cases, tally.wrong);
+    if (tally.predicted_cases > 0)
+      text += fmt::format("; predicted {:.0f} % on average over {} cases",
+                          100 * tally.predicted / tally.predicted_cases, tally.predicted_cases);
+    text += "\n";
   }
   return text;
 }
@@ -260,10 +271,16 @@ nlohmann::json FollowUpsToJson(const FollowUpReport& report) {
   for (const FollowUpTally& tally : report.tallies)
     rows.push_back({{"choice", tally.choice},
                     {"cases", tally.cases},
-                    {"predicted", tally.cases > 0 ? tally.predicted / tally.cases : 0},
                     {"named", tally.named},
-                    {"wrong", tally.wrong}});
-  return {{"open", report.open}, {"not_made", report.not_made}, {"recordings", rows}};
+                    {"wrong", tally.wrong},
+                    {"predicted_cases", tally.predicted_cases},
+                    {"predicted", tally.predicted_cases > 0
+                                      ? nlohmann::json(tally.predicted / tally.predicted_cases)
+                                      : nlohmann::json()}});
+  return {{"open", report.open},
+          {"waiting", report.waiting},
+          {"unpaired", report.unpaired},
+          {"recordings", rows}};
 }
 
 }  // namespace lacuna

@@ -7,15 +7,14 @@
 #ifndef LACUNA_TRIALS_FOLLOW_UP_H_
 #define LACUNA_TRIALS_FOLLOW_UP_H_
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "geometry/tet_mesh.h"
-#include "plan/protocol.h"
-#include "prediction/prediction_study.h"
+#include "plan/planned_recording.h"
 #include "scan/marker_tracks.h"
 #include "trials/trial_case.h"
 #include "trials/trial_run.h"
@@ -25,48 +24,58 @@ namespace lacuna {
 // A planned recording and what became of it.
 struct FollowUp {
   std::string protocol;
-  double predicted = 0;  // the plan's probability of the right name, rivals weighted
-  // The same if what is hidden is missing; nothing where the plan has no such rival.
-  std::optional<double> predicted_for_truth;
-  TrialOutcome outcome;  // of both recordings together
+  // The plan's probability of the right name if what is hidden is missing; nothing where that is
+  // not among the rivals for which was planned.
+  std::optional<double> predicted;
+  TrialOutcome outcome;  // of all recordings together
 };
 
-// Both kinds of a case, or why there are none: the diagnosis has left no rivals, or the true bar
-// cannot be recorded so.
+// Both kinds of a case. Where one is absent, `message` says why: the diagnosis has left no rivals,
+// or none that can be planned for, or no (other) recording can be made so with the true bar.
 struct CaseFollowUps {
   std::string message;
   std::optional<FollowUp> best, random;
 };
 
-// The markers of the planned recording as the true bar moves them, with noise. `study` and `mesh`
-// are the model's, to one of whose recordings the protocol applies; `number` draws the noise.
-// `rough` as for SimulateTruth(). Throws InputError where the protocol cannot be made.
-Markers RecordTruth(const TrialCase& trial, const Protocol& protocol, const PredictionStudy& study,
-                    const TetMesh& mesh, int number, bool rough = false);
+// The markers of the planned recording, which is a variant of one of the case's recordings that the
+// hand held with `hold_force` (N), as the true bar moves them, with noise. `number` draws the
+// noise; `rough` as for SimulateTruth(). Throws InputError where the true motion cannot be
+// simulated.
+Markers RecordTruth(const TrialCase& trial, const Protocol& protocol,
+                    const PlannedRecording& planned, const Eigen::Vector3d& hold_force, int number,
+                    bool rough = false);
 
-// Whether the diagnosis of a case with one hidden effect names none, although it does not say that
-// something unknown is left either.
+// Whether a case with one hidden effect, seen by markers, was left open: the verdict is
+// "ambiguous", "no power" or "adequate".
 bool IsOpen(const TrialCase& trial, const TrialOutcome& outcome);
 
 // Makes the follow-ups of all open cases of a folder that have none yet, each in a process of its
-// own, `workers` at a time, in <case>/follow_up. Returns the result of ShareOut (core/workers.h).
+// own, `workers` at a time, in <case>/follow_up. What fails for another reason than those of
+// CaseFollowUps, such as a full disk, is written to failed.txt there and tried again by the next
+// call. Returns the result of ShareOut (core/workers.h).
 int RunFollowUps(const std::filesystem::path& folder, int workers);
 
-// What a case's folder keeps; nothing where its follow-ups were not made. Throws InputError.
+// Writes and reads what a case's folder keeps; the outcomes of its follow-ups stand in folders of
+// their own, best/ and random/. Nothing is read where no follow-ups were made. Throw InputError.
+void SaveFollowUps(const CaseFollowUps& made, const std::filesystem::path& own);
 std::optional<CaseFollowUps> LoadFollowUps(const std::filesystem::path& own);
+// The folders in which outcomes of follow-ups of a case stand or will stand.
+std::vector<std::filesystem::path> FollowUpFolders(const std::filesystem::path& own);
 
-// One row of the report.
+// One row of the report, over the cases that have both kinds of recordings.
 struct FollowUpTally {
-  std::string choice;    // "best of the plan", "random"
-  int cases = 0;         // that were recorded again
-  double predicted = 0;  // sum of FollowUp::predicted
-  int named = 0;         // the right name alone
-  int wrong = 0;         // a verdict "missing" with another name
+  std::string choice;       // "best of the plan", "another one at random"
+  int cases = 0;            // that were recorded again
+  int named = 0;            // the right name alone
+  int wrong = 0;            // a verdict "missing" with another name
+  int predicted_cases = 0;  // whose hidden effect is among the rivals
+  double predicted = 0;     // sum of FollowUp::predicted over these
 };
 struct FollowUpReport {
-  int open = 0;      // cases
-  int not_made = 0;  // of these: without a recording, for the reason in CaseFollowUps::message
-  std::vector<FollowUpTally> tallies;  // empty: no follow-ups were made
+  int open = 0;                        // cases
+  int waiting = 0;                     // of these: not followed yet
+  int unpaired = 0;                    // of these: one of the two recordings cannot be made
+  std::vector<FollowUpTally> tallies;  // empty: no case was followed
 };
 FollowUpReport ReportFollowUps(const std::filesystem::path& folder);
 std::string FollowUpsInWords(const FollowUpReport& report);

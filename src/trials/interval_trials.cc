@@ -292,6 +292,9 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::map<std::string, std::vector<double>> deviations;
   for (const std::filesystem::path& draw : CasesIn(folder)) {
+    if (report.missing.empty())
+      for (const HiddenEffect& hidden : LoadCase(draw / "truth.json").hidden)
+        report.missing.push_back(hidden.type);
     if (!std::filesystem::exists(draw / "intervals.json")) {
       std::string reason = "not fitted yet";
       if (std::ifstream stream(draw / "failed.txt"); stream) std::getline(stream, reason);
@@ -342,10 +345,13 @@ void SaveIntervalReport(const IntervalReport& report, const std::filesystem::pat
   }
   chart.lines.push_back(
       {"if the intervals are right", Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 1)});
-  WriteFileAtomically(
-      folder / "intervals.json",
-      nlohmann::json({{"schema_version", kIntervalsVersion}, {"parameters", tallies}}).dump(2) +
-          "\n");
+  WriteFileAtomically(folder / "intervals.json",
+                      nlohmann::json({{"schema_version", kIntervalsVersion},
+                                      {"missing", report.missing},
+                                      {"failed", report.failed.size()},
+                                      {"parameters", tallies}})
+                              .dump(2) +
+                          "\n");
   WriteFileAtomically(folder / "intervals.txt", IntervalReportInWords(report));
   WriteLineChart(folder / "intervals.svg", chart);
 }

@@ -71,7 +71,8 @@ struct IntervalTally {
 
 struct IntervalReport {
   std::vector<IntervalTally> tallies;
-  std::vector<std::string> failed;  // draws without a usable fit, and why
+  std::vector<std::string> failed;   // draws without a usable fit, and why
+  std::vector<std::string> missing;  // effects that the truth has and the model lacks
 };
 
 // Makes and fits the draws of the suite that are not in the folder yet, in `workers` processes.

@@ -95,8 +95,7 @@ void WriteMarkers(const TrialCase& trial, int recording, const TrueMotion& motio
   Markers markers{{}, MarkerPlaces(trial.size), frames};
   for (int m = 0; m < kMarkers; ++m) {
     markers.names.push_back(fmt::format("m{}", m));
-    for (int axis = 0; axis < 3; ++axis)
-      markers.places(axis, m) += kTrialPlaceError * Gauss(trial, 30, m, axis);
+    markers.places.col(m) += PlaceError(trial, m);
   }
   const std::string yaml = fmt::format(
       "schema_version: 1\nname: recording {}\nlength_unit: m\ndensity: {} kg/m^3\nframes:\n{}",
@@ -148,6 +147,12 @@ Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size) {
         0.5 * size[2] * std::sin(angle);
   }
   return places;
+}
+
+Eigen::Vector3d PlaceError(const TrialCase& trial, Eigen::Index marker) {
+  const uint64_t m = static_cast<uint64_t>(marker);
+  return kTrialPlaceError *
+         Eigen::Vector3d(Gauss(trial, 30, m, 0), Gauss(trial, 30, m, 1), Gauss(trial, 30, m, 2));
 }
 
 std::vector<Eigen::Matrix3Xd> SeenMarkers(const TrialCase& trial, int recording,

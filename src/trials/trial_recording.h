@@ -31,6 +31,9 @@ struct TrueMotion {
 // The places of the eight markers on the surface of a bar of this size: 3 × markers, m.
 Eigen::Matrix3Xd MarkerPlaces(const Eigen::Vector3d& size);
 
+// By how much the recorded place of a marker is off, m.
+Eigen::Vector3d PlaceError(const TrialCase& trial, Eigen::Index marker);
+
 // What a motion-capture system sees of the points at `places` (3 × markers, m) on the true bar, in
 // each frame of the motion, with noise. `recording` is the number of the recording in its case.
 std::vector<Eigen::Matrix3Xd> SeenMarkers(const TrialCase& trial, int recording,

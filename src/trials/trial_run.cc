@@ -225,24 +225,20 @@ TrialOutcome LoadOutcome(const std::filesystem::path& file) {
   }
 }
 
-int RedecideTrials(const std::filesystem::path& folder) {
-  int decided = 0;
-  for (const std::filesystem::path& own : CasesIn(folder)) {
-    if (!std::filesystem::exists(DecisionOf(own) / "decision.json") ||
-        !std::filesystem::exists(own / "outcome.json"))
-      continue;
-    const DecisionInput input = LoadDecisionInput(DecisionOf(own));
-    const Decision decision = Decide(input);
-    TrialOutcome outcome = LoadOutcome(own / "outcome.json");
-    outcome.verdict = decision.verdict;
-    outcome.named = decision.names;
-    outcome.probabilities = decision.record.probabilities;
-    outcome.p_adequate = decision.record.adequacy.p;
-    outcome.simulated = Simulated(LoadCase(own / "truth.json"), input, own);
-    SaveOutcome(outcome, own / "outcome.json");
-    ++decided;
-  }
-  return decided;
+bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output) {
+  if (!std::filesystem::exists(DecisionOf(output) / "decision.json") ||
+      !std::filesystem::exists(output / "outcome.json"))
+    return false;
+  const DecisionInput input = LoadDecisionInput(DecisionOf(output));
+  const Decision decision = Decide(input);
+  TrialOutcome outcome = LoadOutcome(output / "outcome.json");
+  outcome.verdict = decision.verdict;
+  outcome.named = decision.names;
+  outcome.probabilities = decision.record.probabilities;
+  outcome.p_adequate = decision.record.adequacy.p;
+  outcome.simulated = Simulated(trial, input, output);
+  SaveOutcome(outcome, output / "outcome.json");
+  return true;
 }
 
 int RunTrials(const std::filesystem::path& folder, int workers) {

@@ -56,10 +56,10 @@ std::filesystem::path DecisionOf(const std::filesystem::path& output);
 void SaveOutcome(const TrialOutcome& outcome, const std::filesystem::path& file);
 TrialOutcome LoadOutcome(const std::filesystem::path& file);
 
-// Decides again upon every case that keeps what its decision was made from, with the rules as they
-// are now, and replaces what the outcome has from the decision. Returns the number of such cases.
-// Throws InputError if a file cannot be read.
-int RedecideTrials(const std::filesystem::path& folder);
+// Decides again upon what RunCase() has kept in `output`, with the rules as they are now, and
+// replaces what outcome.json there has from the decision. False where nothing was kept. Throws
+// InputError if a file cannot be read.
+bool RedecideOutcome(const TrialCase& trial, const std::filesystem::path& output);
 
 // Runs all cases of a folder that have no outcome yet, each in a process of its own, `workers` at a
 // time. A case is claimed by a lock on a file in its folder, so that several calls may share the

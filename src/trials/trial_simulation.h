@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "plan/protocol.h"
 #include "trials/trial_case.h"
 #include "trials/trial_recording.h"
 
@@ -22,14 +23,8 @@ namespace lacuna {
 struct TrialProcedure {
   std::vector<double> times;                       // s, at which the frames are taken
   std::function<Eigen::Isometry3d(double)> clamp;  // its motion from its undeformed place, time s
-  Eigen::Vector3d hold_force;                      // N, of the hand until the release
-  // A known mass is fixed to the bar, by a ball of this radius about this place.
-  struct Weight {
-    double mass = 0;                                  // kg
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  // m
-    double radius = 0;                                // m
-  };
-  std::optional<Weight> weight = {};
+  Eigen::Vector3d hold_force = Eigen::Vector3d::Zero();  // N, of the hand until the release
+  std::optional<Protocol::Weight> weight = {};           // fixed to the bar
 };
 
 // The motion of the true bar. With `rough` it has elements and time steps like those of the model.

@@ -5,8 +5,6 @@
 
 #include <vector>
 
-#include "core/error.h"
-
 namespace lacuna {
 namespace {
 
@@ -24,20 +22,21 @@ TEST_F(MemoryLimitTest, IsTheMachinesMemoryUnlessItIsSet) {
   EXPECT_LT(MemoryInUse(), MemoryLimit());
   RequireMemory(1e6, "a small thing", "");
   ThrowIfOverMemoryLimit();
-  EXPECT_THAT([] { RequireMemory(1e15, "the factor", "take larger elements"); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("the factor needs 1e+06 GB"),
-                                              HasSubstr("more than the limit of"),
-                                              HasSubstr("take larger elements"))));
+  EXPECT_THAT([] { RequireMemory(1e13, "the factor", "take larger elements"); },
+              ThrowsMessage<OutOfMemory>(AllOf(HasSubstr("the factor needs 10000.0 GB beside the "),
+                                               HasSubstr(" MB in use, more than the limit of "),
+                                               HasSubstr("; take larger elements"))));
 }
 
 TEST_F(MemoryLimitTest, RefusesWhatIsAnnouncedAndWatchesWhatIsNot) {
   SetMemoryLimit(MemoryInUse() + 100'000'000);
-  EXPECT_EQ(MemoryShortage(1e7, "a small thing", ""), "");
-  EXPECT_THAT(MemoryShortage(3e8, "the factor", ""), HasSubstr("the factor needs 0.3 GB"));
+  RequireMemory(1e7, "a small thing", "");
+  EXPECT_THAT([] { RequireMemory(3e8, "the factor", ""); },
+              ThrowsMessage<OutOfMemory>(HasSubstr("the factor needs 300 MB")));
   ThrowIfOverMemoryLimit();
   const std::vector<char> large(300'000'000, 1);
   EXPECT_THAT([] { ThrowIfOverMemoryLimit(); },
-              ThrowsMessage<InputError>(HasSubstr("of memory are in use, more than the limit")));
+              ThrowsMessage<OutOfMemory>(HasSubstr("of memory are in use, more than the limit")));
   EXPECT_EQ(large.back(), 1);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "core/memory_limit.h"
 #include "core/parallel.h"
 #include "support/lattice.h"
 
@@ -22,6 +23,14 @@ Eigen::VectorXf Reduced(const Eigen::VectorXd& b, const EliminationOrder& order)
     reduced.segment<3>(3 * k) = b.segment<3>(3 * order.node[k]).cast<float>();
   }
   return reduced;
+}
+
+TEST(SupernodalFactor, RefusesWhatDoesNotFitIntoMemory) {
+  const Lattice lattice(12);
+  SetMemoryLimit(MemoryInUse() + 1'000'000);
+  EXPECT_THROW(FactorFor(lattice), OutOfMemory);
+  SetMemoryLimit(0);
+  EXPECT_GT(FactorFor(lattice).entries(), 1e6 / sizeof(float));
 }
 
 TEST(NestedDissection, OrdersEachFreeNodeOnceAndReproducibly) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "core/memory_limit.h"
 #include "support/shapes.h"
 
 namespace lacuna {
@@ -79,6 +80,14 @@ TEST(MeshTetrahedra, AStricterRatioGivesBetterShapedTetrahedra) {
     return (ratios.array() > 1.5).cast<double>().mean();
   };
   EXPECT_LT(worst(1.5), 0.2 * worst(3));
+}
+
+TEST(MeshTetrahedra, RefusesWhatDoesNotFitIntoMemory) {
+  const TriMesh surface = Icosphere(0.1, 3);
+  SetMemoryLimit(MemoryInUse() + 100'000'000);
+  EXPECT_TRUE(MeshTetrahedra(surface, {.max_volume = 1e-6}).IsUsable());
+  EXPECT_THROW(MeshTetrahedra(surface, {.max_volume = 1e-9}), OutOfMemory);
+  SetMemoryLimit(0);
 }
 
 TEST(MeshTetrahedra, ObeysTheLargestVolume) {

@@ -101,7 +101,8 @@ TEST(FollowUps, TheTrueBarFollowsThePlan) {
     const RecordingModel model(study, planned.item, mesh, problem.body(), {});
     const PlayedRecording played = Play(model, PlayedNuisances(model));
     ASSERT_TRUE(played.summary.IsUsable()) << protocol.name;
-    const Markers seen = RecordTruth(trial, protocol, study, mesh, 2, /*rough=*/true);
+    const Markers seen =
+        RecordTruth(trial, protocol, planned, trial.hold_forces[0], 2, /*rough=*/true);
     EXPECT_LT(Distance(seen.positions, played.markers), 8e-4) << protocol.name;
     names.push_back(protocol.name);
     if (protocol.name == "repeat") {
@@ -304,35 +305,41 @@ TEST(FollowUps, AreCountedBesideWhatThePlanPredicted) {
   wrong.named = {"mass_damping"};
   EXPECT_TRUE(IsOpen(cases[0], open));
   EXPECT_FALSE(IsOpen(cases[0], right));
-  const auto keep = [&](const TrialCase& trial, const std::string& follow_up) {
+  TrialOutcome fault = right;
+  fault.verdict = Verdict::kNuisance;
+  EXPECT_FALSE(IsOpen(cases[0], fault));
+  fault.verdict = Verdict::kAdequate;
+  EXPECT_TRUE(IsOpen(cases[0], fault));
+  const auto keep = [&](const TrialCase& trial, const CaseFollowUps& made) {
     Write(folder.Path(), trial, open);
-    const std::filesystem::path own = folder / trial.name / "follow_up";
-    for (const auto& [kind, outcome] : {std::pair{"best", right}, std::pair{"random", wrong}}) {
-      MakeFolder(own / kind);
-      SaveOutcome(outcome, own / kind / "outcome.json");
+    const std::vector<std::filesystem::path> folders = FollowUpFolders(folder / trial.name);
+    for (const auto& [own, outcome] :
+         {std::pair{folders[0], right}, std::pair{folders[1], wrong}}) {
+      MakeFolder(own);
+      SaveOutcome(outcome, own / "outcome.json");
     }
-    WriteFileAtomically(own / "follow_up.json", follow_up);
+    SaveFollowUps(made, folder / trial.name);
   };
-  const std::string best =
-      R"({"protocol": "pull twice", "predicted": 0.9, "predicted_for_truth": 0.8, "folder": "best"})";
-  const std::string random =
-      R"({"protocol": "repeat", "predicted": 0.2, "predicted_for_truth": null, "folder": "random"})";
-  keep(cases[0], R"({"message": "", "best": )" + best + R"(, "random": )" + random + "}");
-  keep(cases[1], R"({"message": "", "best": )" + best + R"(, "random": null})");
-  keep(cases[2], R"({"message": "no rivals", "best": null, "random": null})");
+  const FollowUp best{"pull twice", 0.9, {}}, random{"repeat", std::nullopt, {}};
+  keep(cases[0], {"", best, random});
+  keep(cases[1], {"no other", best, std::nullopt});
+  Write(folder.Path(), cases[2], open);  // not followed yet
 
   const FollowUpReport report = ReportFollowUps(folder.Path());
   EXPECT_EQ(report.open, 3);
-  EXPECT_EQ(report.not_made, 1);
+  EXPECT_EQ(report.waiting, 1);
+  EXPECT_EQ(report.unpaired, 1);
   ASSERT_EQ(report.tallies.size(), 2u);
-  EXPECT_EQ(report.tallies[0].cases, 2);
-  EXPECT_EQ(report.tallies[0].named, 2);
-  EXPECT_NEAR(report.tallies[0].predicted, 1.8, 1e-12);
+  EXPECT_EQ(report.tallies[0].cases, 1);
+  EXPECT_EQ(report.tallies[0].named, 1);
+  EXPECT_NEAR(report.tallies[0].predicted, 0.9, 1e-12);
   EXPECT_EQ(report.tallies[1].cases, 1);
   EXPECT_EQ(report.tallies[1].named, 0);
   EXPECT_EQ(report.tallies[1].wrong, 1);
+  EXPECT_EQ(report.tallies[1].predicted_cases, 0);
+  EXPECT_EQ(LoadFollowUps(folder / cases[1].name)->message, "no other");
   EXPECT_THAT(ReportInWords(ReportTrials(folder.Path())), HasSubstr("predicted 90 %"));
-  WriteFileAtomically(folder / cases[2].name / "follow_up/follow_up.json", "{}");
+  WriteFileAtomically(folder / cases[1].name / "follow_up/follow_up.json", "{}");
   EXPECT_THROW(ReportFollowUps(folder.Path()), InputError);
 }
 

@@ -456,8 +456,10 @@ export function studyReport() {
                   { group: 'one_effect, 1 rec, 2 x', cases: 16, top1: 8, top2: 14, wrong: 0, ranked_first: 14, verdicts: { ambiguous: 6, missing: 8, 'not in library': 2 }, fitted: 16, at_noise: 14, within_15_percent: 5, intervals: 22, covered: 17, median_error_before: 1.45, median_error_after: 1.05 }],
         confusion: { nothing: { adequate: 45, ambiguous: 1, nuisance: 10 }, drag: { drag: 3, ambiguous: 1 }, gravity: { gravity: 3, point_force: 1 } }, unfinished: ['0057'],
         rates: [{ truth: 'nothing is missing', what: 'an effect is named', cases: 0, of: 20, predicted: null }, { truth: 'one effect is missing', what: 'it is named, and no other', cases: 8, of: 16, predicted: 0.62 }, { truth: 'one effect is missing', what: 'one of another family is named', cases: 0, of: 0, predicted: null }],
+        follow_ups: { open: 3, waiting: 0, unpaired: 1, recordings: [{ choice: 'best of the plan', cases: 2, predicted: 0.9, predicted_cases: 2, named: 2, wrong: 0 }, { choice: 'another one at random', cases: 2, predicted: 0.4, predicted_cases: 2, named: 1, wrong: 0 }] },
         calibration: [{ low: 0.4, high: 0.6, stated: 0.55, frequency: 0.5, statements: 8 }, { low: 0.6, high: 0.8, stated: 0.75, frequency: 0.8, statements: 10 }, { low: 0.8, high: 1, stated: 0.97, frequency: 0.94, statements: 60 }],
       },
+      intervals: { missing: ['mass_damping'], failed: 1, parameters: [{ name: 'young_modulus', draws: 4, covered_50: 0.5, covered_80: 0.75, covered_95: 1, mean: -0.2, spread: 1.04, p_uniform: 0.28, positions: [0.1, 0.4, 0.6, 0.9] }] },
       provenance: provenance('0.1 MPa'),
     }],
   };

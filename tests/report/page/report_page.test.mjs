@@ -377,9 +377,9 @@ test('every part is there when its data is', async () => {
                       'What such recordings would have said', 'The next recording', 'force that holds', 'The recordings disagree', 'traded off with young_modulus', 'metric: probability', 'Commands that reproduce it', 'noise of the measurement']) assert.ok(text.includes(part), part);
   await full.close();
   const study = await open(fixture('study'));
-  for (const id of ['reconstruction', 'table1', 'ablation', 'trials']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);
+  for (const id of ['reconstruction', 'table1', 'ablation', 'trials', 'intervals']) assert.equal(await study.page.locator(`#${id}`).count(), 1, id);
   const words = await study.page.locator('main').textContent();
-  for (const part of ['Trace of the search', 'What is named', 'Confusion matrix', 'Calibration of the probabilities']) assert.ok(words.includes(part), part);
+  for (const part of ['Trace of the search', 'What is named', 'Confusion matrix', 'Calibration of the probabilities', 'One more recording of the cases that are left open', 'mass_damping. Its intervals cannot be right']) assert.ok(words.includes(part), part);
   await study.close();
 });
 

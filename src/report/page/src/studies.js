@@ -82,18 +82,20 @@ function rateTable(rates) {
 // What further recordings decided, beside what the plan had predicted.
 function followUpTable(followUps) {
   const shown = (followUps?.recordings ?? []).filter((one) => one.cases > 0);
-  return table('One more recording of the cases that are left open', [['recording'], ['cases', true], ['named', true, 'the hidden effect, and no other'], ['another named', true], ['predicted', true, 'by the plan']],
+  return table('One more recording of the cases that are left open', [['recording'], ['cases', true], ['named', true, 'the hidden effect, and no other'], ['another named', true], ['predicted', true, 'by the plan, where the hidden effect is among its rivals']],
     shown.map((one) => [name(one.choice), String(one.cases), share(one.named / one.cases), String(one.wrong), share(one.predicted)]));
 }
 
 export function intervalsSection({ data }) {
   return section('intervals', 'Intervals', 'Do the intervals hold?', 'Each draw simulates a recording with known parameters and fits them. The 50, 80 and 95 % intervals should contain the truth in as many draws.',
-    (data.runs ?? []).filter((run) => run.intervals).map(({ intervals: { parameters } }) => [
+    (data.runs ?? []).filter((run) => run.intervals?.parameters).map(({ intervals: { parameters, missing, failed } }) => [
+      missing?.length ? h('p', { class: 'explain' }, `The model lacks what the recordings contain: ${missing.join(', ')}. Its intervals cannot be right; they show how far a wrong model misleads.`) : null,
+      failed > 0 ? h('p', { class: 'explain' }, `${counted(failed, 'draw')} without a usable fit.`) : null,
       table(null, [['parameter'], ['draws', true], ['in 50 %', true], ['in 80 %', true], ['in 95 %', true], ['mean', true, 'of (truth − centre)/σ; 0 is right'], ['spread', true, 'its standard deviation; 1 is right'], ['χ² p', true, 'that positions in the interval are uniform']],
         parameters.map((one) => [name(one.name), String(one.draws), share(one.covered_50), share(one.covered_80), share(one.covered_95), fixed(one.mean, 2), fixed(one.spread, 2), number(one.p_uniform, 2)])),
       h('p', { class: 'explain' }, 'The plots show the share of draws whose truth lies below each quantile of its interval’s distribution. On the dashed diagonal, intervals mean what they say; above it, estimates are too high.'),
-      grid(parameters.map((one) => chart({ title: name(one.name), x: 'quantile, %', y: 'share of draws, %', xRange: [0, 100], yRange: [0, 100], height: 240,
-        series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: one.positions.map((position) => 100 * position), y: one.positions.map((_, k) => (100 * (k + 1)) / one.positions.length), colour: 'series-last' }] })), 'small')]));
+      grid(parameters.map((one) => chart({ title: one.name ?? NONE, x: 'quantile, %', y: 'share of draws, %', xRange: [0, 100], yRange: [0, 100], height: 240,
+        series: [{ label: 'diagonal', x: [0, 100], y: [0, 100], colour: 'noise', dash: true }, { label: 'found', x: (one.positions ?? []).map((position) => 100 * position), y: (one.positions ?? []).map((_, k, all) => (100 * (k + 1)) / all.length), colour: 'series-last' }] })), 'small')]));
 }
 
 export function trialsSection({ data }) {
