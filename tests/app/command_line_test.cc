@@ -76,7 +76,16 @@ TEST(CommandLine, TellsAnUnknownCommandAndWhatWasMeant) {
   EXPECT_EQ(ending.status, 2);
   EXPECT_THAT(ending.said, HasSubstr("did you mean \"reconstruct\"?"));
   EXPECT_THAT(Lacuna("info --bogus " + Experiment("bend.yaml")).said, HasSubstr("\"--bogus\""));
-  EXPECT_THAT(Lacuna("effects gravty").said, HasSubstr("did you mean \"gravity\"?"));
+}
+
+TEST(CommandLine, RefusesWhatDoesNotFitIntoTheMemoryLimit) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "e.yaml")
+      << "use: " << Experiment("hidden_effect.yaml") << "\noutput: run\n";
+  const Ending ending = Lacuna("--memory-limit 1MB fit " + (folder / "e.yaml").string());
+  EXPECT_EQ(ending.status, 2);
+  EXPECT_THAT(ending.said, HasSubstr("more than the limit of 1 MB"));
+  EXPECT_EQ(Lacuna("--memory-limit 0 effects").status, 2);
 }
 
 TEST(CommandLine, AnAbsentFileIsNamed) {
