@@ -42,9 +42,9 @@ void AddReport(CLI::App* app, OutputOptions* output, std::function<int()>* comma
   report->footer(
       "RUN is the folder of a finished `lacuna fit`, `reconstruct`, `table1` or `ablation`, or of\n"
       "`lacuna-trials report` or `intervals`. The page needs nothing but a browser, and no\n"
-      "network. Nothing is computed again; `compare` and `diagnose` add to what it shows. Several "
-      "runs are shown side by side, if their errors\n"
-      "refer to the same frames of the same recordings. docs/report.md explains the page.");
+      "network. Nothing is computed again; `compare` and `diagnose` add to what it shows. Several\n"
+      "runs are shown side by side, if their errors refer to the same frames of the same\n"
+      "recordings. docs/report.md explains the page.");
   auto arguments = std::make_shared<ReportArguments>();
   report->add_option("run", arguments->runs, "Folders of the runs")->required();
   report->add_option("-o,--output", arguments->output,

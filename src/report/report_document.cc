@@ -301,29 +301,23 @@ GatheredRun GatherStudy(const fs::path& folder) {
   const bool has_table = fs::exists(folder / "table1.json");
   const bool has_ablation = fs::exists(folder / "ablation.json");
   json table;
-  try {
-    if (has_table) table = Table1WithTraces(folder);
-    if (has_table) gathered.sentences = Table1Headline(table);
-  } catch (const json::exception& problem) {
-    throw InputError({(folder / "table1.json").string()},
-                     std::string("is not a Table 1: ") + problem.what());
-  }
-  const json trials = FindTrials(folder);
-  try {
-    for (const std::string& sentence : TrialsHeadline(trials))
-      gathered.sentences.push_back(sentence);
-  } catch (const json::exception& problem) {
-    throw InputError({(folder / "report.json").string()},
-                     std::string("is not a report of sealed cases: ") + problem.what());
-  }
-  const json intervals = FindIntervals(folder);
-  try {
-    for (const std::string& sentence : IntervalsHeadline(intervals))
-      gathered.sentences.push_back(sentence);
-  } catch (const json::exception& problem) {
-    throw InputError({(folder / "intervals.json").string()},
-                     std::string("is not a table of intervals: ") + problem.what());
-  }
+  const auto add_sentences = [&](const char* what, const char* file, const auto& headline) {
+    try {
+      for (const std::string& sentence : headline()) gathered.sentences.push_back(sentence);
+    } catch (const json::exception& problem) {
+      throw InputError({(folder / file).string()},
+                       fmt::format("is not {}: {}", what, problem.what()));
+    }
+  };
+  if (has_table)
+    add_sentences("a Table 1", "table1.json", [&] {
+      table = Table1WithTraces(folder);
+      return Table1Headline(table);
+    });
+  const json trials = FindTrials(folder), intervals = FindIntervals(folder);
+  add_sentences("a report of sealed cases", "report.json", [&] { return TrialsHeadline(trials); });
+  add_sentences("a table of intervals", "intervals.json",
+                [&] { return IntervalsHeadline(intervals); });
   const std::string path = FromProject(folder, folder);
   json commands = json::array();
   if (has_table) {

@@ -291,10 +291,11 @@ IntervalReport ReportIntervals(const std::filesystem::path& folder) {
   IntervalReport report;
   std::vector<std::string> names;
   std::map<std::string, std::vector<double>> deviations;
-  for (const std::filesystem::path& draw : CasesIn(folder)) {
-    if (report.missing.empty())
-      for (const HiddenEffect& hidden : LoadCase(draw / "truth.json").hidden)
-        report.missing.push_back(hidden.type);
+  const std::vector<std::filesystem::path> draws = CasesIn(folder);
+  if (!draws.empty())  // all draws of a suite lack the same
+    for (const HiddenEffect& hidden : LoadCase(draws.front() / "truth.json").hidden)
+      report.missing.push_back(hidden.type);
+  for (const std::filesystem::path& draw : draws) {
     if (!std::filesystem::exists(draw / "intervals.json")) {
       std::string reason = "not fitted yet";
       if (std::ifstream stream(draw / "failed.txt"); stream) std::getline(stream, reason);
