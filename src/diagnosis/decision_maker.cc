@@ -63,6 +63,7 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
   const EffectRanking& ranking = context.ranking;
   DecisionInput input;
   input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, "", noise.level);
+  const EffectRanking& beside_refits = ranked.along ? *ranked.along : ranking;
   const double penalty = SelectionPenalty(ranked.effects.size());
   for (size_t k = 0; k < ranked.effects.size(); ++k) {
     const RankedEffect& effect = ranked.effects[k];
@@ -72,11 +73,12 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     if (!ranked.IsUsable(k)) continue;
     input.refits.push_back(
         {candidate.type, effect.evidence + penalty,
-         SpaceOf(ranked.refits[k].hypothesis, ranking, candidate.type, noise.level),
+         SpaceOf(ranked.refits[k].hypothesis, beside_refits, candidate.type, noise.level),
          effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
       input.natural_value[candidate.type] = natural;
   }
+  input.pairs = ranked.pairs;
   for (const ScoredNuisance& nuisance : diagnosis.nuisances) {
     const std::string& name = nuisance.candidate.card.name;
     if (nuisance.adopted && !nuisance.candidate.card.is_always_in_model &&

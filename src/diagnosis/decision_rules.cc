@@ -23,10 +23,6 @@ double LogPrior(Kind kind) {
   return 0;
 }
 
-bool Contains(const HypothesisProbability& one, const std::string& name) {
-  return std::count(one.names.begin(), one.names.end(), name) > 0;
-}
-
 }  // namespace
 
 void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
@@ -47,7 +43,7 @@ void SetPosterior(std::vector<HypothesisProbability>* hypotheses) {
 
 bool IsNuisance(const std::vector<HypothesisProbability>& posterior, const std::string& name) {
   return std::any_of(posterior.begin(), posterior.end(), [&](const HypothesisProbability& one) {
-    return one.kind == Kind::kNuisance && Contains(one, name);
+    return one.kind == Kind::kNuisance && one.Contains(name);
   });
 }
 
@@ -66,7 +62,7 @@ Naming NameFrom(const std::vector<HypothesisProbability>& posterior) {
   const HypothesisProbability& best = posterior.front();
   const auto is_nuisance = [&](const std::string& name) { return IsNuisance(posterior, name); };
   for (const std::string& name : best.names)
-    if (holds([&](const auto& one) { return Contains(one, name); })) naming.names.push_back(name);
+    if (holds([&](const auto& one) { return one.Contains(name); })) naming.names.push_back(name);
   // Rival effects that only share the nuisances of every model have nothing in common.
   const bool share_nuisances = holds([](const auto& one) { return one.kind != Kind::kNuisance; }) &&
                                std::all_of(naming.names.begin(), naming.names.end(), is_nuisance);

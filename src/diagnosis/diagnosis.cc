@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -18,6 +20,13 @@
 
 namespace lacuna {
 namespace {
+
+// DecideAlongBest() computes columns anew or fits a pair so many times at most. Higher: slower,
+// where several hypotheses are nearly equal.
+constexpr int kMostLooks = 4;
+// A halving of the time step divides the evidence of the unknown part of its error by about this
+// number: an error of second order becomes a quarter, and evidence grows with its square.
+constexpr double kEvidencePerHalving = 16;
 
 // What all steps of a diagnosis share.
 struct DiagnosisSetting {
@@ -56,17 +65,21 @@ std::vector<ScoredEffect> RankEarly(const CalibrationProblem& problem,
   return found;
 }
 
-// There is evidence for an effect, and the unknown part of the step's error could explain it. A
-// step whose unknown error is smaller than that of the elements is short enough: what remains
-// unknown is then that of the elements, however short the step.
-bool IsStepTooLong(const EffectRanking& ranking) {
+// By how many halvings the time step is too long: 0 unless there is evidence for an effect which
+// the unknown part of the step's error could explain. A step whose unknown error is smaller than
+// that of the elements is short enough: what remains unknown is then that of the elements, however
+// short the step.
+int HalvingsNeeded(const EffectRanking& ranking) {
   double of_step = 0, of_others = 0;
   for (const ScoredNuisance& nuisance : ranking.nuisances)
     (nuisance.candidate.card.shrinks_with_time_step ? of_step : of_others) +=
         nuisance.uncertain_evidence;
-  return of_step > std::max(kThresholds.refit.uncertain_step_evidence, of_others) &&
-         !ranking.effects.empty() &&
-         ranking.effects.front().score.evidence > kThresholds.refit.least_evidence;
+  const double tolerated = std::max(kThresholds.refit.uncertain_step_evidence, of_others);
+  if (!(of_step > tolerated) || ranking.effects.empty() ||
+      ranking.effects.front().score.evidence <= kThresholds.refit.least_evidence)
+    return 0;
+  return std::max(1, static_cast<int>(std::floor(std::log(of_step / tolerated) /
+                                                 std::log(kEvidencePerHalving))));
 }
 
 // The effects whose power is simulated: those that were refitted, the most probable first.
@@ -108,51 +121,72 @@ Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked,
   }
 }
 
-// Where the best effect leaves more than noise, or room for a second one, decides anew with what it
-// leaves along its own motion, and with the fit of both.
-Decision DecideAlongBest(const RefitContext& context, const RefittedRanking& ranked,
-                         const RefitNoise& noise, const DiagnosisOptions& options,
-                         Decision decision, DecisionInput* input) {
-  const auto best = [&]() -> const HypothesisProbability& {
-    return decision.record.probabilities.front();
-  };
-  const auto is_pair = [&] { return best().kind == HypothesisProbability::Kind::kPair; };
-  if ((decision.verdict != Verdict::kNotInLibrary && !is_pair()) || best().names.empty())
-    return decision;
-  const std::string name = best().names.front();
-  for (size_t k = 0; k < ranked.effects.size(); ++k) {
-    const RankedEffect& effect = ranked.effects[k];
-    if (effect.scored.candidate.type != name || !ranked.IsUsable(k)) continue;
-    const RefittedModel model(context.model, effect.scored, ranked.refits[k], options.without,
-                              {context.ranking, noise.level});
-    for (WeighedRefit& refit : input->refits)
-      if (refit.effect == name) refit.space = model.space();
-    decision = Decide(*input);
-    if (!is_pair() || std::count(best().names.begin(), best().names.end(), name) == 0) break;
-    const std::string& further = best().names[0] == name ? best().names[1] : best().names[0];
-    if (std::optional<WeighedPair> pair = model.RefitWith(further)) {
-      input->pairs.push_back(*std::move(pair));
-      decision = Decide(*input);
+bool IsRefitted(const std::vector<WeighedPair>& pairs, const HypothesisProbability& pair) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const WeighedPair& one) {
+    return pair.Contains(one.first) && pair.Contains(one.second);
+  });
+}
+
+// The refit with this effect, as a model along whose motion everything is ranked anew; null: there
+// is no such refit.
+std::unique_ptr<RefittedModel> ModelWith(const std::string& effect, const RefitContext& context,
+                                         const RefittedRanking& ranked, const NoiseLevel& noise,
+                                         const DiagnosisOptions& options) {
+  for (size_t k = 0; k < ranked.effects.size(); ++k)
+    if (ranked.effects[k].scored.candidate.type == effect && ranked.IsUsable(k))
+      return std::make_unique<RefittedModel>(context.model, ranked.effects[k].scored,
+                                             ranked.refits[k], options.without,
+                                             DecidedBase{context.ranking, noise});
+  return nullptr;
+}
+
+// Where an effect is most probable, decides anew with the columns of its own motion and, where that
+// is a pair, with the fit of both, until the most probable hypothesis has been looked at in this
+// way. Sets the noise and the input that belong to the decision.
+Decision DecideAlongBest(const RefitContext& context, const DiagnosisOptions& options,
+                         Decision decision, RefittedRanking* ranked, RefitNoise* noise,
+                         Diagnosis* diagnosis) {
+  using Kind = HypothesisProbability::Kind;
+  std::unique_ptr<RefittedModel> model;
+  for (int look = 0; look < kMostLooks; ++look) {
+    const HypothesisProbability best = decision.record.probabilities.front();
+    if (best.kind != Kind::kEffect && best.kind != Kind::kPair) break;
+    if (model == nullptr || !best.Contains(model->effect())) {
+      model = ModelWith(best.names.front(), context, *ranked, noise->level, options);
+      if (model == nullptr) break;
+      LookAlong(context, model->effect(), model->ranking(), ranked);
+      *noise = WeighRefits(context, ranked);
+    } else if (best.kind == Kind::kPair && !IsRefitted(ranked->pairs, best)) {
+      const std::string& further = best.names[0] == model->effect() ? best.names[1] : best.names[0];
+      std::optional<WeighedPair> pair = model->RefitWith(further, noise->level);
+      if (!pair) break;
+      ranked->pairs.push_back(*std::move(pair));
+    } else {
+      break;
     }
-    break;
+    decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
   }
   return decision;
 }
 
 // Looks closer where that may change the decision: along the motion of the best effect and, where
 // nuisances explain the residual, at effects in their place.
-void DecideUpon(const RefitContext& context, const RefittedRanking& ranked, const RefitNoise& noise,
-                const DiagnosisOptions& options, Decision decision, Diagnosis* diagnosis) {
+void DecideUpon(const RefitContext& context, const DiagnosisOptions& options,
+                RefittedRanking* ranked, RefitNoise* noise, Diagnosis* diagnosis) {
+  Decision decision = RefitWhatIsStated(context, ranked, noise, diagnosis);
+  decision = DecideAlongBest(context, options, std::move(decision), ranked, noise, diagnosis);
   DecisionInput& input = diagnosis->decision_input;
-  decision = DecideAlongBest(context, ranked, noise, options, std::move(decision), &input);
   if (decision.verdict == Verdict::kNuisance && context.ranking.adopted.HasMore()) {
-    diagnosis->alternatives = RefitInPlaceOfNuisances(context, ranked, noise, options.refits);
+    diagnosis->alternatives = RefitInPlaceOfNuisances(context, *ranked, *noise, options.refits);
     AddAlternatives(diagnosis->alternatives, &input);
     decision = Decide(input);
   }
   const std::vector<std::string> effects = EffectsOfInterest(decision, input);
   decision.record.power = SimulatePower(input, effects);
   decision.record.separations = Separations(input, effects);
+  diagnosis->noise_level = noise->level;
+  diagnosis->best_rms_over_sigma = noise->least_rms_over_sigma;
+  diagnosis->ranking = ranked->effects;
   Conclude(decision, diagnosis);
 }
 
@@ -187,12 +221,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   RefitNoise noise = WeighRefits(context, &ranked);
   RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
   diagnosis.nuisances = ranking.nuisances;
-  Decision decision = RefitWhatIsStated(context, &ranked, &noise, &diagnosis);
-
-  diagnosis.noise_level = noise.level;
-  diagnosis.best_rms_over_sigma = noise.least_rms_over_sigma;
-  diagnosis.ranking = ranked.effects;
-  DecideUpon(context, ranked, noise, options, std::move(decision), &diagnosis);
+  DecideUpon(context, options, &ranked, &noise, &diagnosis);
   return diagnosis;
 }
 
@@ -200,22 +229,22 @@ Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::V
                                int halvings, const DiagnosisSetting& setting,
                                const SceneColumns& known);
 
-// Fits and diagnoses the study with half the time step; nothing if that cannot be fitted. `scene`:
-// of the study's ranking.
-std::optional<Diagnosis> DiagnoseWithHalfStep(const CalibrationProblem& problem,
-                                              const Eigen::VectorXd& fitted, int halvings,
-                                              const DiagnosisSetting& setting,
-                                              const SceneColumns& scene) {
+// Fits and diagnoses the study with a time step halved `now` times, and up to `most` times if that
+// is not enough; nothing if it cannot be fitted. `scene`: of the study's ranking.
+std::optional<Diagnosis> DiagnoseWithShorterStep(const CalibrationProblem& problem,
+                                                 const Eigen::VectorXd& fitted, int now, int most,
+                                                 const DiagnosisSetting& setting,
+                                                 const SceneColumns& scene) {
   PredictionStudy study = problem.WithEstimatedNoise();
-  study.time_step /= 2;
+  study.time_step = std::ldexp(study.time_step, -now);
   setting.progress->Begin("time step", 0);
   setting.progress->End(
-      fmt::format("{:.3g} ms, because the error of twice that could look like an effect",
-                  1e3 * study.time_step));
+      fmt::format("{:.3g} ms, because the error of {:.3g} ms could look like an effect",
+                  1e3 * study.time_step, 1e3 * problem.study().time_step));
   const CalibrationProblem shorter(study, problem.body()->mesh);
   const Calibration fit = RefineFit(shorter, fitted, setting.progress);
   if (fit.parameters.size() != fitted.size()) return std::nullopt;
-  return DiagnoseWithHalvings(shorter, fit.parameters, halvings - 1, setting, scene.ForOtherStep());
+  return DiagnoseWithHalvings(shorter, fit.parameters, most - now, setting, scene.ForOtherStep());
 }
 
 Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::VectorXd& fitted,
@@ -223,9 +252,11 @@ Diagnosis DiagnoseWithHalvings(const CalibrationProblem& problem, const Eigen::V
                                const SceneColumns& known) {
   EffectRanking ranking =
       RankEffects(problem, fitted, setting.progress, setting.options.without, known);
-  if (problem.study().chooses_time_step && halvings > 0 && IsStepTooLong(ranking))
-    if (auto diagnosis = DiagnoseWithHalfStep(problem, fitted, halvings, setting, ranking.scene))
-      return *std::move(diagnosis);
+  if (problem.study().chooses_time_step)
+    if (const int now = std::min(halvings, HalvingsNeeded(ranking)); now > 0)
+      if (auto diagnosis =
+              DiagnoseWithShorterStep(problem, fitted, now, halvings, setting, ranking.scene))
+        return *std::move(diagnosis);
   return DiagnoseRanked(problem, fitted, std::move(ranking), setting);
 }
 

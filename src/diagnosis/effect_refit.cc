@@ -13,7 +13,7 @@
 namespace lacuna {
 namespace {
 
-// SettledHypothesis() makes at most so many Gauss–Newton steps, shortens a step that does not help
+// Settle() makes at most so many Gauss–Newton steps, shortens a step that does not help
 // by this factor, and stops when the next step would gain less log evidence than this.
 constexpr int kSettlingSteps = 5;
 constexpr double kStepReduction = 0.3;
@@ -82,6 +82,24 @@ LinearisedMisfit ComparedAs(LinearisedMisfit misfit, const LinearisedMisfit& cor
   return misfit;
 }
 
+// Replaces the columns of the adopted nuisances of a hypothesis, after those of the parameters.
+void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& correspondences,
+                  FittedHypothesis* hypothesis) {
+  const Eigen::MatrixXd& nuisances = adopted.columns;
+  Eigen::MatrixXd& columns = hypothesis->misfit.jacobian;
+  columns.conservativeResize(Eigen::NoChange, hypothesis->parameters + nuisances.cols());
+  columns.rightCols(nuisances.cols()) = nuisances;
+  hypothesis->priors.resize(static_cast<size_t>(hypothesis->parameters));
+  hypothesis->priors.insert(hypothesis->priors.end(), adopted.priors.begin(), adopted.priors.end());
+  hypothesis->residual = hypothesis->misfit.residual;
+  if (nuisances.cols() == 0) return;
+  const LinearFit fit =
+      LinearGaussianModel(WhitenedRows(hypothesis->residual, correspondences, 0, false),
+                          WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
+          .FitAll(1);
+  hypothesis->residual += nuisances * fit.change;
+}
+
 // The model at `values`, with the residuals between the same points as in `correspondences`. Given
 // `near`, its Jacobian is used instead of a new one; given `known`, the misfit with Jacobian at
 // `values`, nothing is predicted.
@@ -99,23 +117,8 @@ FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::Ve
   if (!hypothesis.misfit.usable) return hypothesis;
   hypothesis.priors = PriorsAbout(problem.parameters(), values);
   hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
-  const Eigen::MatrixXd& nuisances = adopted.columns;
-  Eigen::MatrixXd& columns = hypothesis.misfit.jacobian;
-  if (near != nullptr) {
-    columns = near->misfit.jacobian;
-  } else {
-    columns.conservativeResize(Eigen::NoChange, hypothesis.parameters + nuisances.cols());
-    columns.rightCols(nuisances.cols()) = nuisances;
-  }
-  hypothesis.priors.insert(hypothesis.priors.end(), adopted.priors.begin(), adopted.priors.end());
-  hypothesis.residual = hypothesis.misfit.residual;
-  if (nuisances.cols() > 0) {
-    const LinearFit fit =
-        LinearGaussianModel(WhitenedRows(hypothesis.residual, correspondences, 0, false),
-                            WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
-            .FitAll(1);
-    hypothesis.residual += nuisances * fit.change;
-  }
+  if (near != nullptr) hypothesis.misfit.jacobian = near->misfit.jacobian;
+  SetNuisances(adopted, correspondences, &hypothesis);
   return hypothesis;
 }
 
@@ -172,15 +175,15 @@ struct BestStep {
   double gain = 0;
 };
 
-// The best change within the bounds of the parameters for all frames, to first order.
+// The best change within the bounds of the parameters, to first order.
 BestStep BestNear(const FittedHypothesis& hypothesis,
                   const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
-                  const NoiseLevel& noise) {
+                  const NoiseLevel& noise, bool fitted_only) {
   const LinearisedMisfit& misfit = hypothesis.misfit;
   const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, false);
+      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
   const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, false);
+      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
   QuadraticCost model{0.5 * residual.squaredNorm() / noise.variance,
                       columns.transpose() * residual / noise.variance,
                       columns.transpose() * columns / noise.variance};
@@ -209,33 +212,59 @@ BestStep BestNear(const FittedHypothesis& hypothesis,
                                    .cwiseInverse();
   model.gradient = unit.cwiseProduct(model.gradient);
   model.information = unit.asDiagonal() * model.information * unit.asDiagonal();
-  const Eigen::VectorXd step = StepWithin(model, low.cwiseQuotient(unit), high.cwiseQuotient(unit));
-  return {unit.cwiseProduct(step), model.cost * model.GainOf(step)};
+  low = low.cwiseQuotient(unit);
+  high = high.cwiseQuotient(unit);
+  const Eigen::VectorXd step = StepWithin(model, low, high);
+  // The evidence has the nuisances at their best amounts already.
+  low.head(hypothesis.parameters).setZero();
+  high.head(hypothesis.parameters).setZero();
+  const Eigen::VectorXd of_nuisances = StepWithin(model, low, high);
+  return {unit.cwiseProduct(step), model.cost * (model.GainOf(step) - model.GainOf(of_nuisances))};
 }
 
-// The hypothesis at the best parameters for all frames, by Gauss–Newton steps from `values`, where
-// it is `hypothesis`. The held-out frames move the parameters little, so the Jacobian is kept.
-FittedHypothesis SettledHypothesis(const CalibrationProblem& problem, Eigen::VectorXd values,
-                                   const AdoptedNuisances& adopted,
-                                   const LinearisedMisfit& correspondences, const NoiseLevel& noise,
-                                   FittedHypothesis hypothesis) {
-  double evidence = EvidenceOf(hypothesis, noise).log_evidence;
+// A hypothesis, and the values of the problem's parameters there.
+struct Settled {
+  Eigen::VectorXd values;
+  FittedHypothesis hypothesis;
+};
+
+// The hypothesis at the best parameters for all frames or for those that were fitted, by
+// Gauss–Newton steps from `start`. The steps are small, so the Jacobian is kept.
+Settled Settle(const CalibrationProblem& problem, Settled start, const AdoptedNuisances& adopted,
+               const LinearisedMisfit& correspondences, const NoiseLevel& noise, bool fitted_only) {
+  Settled settled = std::move(start);
+  double evidence = EvidenceOf(settled.hypothesis, noise, fitted_only).log_evidence;
   double share = 1;  // of the step
   for (int step = 0; step < kSettlingSteps; ++step) {
-    const BestStep best = BestNear(hypothesis, problem.parameters(), values, noise);
-    if (best.gain < kSettledGain) break;
-    const Eigen::VectorXd moved = MovedBy(problem.parameters(), values, share * best.change);
-    FittedHypothesis next = HypothesisAt(problem, moved, adopted, correspondences, &hypothesis);
-    const double gain = next.misfit.usable ? EvidenceOf(next, noise).log_evidence - evidence : -1.0;
+    const BestStep best =
+        BestNear(settled.hypothesis, problem.parameters(), settled.values, noise, fitted_only);
+    if (share * best.gain < kSettledGain) break;
+    const Eigen::VectorXd moved =
+        MovedBy(problem.parameters(), settled.values, share * best.change);
+    FittedHypothesis next =
+        HypothesisAt(problem, moved, adopted, correspondences, &settled.hypothesis);
+    const double gain =
+        next.misfit.usable ? EvidenceOf(next, noise, fitted_only).log_evidence - evidence : -1.0;
     if (!(gain > 0)) {
       share *= kStepReduction;
       continue;
     }
-    values = moved;
     evidence += gain;
-    hypothesis = std::move(next);
+    settled = {moved, std::move(next)};
   }
-  return hypothesis;
+  return settled;
+}
+
+// Sets what a refit says of the fitted frames and of all frames, from a hypothesis near both.
+void SettleRefit(const CalibrationProblem& problem, const AdoptedNuisances& adopted,
+                 const BaselineModel& baseline, Settled start, EffectRefit* refit) {
+  Settled fitted = Settle(problem, std::move(start), adopted, baseline.misfit, baseline.noise,
+                          /*fitted_only=*/true);
+  refit->at_fit = fitted.hypothesis;
+  refit->values_at_fit = fitted.values;
+  refit->hypothesis = Settle(problem, std::move(fitted), adopted, baseline.misfit, baseline.noise,
+                             /*fitted_only=*/false)
+                          .hypothesis;
 }
 
 // By how much the variance of a mean over frames exceeds that of independent noise.
@@ -380,11 +409,19 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
           refit.hypothesis.misfit.residual + adopted.columns * refit.amounts;
       const Eigen::VectorXd white = WhitenedRows(residual, misfit, 0, false);
       refit.errors.without_nuisances = HeldOutInNoise(white, misfit);
-      refit.at_fit = refit.hypothesis;
-      refit.hypothesis = SettledHypothesis(with, refit.calibration.parameters, adopted, misfit,
-                                           baseline.noise, std::move(refit.hypothesis));
+      SettleRefit(with, adopted, baseline,
+                  {refit.calibration.parameters, std::move(refit.hypothesis)}, &refit);
     }
   }
+  return refit;
+}
+
+EffectRefit BesideNuisances(const BaselineModel& baseline, const ScoredVariant& effect,
+                            const AdoptedNuisances& adopted, EffectRefit refit) {
+  const ExtendedProblem extended(baseline, &effect, adopted);
+  Settled start{refit.values_at_fit, refit.at_fit};
+  SetNuisances(adopted, baseline.misfit, &start.hypothesis);
+  SettleRefit(extended.problem(), adopted, baseline, std::move(start), &refit);
   return refit;
 }
 

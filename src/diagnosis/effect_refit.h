@@ -51,8 +51,9 @@ struct EffectRefit {
   std::vector<ParameterEstimate> sizes;  // those that make its size; empty for a pilot
   std::vector<NamedEstimate> others;     // its other fitted parameters: place, time
   ModelErrors errors;
-  FittedHypothesis at_fit;      // at the best parameters for the fitted frames
-  FittedHypothesis hypothesis;  // at the best parameters for all frames
+  FittedHypothesis at_fit;        // at the best parameters for the fitted frames
+  Eigen::VectorXd values_at_fit;  // these parameters
+  FittedHypothesis hypothesis;    // at the best parameters for all frames
 };
 
 // The log evidence of all frames, and that of the held-out frames given the fitted ones:
@@ -106,6 +107,12 @@ EffectRefit Refit(const BaselineModel& baseline, const ScoredVariant* effect,
                   const AdoptedNuisances& adopted, bool is_far_off,
                   RefitFrom from = RefitFrom::kFirstOrder, const EffectRefit* without = nullptr,
                   double hopeless_cost = std::numeric_limits<double>::infinity());
+
+// A refit beside other columns of the adopted nuisances, which may have been computed along another
+// motion: the parameters are settled anew beside them, with the derivatives that the refit has. Its
+// errors and estimates stay those of the fit. `effect` is the variant that was refitted.
+EffectRefit BesideNuisances(const BaselineModel& baseline, const ScoredVariant& effect,
+                            const AdoptedNuisances& adopted, EffectRefit refit);
 
 }  // namespace lacuna
 

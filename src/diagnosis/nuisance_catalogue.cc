@@ -105,6 +105,13 @@ std::vector<NuisanceCandidate> ModelNuisances(const NuisanceContext& context,
   return Made(entries, context, known);
 }
 
+std::vector<NuisanceCandidate> SceneNuisances(const NuisanceContext& context) {
+  std::vector<const NuisanceEntry*> entries;
+  for (const NuisanceEntry& entry : NuisanceCatalogue())
+    if (entry.card.is_shared_in_scene) entries.push_back(&entry);
+  return Made(entries, context, {});
+}
+
 std::vector<NuisanceCandidate> NuisancesOfEveryModel(const NuisanceContext& context) {
   std::vector<const NuisanceEntry*> entries;
   for (const NuisanceEntry& entry : NuisanceCatalogue())

@@ -1,14 +1,48 @@
 #include "diagnosis/pair_refit.h"
 
+#include <utility>
+
+#include "diagnosis/grip_motions.h"
 #include "diagnosis/model_change.h"
+#include "diagnosis/nuisance_catalogue.h"
 #include "diagnosis/refits.h"
 
 namespace lacuna {
 namespace {
 
-SceneColumns OtherScene(const SceneColumns& of_baseline, const ScoredVariant& effect) {
+// The parameters of a model with one more effect, without those of the effect, which come after
+// `shared` ones of the model.
+struct SharedParameters {
+  Eigen::Index shared, own;
+
+  std::vector<int> Among(Eigen::Index all) const {
+    std::vector<int> kept;
+    for (Eigen::Index k = 0; k < all; ++k)
+      if (k < shared || k >= shared + own) kept.push_back(static_cast<int>(k));
+    return kept;
+  }
+};
+
+// The nuisances that are differences of simulations, along the refit's motion. The effect keeps its
+// size in them: what may compensate for a nuisance are the parameters that the rivals of the effect
+// have, too. Otherwise a part of the effect would belong to the base of its rivals.
+std::vector<NuisanceCandidate> NuisancesAlong(const CalibrationProblem& problem,
+                                              const EffectRefit& refit,
+                                              const SharedParameters& parameters) {
+  PredictionStudy study = problem.StudyAt(refit.values_at_fit);
+  study.fitted.resize(static_cast<size_t>(parameters.shared));
+  const CalibrationProblem held(study, problem.body()->mesh);
+  const std::vector<int> kept = parameters.Among(refit.values_at_fit.size());
+  const Eigen::VectorXd values = refit.values_at_fit(kept);
+  LinearisedMisfit misfit = refit.at_fit.misfit;
+  misfit.jacobian = Eigen::MatrixXd(misfit.jacobian(Eigen::all, kept));
+  return SceneNuisances({held, values, misfit, MakeGripMotions(held), {}});
+}
+
+SceneColumns OtherScene(const SceneColumns& of_baseline, const ScoredVariant& effect,
+                        std::vector<NuisanceCandidate> nuisances) {
   SceneColumns scene = of_baseline;
-  scene.nuisances.clear();
+  scene.nuisances = std::move(nuisances);
   if (effect.candidate.IsPilot()) scene.pilots.reset();
   return scene;
 }
@@ -22,11 +56,17 @@ RefittedModel::RefittedModel(const BaselineModel& baseline, const ScoredVariant&
       effect_(effect.candidate.type),
       study_(WithEffect(baseline.problem.StudyAt(baseline.values), effect)),
       problem_(study_, baseline.problem.body()->mesh),
-      values_(refit.calibration.parameters),
-      ranking_(RankEffects(problem_, values_, baseline.progress, without,
-                           OtherScene(decided.ranking.scene, effect), &decided)) {}
+      values_(refit.values_at_fit) {
+  const Eigen::Index shared = static_cast<Eigen::Index>(baseline.problem.study().fitted.size());
+  const Eigen::Index own = static_cast<Eigen::Index>(study_.fitted.size()) - shared;
+  ranking_ = RankEffects(
+      problem_, values_, baseline.progress, without,
+      OtherScene(decided.ranking.scene, effect, NuisancesAlong(problem_, refit, {shared, own})),
+      &decided);
+}
 
-std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further) const {
+std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further,
+                                                    const NoiseLevel& noise) const {
   for (const ScoredEffect& scored : ranking_.effects) {
     if (scored.candidate.type != further) continue;
     const BaselineModel model =
@@ -37,7 +77,6 @@ std::optional<WeighedPair> RefittedModel::RefitWith(const std::string& further) 
     const EffectRefit both = RefitEffect({model, ranking_}, ranking_.adopted, alone,
                                          /*is_found=*/true, &effect);
     if (!alone.message.empty() || !both.message.empty()) return std::nullopt;
-    const NoiseLevel& noise = ranking_.noise;
     return WeighedPair{effect_, further, EvidenceOf(both, noise).all - EvidenceOf(alone, noise).all,
                        SpaceOf(both.hypothesis, ranking_, further, noise),
                        Predicts(both, alone, noise)};

@@ -18,6 +18,7 @@ namespace lacuna {
 // A refitted effect and everything else ranked anew along its motion, with the nuisances that
 // `decided`, the baseline's ranking, has adopted. What an effect leaves may be a hundredth of what
 // it explains, so that the columns of the mesh and the time step must be those of its own motion.
+// The effect keeps its size in them.
 // Pilots are simulated again only if the effect is one of them, so that it does not stand beside
 // itself. `baseline` must outlive it. The constructor throws Interrupted.
 class RefittedModel {
@@ -27,12 +28,12 @@ class RefittedModel {
                 const DecidedBase& decided);
   RefittedModel(const RefittedModel&) = delete;
 
-  // All other hypotheses beside the effect.
-  const HypothesisSpace& space() const { return ranking_.space; }
+  const std::string& effect() const { return effect_; }
+  const EffectRanking& ranking() const { return ranking_; }
 
-  // The fit with a further effect; nothing if that was not tried or cannot be fitted. Throws
-  // Interrupted.
-  std::optional<WeighedPair> RefitWith(const std::string& further) const;
+  // The fit with a further effect, weighed with this noise; nothing if that was not tried or cannot
+  // be fitted. Throws Interrupted.
+  std::optional<WeighedPair> RefitWith(const std::string& further, const NoiseLevel& noise) const;
 
  private:
   const BaselineModel& baseline_;

@@ -97,6 +97,13 @@ void SetEvidence(const EffectRefit& with, const RefitEvidence& before, const Noi
   effect->rms_over_sigma = RmsOverSigma(with.hypothesis);
 }
 
+void PutBesideAlong(const RefitContext& context, size_t effect, RefittedRanking* ranked) {
+  if (!ranked->IsUsable(effect)) return;
+  EffectRefit& refit = ranked->refits[effect];
+  refit = BesideNuisances(context.model, ranked->effects[effect].scored, ranked->along->adopted,
+                          std::move(refit));
+}
+
 // The hypothesis with the smallest residual, the model without an effect among them.
 const FittedHypothesis& LeastResidual(const RefittedRanking& ranked, const NoiseLevel& noise) {
   const FittedHypothesis* best = &ranked.baseline.hypothesis;
@@ -251,8 +258,12 @@ std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects) {
 
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked) {
-  for (const size_t effect : effects)
-    if (!IsBeaten(*ranked, effect)) RefitOne(context, effect, ranked);
+  for (const size_t effect : effects) {
+    if (IsBeaten(*ranked, effect)) continue;
+    const int before = ranked->count;
+    RefitOne(context, effect, ranked);
+    if (ranked->along && ranked->count > before) PutBesideAlong(context, effect, ranked);
+  }
 }
 
 void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
@@ -268,6 +279,17 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
       effect.scored.score = score;
     }
   }
+}
+
+void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
+               RefittedRanking* ranked) {
+  // The ranking has the effect in its base, the other refits have not.
+  for (const TriedVariant& tried : context.ranking.tried)
+    if (tried.type == type) along.tried.push_back(tried);
+  ranked->along = std::make_shared<const EffectRanking>(std::move(along));
+  ParallelFor(static_cast<int64_t>(ranked->refits.size()), 1, [&](int64_t effect) {
+    PutBesideAlong(context, static_cast<size_t>(effect), ranked);
+  });
 }
 
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {

@@ -2,13 +2,15 @@
 // what evidence they have afterwards.
 //
 // All state is in plain values. RefitAll() and RefitAsRankedEarly() add refits to a
-// RefittedRanking; WeighRefits() computes the evidence of all refits that it has, with a noise that
-// is estimated from the best one. "The best effect" is the one with the most of that evidence;
-// functions that start from it do nothing if no effect has any.
+// RefittedRanking; LookAlong() gives them the columns of another motion; WeighRefits() computes the
+// evidence of all refits that it has, with a noise that is estimated from the best one. "The best
+// effect" is the one with the most of that evidence; functions that start from it do nothing if no
+// effect has any.
 #ifndef LACUNA_DIAGNOSIS_REFITS_H_
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +39,10 @@ struct RefittedRanking {
   double baseline_evidence = 0, best_evidence = 0;
   double underrated = 0;       // by how much first order has underrated the evidence of that refit
   std::optional<size_t> best;  // the effect of that refit
+  // The ranking along the motion of a refit, whose columns stand beside all refits; null: those of
+  // the baseline do.
+  std::shared_ptr<const EffectRanking> along;
+  std::vector<WeighedPair> pairs;  // fits with two effects
 
   bool IsUsable(size_t effect) const {
     return effects[effect].refitted && effects[effect].refit_message.empty();
@@ -74,7 +80,8 @@ std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int 
 // distinguish from it, and those of its family.
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
-// Refits the effects with these indices that have not been refitted, up to the limit. Effects that
+// Refits the effects with these indices that have not been refitted, up to the limit, beside the
+// columns of RefittedRanking::along. Effects that
 // another refit has clearly beaten (RefitThresholds::beaten_by) are left out, but not those of the
 // best effect's family, unless their score comes from a simulation at a finite size: a derivative
 // may give no evidence for the member that is really missing.
@@ -85,6 +92,14 @@ void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
 // and sizes that they have there.
 void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEffect>& early,
                         int wanted, RefittedRanking* ranked);
+
+// Puts the columns of `along`, a ranking along the motion of the refit with the effect `type`,
+// beside all refits, and settles them (BesideNuisances). Every refit that follows the measurements
+// moves like that one, while the baseline, without the effect, may move otherwise: its columns
+// of the mesh and the time step are then wrong for all of them, and what is wrong looks like a
+// further effect.
+void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
+               RefittedRanking* ranked);
 
 // Estimates the noise from the refit with the smallest residual, and computes the evidence of all
 // refits. Replaces the results of an earlier call.

@@ -3,6 +3,7 @@
 #ifndef LACUNA_RECORD_DECISION_RECORD_H_
 #define LACUNA_RECORD_DECISION_RECORD_H_
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -28,6 +29,10 @@ struct HypothesisProbability {
   // An effect with which the error of the held-out frames grows by more than chance. It counts as
   // refuted, whatever its evidence: its probability is 0.
   bool is_refuted = false;
+
+  bool Contains(const std::string& name) const {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
 };
 
 // Whether the most probable hypothesis leaves what noise leaves: tail probabilities under noise

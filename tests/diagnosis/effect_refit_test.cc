@@ -334,5 +334,39 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
   EXPECT_NEAR(wider.high - wider.value, factor * (size.high - size.value), 1e-9 * wider.high);
 }
 
+// Columns that were computed along another motion take their part of the residual, and the
+// parameters follow. The same columns change nothing.
+TEST_F(EffectRefitOfACoarseBar, IsSettledBesideOtherNuisances) {
+  const Calibration fit = FitFromStart(*problem_, &progress_);
+  ASSERT_FALSE(fit.estimates.empty()) << fit.message;
+  const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
+  ASSERT_TRUE(misfit.usable) << misfit.message;
+  ScoredEffect drag;
+  drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
+  drag.score.size = Eigen::VectorXd::Constant(1, 1);
+  drag.expected_values = fit.parameters;
+  const BaselineModel baseline{*problem_, fit.parameters, misfit, &progress_};
+  const AdoptedNuisances none{Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0};
+  const EffectRefit refit = Refit(baseline, &drag, none, false);
+  ASSERT_TRUE(refit.message.empty()) << refit.message;
+  const NoiseLevel white{0, 1};
+  const RefitEvidence before = EvidenceOf(refit, white);
+
+  const RefitEvidence same = EvidenceOf(BesideNuisances(baseline, drag, none, refit), white);
+  EXPECT_NEAR(same.all, before.all, 0.5);
+  EXPECT_NEAR(same.held_out, before.held_out, 0.5);
+
+  // A column that explains the residual as it is, and what follows from a larger parameter.
+  const Eigen::VectorXd pushed = 0.01 * fit.parameters[0] * refit.hypothesis.misfit.jacobian.col(0);
+  const AdoptedNuisances errors{refit.hypothesis.misfit.residual, {{-1, 0.01, false}}, 1};
+  const EffectRefit settled = BesideNuisances(baseline, drag, errors, refit);
+  EXPECT_LT(EvidenceOf(settled, white).misfit, 0.01 * before.misfit);
+  EXPECT_GT(EvidenceOf(settled, white).all, before.all + 0.45 * before.misfit);
+  EXPECT_EQ(settled.hypothesis.misfit.jacobian.cols(), settled.hypothesis.parameters + 1);
+  const AdoptedNuisances shifted{pushed, {{1, 1e-3, false}}, 1};
+  const EffectRefit moved = BesideNuisances(baseline, drag, shifted, refit);
+  EXPECT_NEAR(EvidenceOf(moved, white).misfit, before.misfit, 0.02 * before.misfit);
+}
+
 }  // namespace
 }  // namespace lacuna
