@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
     Say(problem.what());
     return kUnusableInput;
   } catch (const lacuna::Interrupted& interrupted) {
-    Say("stopped; run the same command again to resume");
+    Say(lacuna::kStoppedMessage);
     return interrupted.ExitCode();
   } catch (const std::bad_alloc&) {
     Say("there is not enough memory");

@@ -92,7 +92,7 @@ int Main(int argc, char** argv) {
   } catch (const InputError& problem) {
     WriteLineToStandardError(problem.what());
   } catch (const Interrupted&) {
-    WriteLineToStandardError("stopped; run the same command again to resume");
+    WriteLineToStandardError(kStoppedMessage);
   }
   return 1;
 }

@@ -1,15 +1,19 @@
 #include "core/blas_kernels.h"
 
 #include <cblas.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <string_view>
+
+#include "core/interrupt.h"
 
 namespace lacuna {
 namespace {
@@ -48,8 +52,13 @@ std::string BetterBlasKernels(const std::string& chosen, const VectorInstruction
 
 void RestartWithBlasKernels(const std::string& name, char** argv) {
   setenv(kVariable, name.c_str(), /*overwrite=*/1);
+  // The restarted program blocks the signals again.
+  const sigset_t mask = SignalMaskOfStartedPrograms();
+  sigset_t own;
+  pthread_sigmask(SIG_SETMASK, &mask, &own);
   execv("/proc/self/exe", argv);
   const int error = errno;
+  pthread_sigmask(SIG_SETMASK, &own, nullptr);
   unsetenv(kVariable);
   std::cerr << "warning: OpenBLAS uses slow kernels (" << BlasKernelName()
             << ") and the program could not be restarted with better ones (" << std::strerror(error)

@@ -1,33 +1,88 @@
 #include "core/interrupt.h"
 
+#include <pthread.h>
+#include <unistd.h>
+
 #include <atomic>
-#include <csignal>
+#include <cerrno>
+#include <ctime>
+#include <optional>
+#include <thread>
+
+#include "core/progress.h"
 
 namespace lacuna {
 namespace {
 
 std::atomic<int> received_signal{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not wait for a lock");
 
-void Remember(int signal) { received_signal.store(signal); }
+// What BlockInterruptSignals() has set. It may be called before any static initialisation.
+struct Blocked {
+  sigset_t awaited;  // those that are waited for
+  sigset_t before;   // those that were blocked before
+};
+constinit std::optional<Blocked> blocked;
+std::atomic<bool> is_watching{false};
 
-void Handle(int signal) {
+bool IsIgnored(int signal) {
   struct sigaction action {};
-  if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
-  action = {};
-  action.sa_handler = &Remember;
-  // SA_RESETHAND restores the default action, so that a second signal terminates the program.
-  // SA_RESTART restarts system calls, so that an interrupt cannot look like a failed write.
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-  sigemptyset(&action.sa_mask);
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// Ends the process as this signal does if nothing is installed for it.
+[[noreturn]] void EndBy(int signal) {
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
   sigaction(signal, &action, nullptr);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, signal);
+  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
+  raise(signal);
+  _exit(128 + signal);
+}
+
+// Waits for the first signal and then for a second one, or for the end of the grace.
+void Watch(sigset_t awaited) {
+  int first = 0;
+  if (sigwait(&awaited, &first) != 0) return;
+  received_signal.store(first);
+  const timespec grace{kStopGrace.count() / 1000, kStopGrace.count() % 1000 * 1'000'000};
+  int second = 0;
+  do second = sigtimedwait(&awaited, nullptr, &grace);
+  while (second < 0 && errno == EINTR);
+  if (second > 0) EndBy(second);
+  WriteLineToStandardError(kStoppedMessage);
+  _exit(128 + first);
 }
 
 }  // namespace
 
+void BlockInterruptSignals() {
+  if (blocked) return;
+  Blocked now{};
+  sigemptyset(&now.awaited);
+  for (const int signal : {SIGINT, SIGTERM})
+    if (!IsIgnored(signal)) sigaddset(&now.awaited, signal);
+  pthread_sigmask(SIG_BLOCK, &now.awaited, &now.before);
+  blocked = now;
+}
+
 void InstallInterruptHandler() {
-  Handle(SIGINT);
-  Handle(SIGTERM);
+  BlockInterruptSignals();
+  is_watching = true;
+  std::thread(&Watch, blocked->awaited).detach();
+}
+
+void RestartInterruptHandler() {
+  if (is_watching) std::thread(&Watch, blocked->awaited).detach();
+}
+
+sigset_t SignalMaskOfStartedPrograms() {
+  if (blocked) return blocked->before;
+  sigset_t none;
+  sigemptyset(&none);
+  return none;
 }
 
 bool InterruptRequested() { return received_signal.load(std::memory_order_relaxed) != 0; }
@@ -35,7 +90,5 @@ bool InterruptRequested() { return received_signal.load(std::memory_order_relaxe
 void ThrowIfInterrupted() {
   if (InterruptRequested()) throw Interrupted(received_signal.load());
 }
-
-void ClearInterrupt() { received_signal.store(0); }
 
 }  // namespace lacuna

@@ -28,6 +28,7 @@ constexpr auto kPause = std::chrono::milliseconds(10);
 int Work(size_t k, int threads, const std::function<void(size_t)>& job) {
   // The kernel sends SIGTERM to the job if the parent process ends.
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+  RestartInterruptHandler();
   SetThreadCount(threads);
   try {
     job(k);

@@ -18,6 +18,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/spawn_attributes.h"
 #include "core/text_file.h"
 #include "exchange/inp_writer.h"
 
@@ -50,9 +51,10 @@ int Run(const std::filesystem::path& program, const std::filesystem::path& folde
   for (char** entry = environ; *entry != nullptr; ++entry)
     if (!std::string_view(*entry).starts_with("OMP_NUM_THREADS=")) environment.push_back(*entry);
   environment.push_back(nullptr);
+  const SpawnAttributes attributes;
   pid_t child = 0;
-  const int error =
-      posix_spawn(&child, program.c_str(), &actions, nullptr, arguments, environment.data());
+  const int error = posix_spawn(&child, program.c_str(), &actions, attributes.Get(), arguments,
+                                environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw InputError(fmt::format("ccx could not be started: {}", strerror(error)));
   int status = 0;

@@ -13,6 +13,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/spawn_attributes.h"
 
 extern char** environ;
 
@@ -54,8 +55,10 @@ std::string OutputOf(std::vector<std::string> arguments, int* status) {
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
   posix_spawn_file_actions_addclose(&actions, ends[0]);
   posix_spawn_file_actions_addclose(&actions, ends[1]);
+  const SpawnAttributes attributes;
   pid_t child = 0;
-  const int error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
+  const int error =
+      posix_spawn(&child, pointers[0], &actions, attributes.Get(), pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   std::string output;
