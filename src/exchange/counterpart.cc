@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cctype>
+
 #include "core/text_layout.h"
 
 namespace lacuna {
@@ -25,6 +27,11 @@ std::vector<std::string> ProvenanceLines(const PortableModel& model) {
   return lines;
 }
 
+std::string WithoutDoubleHyphens(std::string text) {
+  for (size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
 }  // namespace
 
 Counterparts Missing(const Counterparts& counterparts) {
@@ -45,6 +52,16 @@ std::vector<std::string> CounterpartLines(const Counterparts& counterparts) {
   return lines;
 }
 
+std::string CommentText(std::string text) {
+  for (char& letter : text)
+    if (std::iscntrl(static_cast<unsigned char>(letter)) != 0) letter = ' ';
+  return text;
+}
+
+std::string XmlCommentText(const std::string& text) {
+  return WithoutDoubleHyphens(CommentText(text));
+}
+
 std::string FileComment(const PortableModel& model, const Counterparts& counterparts,
                         const std::string& prefix) {
   std::string text;
@@ -56,10 +73,7 @@ std::string FileComment(const PortableModel& model, const Counterparts& counterp
 }
 
 std::string XmlComment(const PortableModel& model, const Counterparts& counterparts) {
-  std::string text = FileComment(model, counterparts, "  ");
-  // Two hyphens would end the comment.
-  for (size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.erase(at, 1);
-  return "<!--\n" + text + "-->\n";
+  return "<!--\n" + WithoutDoubleHyphens(FileComment(model, counterparts, "  ")) + "-->\n";
 }
 
 }  // namespace lacuna

@@ -25,6 +25,10 @@ using Counterparts = std::vector<Counterpart>;
 Counterparts Missing(const Counterparts& counterparts);
 // One line for each: "gravity: *DLOAD, GRAV", "corotational: converted: …", "drag: none: …".
 std::vector<std::string> CounterpartLines(const Counterparts& counterparts);
+// A text of the user's for one line of a comment: control characters become spaces.
+std::string CommentText(std::string text);
+// The same for XML, where two hyphens would end the comment.
+std::string XmlCommentText(const std::string& text);
 // The comment at the top of a file: where the model comes from, its units, its parameters and what
 // becomes of its parts, in lines of at most 100 characters with `prefix` in front of each.
 std::string FileComment(const PortableModel& model, const Counterparts& counterparts,

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/suggestion.h"
 #include "exchange/feb_writer.h"
+#include "exchange/gmsh_regions.h"
 #include "exchange/inp_writer.h"
 #include "exchange/model_json.h"
 #include "exchange/scene_writers.h"
@@ -17,12 +18,12 @@ namespace lacuna {
 namespace {
 
 FileTexts GmshFiles(const PortableModel& model, GmshVersion version) {
-  return {{"model.msh", GmshText(model.mesh, version)},
+  return {{"model.msh", GmshText(model.mesh, version) + GmshRegions(model)},
           {"model.json", ModelJson(model, "model.msh").dump(1) + "\n"}};
 }
 
-std::string LinearMesh(const PortableModel& model) {
-  return GmshText(WithLinearElements(model).mesh, GmshVersion::k22);
+std::string LinearMesh(const PortableModel& model, GmshVersion version) {
+  return GmshText(WithLinearElements(model).mesh, version);
 }
 
 }  // namespace
@@ -49,11 +50,13 @@ const std::vector<ExportFormat>& ExportFormats() {
        [](const PortableModel& model) { return GmshFiles(model, GmshVersion::k22); }},
       {"sofa", "SOFA, with a mesh", SofaCounterparts,
        [](const PortableModel& model) {
-         return FileTexts{{"model.py", SofaText(model)}, {"model.msh", LinearMesh(model)}};
+         return FileTexts{{"model.py", SofaText(model)},
+                          {"model.msh", LinearMesh(model, GmshVersion::k22)}};
        }},
       {"mjcf", "MuJoCo, with a mesh", MujocoCounterparts,
        [](const PortableModel& model) {
-         return FileTexts{{"model.xml", MujocoText(model)}, {"model.msh", LinearMesh(model)}};
+         return FileTexts{{"model.xml", MujocoText(model)},
+                          {"model.msh", LinearMesh(model, GmshVersion::k41)}};
        }},
       {"usda", "USD, a TetMesh", UsdCounterparts,
        [](const PortableModel& model) {

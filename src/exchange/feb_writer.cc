@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "exchange/unique_names.h"
 
 namespace lacuna {
 namespace {
@@ -65,20 +66,24 @@ double RampTime(const PortableModel& model) {
 
 class Writer {
  public:
-  explicit Writer(const PortableModel& model) : model_(model), ramp_(RampTime(model)) {}
+  explicit Writer(const PortableModel& model) : model_(model), ramp_(RampTime(model)) {
+    for (const NamedNodes& region : model.regions)
+      regions_.push_back(node_sets_.Add(Identifier(region.name)));
+  }
 
   std::string Text() {
     Mesh();
-    for (size_t g = 0; g < model_.grips.size(); ++g) Grip(model_.grips[g], g);
+    // The grips are the first regions.
+    for (size_t g = 0; g < model_.grips.size(); ++g) Grip(model_.grips[g], regions_[g]);
     Loads();
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
            XmlComment(model_, FebCounterparts(model_)) +
            "<febio_spec version=\"4.0\">\n<Module "
            "type=\"solid\"><units>SI</units></Module>\n" +
            Material() + mesh_ +
-           "<MeshDomains><SolidDomain name=\"elements\" mat=\"lacuna\"/></MeshDomains>\n" +
+           "</Mesh>\n<MeshDomains><SolidDomain name=\"elements\" mat=\"lacuna\"/></MeshDomains>\n" +
            Section("MeshData", data_) + Section("Boundary", boundary_) + Section("Loads", loads_) +
-           Steps() + Section("LoadData", curves_) +
+           Section("LoadData", curves_) + Steps() +
            "<Output>\n<plotfile type=\"febio\"><var type=\"displacement\"/></plotfile>\n"
            "<logfile><node_data data=\"ux;uy;uz\" file=\"displacements.txt\"/></logfile>\n"
            "</Output>\n</febio_spec>\n";
@@ -108,7 +113,7 @@ class Writer {
 
   void Mesh() {
     const auto end = std::back_inserter(mesh_);
-    mesh_ = "<Mesh>\n<Nodes name=\"nodes\">\n";
+    mesh_ = fmt::format("<Mesh>\n<Nodes name=\"{}\">\n", kAllNodes);
     for (Eigen::Index n = 0; n < model_.mesh.NodeCount(); ++n) {
       const auto node = model_.mesh.nodes.col(n);
       fmt::format_to(end, "<node id=\"{}\">{},{},{}</node>\n", n + 1, node.x(), node.y(), node.z());
@@ -120,18 +125,17 @@ class Writer {
       fmt::format_to(end, "<elem id=\"{}\">{}</elem>\n", e + 1, fmt::join(nodes, ","));
     }
     mesh_ += "</Elements>\n";
-    for (size_t k = 0; k < model_.regions.size(); ++k)
-      NodeSet(fmt::format("region{}", k + 1), model_.regions[k].name, model_.regions[k].nodes);
-    mesh_ += "</Mesh>\n";
+    for (size_t k = 0; k < model_.regions.size(); ++k) {
+      const NamedNodes& region = model_.regions[k];
+      if (regions_[k] != region.name)
+        fmt::format_to(end, "<!-- \"{}\" in the recording -->\n", XmlCommentText(region.name));
+      NodeSet(regions_[k], region.nodes);
+    }
   }
 
-  void NodeSet(const std::string& name, const std::string& title, const std::vector<int>& nodes) {
-    std::string shown = title;
-    std::erase_if(shown, [](char c) { return c == '-' || c == '<' || c == '>' || c == '&'; });
-    std::vector<int> numbers = nodes;
-    for (int& node : numbers) ++node;
-    mesh_ += fmt::format("<!-- {} -->\n<NodeSet name=\"{}\">{}</NodeSet>\n", shown, name,
-                         fmt::join(numbers, ","));
+  void NodeSet(const std::string& name, std::vector<int> nodes) {
+    for (int& node : nodes) ++node;
+    mesh_ += fmt::format("<NodeSet name=\"{}\">{}</NodeSet>\n", name, fmt::join(nodes, ","));
   }
 
   // A table over the total time, linear between its points; returns its number.
@@ -158,25 +162,20 @@ class Writer {
     return Curve(times, table);
   }
 
-  void Grip(const PortableGrip& grip, size_t number) {
-    const std::string set = fmt::format("region{}", number + 1);
+  void Grip(const PortableGrip& grip, const std::string& set) {
     if (grip.displacements.empty()) {
       boundary_ += fmt::format(
-          "<bc name=\"grip{}\" node_set=\"{}\" type=\"zero displacement\"><x_dof>{}</x_dof>"
-          "<y_dof>{}</y_dof><z_dof>{}</z_dof></bc>\n",
-          number + 1, set, grip.axes.Has(0) ? 1 : 0, grip.axes.Has(1) ? 1 : 0,
-          grip.axes.Has(2) ? 1 : 0);
+          "<bc name=\"{0}\" node_set=\"{0}\" type=\"zero displacement\"><x_dof>{1}</x_dof>"
+          "<y_dof>{2}</y_dof><z_dof>{3}</z_dof></bc>\n",
+          set, grip.axes.Has(0) ? 1 : 0, grip.axes.Has(1) ? 1 : 0, grip.axes.Has(2) ? 1 : 0);
       return;
     }
     const bool is_translation = grip.IsTranslation();
     for (size_t column = 0; column < (is_translation ? 1 : grip.part.nodes.size()); ++column) {
+      const int node = grip.part.nodes[column];
       const std::string place =
-          is_translation ? set : fmt::format("{}_{}", set, grip.part.nodes[column] + 1);
-      if (!is_translation) {
-        const size_t end = mesh_.rfind("</Mesh>");
-        mesh_.insert(end, fmt::format("<NodeSet name=\"{}\">{}</NodeSet>\n", place,
-                                      grip.part.nodes[column] + 1));
-      }
+          is_translation ? set : node_sets_.Add(fmt::format("{}_{}", set, node + 1));
+      if (!is_translation) NodeSet(place, {node});
       for (int axis = 0; axis < 3; ++axis) {
         if (!grip.axes.Has(axis)) continue;
         boundary_ += fmt::format(
@@ -188,24 +187,18 @@ class Writer {
   }
 
   // A force `values` (n, N) along an axis at all nodes, times a load curve.
-  void NodalLoad(const std::string& name, int axis, const Eigen::VectorXd& values, int curve) {
+  void NodalLoad(const std::string& part, int axis, const Eigen::VectorXd& values, int curve) {
     if (values.isZero(0)) return;
-    if (!has_all_nodes_) {
-      std::vector<int> all(static_cast<size_t>(model_.mesh.NodeCount()));
-      for (size_t n = 0; n < all.size(); ++n) all[n] = static_cast<int>(n) + 1;
-      mesh_.insert(mesh_.rfind("</Mesh>"),
-                   fmt::format("<NodeSet name=\"all\">{}</NodeSet>\n", fmt::join(all, ",")));
-      has_all_nodes_ = true;
-    }
-    data_ += fmt::format("<NodeData name=\"{}_{}\" node_set=\"all\" data_type=\"scalar\">\n", name,
-                         "xyz"[axis]);
+    const std::string name = maps_.Add(fmt::format("{}_{}", part, "xyz"[axis]));
+    data_ += fmt::format("<NodeData name=\"{}\" node_set=\"{}\" data_type=\"scalar\">\n", name,
+                         kAllNodes);
     for (Eigen::Index n = 0; n < values.size(); ++n)
       data_ += fmt::format("<node lid=\"{}\">{}</node>\n", n + 1, values[n]);
     data_ += "</NodeData>\n";
     loads_ += fmt::format(
-        "<nodal_load name=\"{0}_{1}\" node_set=\"all\" type=\"nodal_load\"><dof>{1}</dof>"
-        "<scale lc=\"{2}\" type=\"map\">{0}_{1}</scale></nodal_load>\n",
-        name, "xyz"[axis], curve);
+        "<nodal_load name=\"{0}\" node_set=\"{1}\" type=\"nodal_load\"><dof>{2}</dof>"
+        "<scale lc=\"{3}\" type=\"map\">{0}</scale></nodal_load>\n",
+        name, kAllNodes, "xyz"[axis], curve);
   }
 
   void Loads() {
@@ -218,7 +211,7 @@ class Writer {
         if (load.force.row(axis).isZero(0)) continue;
         Eigen::VectorXd shares = Eigen::VectorXd::Zero(model_.mesh.NodeCount());
         shares(load.part.nodes) = load.shares;
-        NodalLoad(fmt::format("force{}", l + 1), axis, shares, MotionCurve(load.force.row(axis)));
+        NodalLoad(Identifier(load.part.name), axis, shares, MotionCurve(load.force.row(axis)));
       }
       // The hold vanishes within a millionth of the first time step of the motion.
       if (model_.held_force.size() > 0)
@@ -246,10 +239,13 @@ class Writer {
     return Section("Step", steps);
   }
 
+  static constexpr const char* kAllNodes = "nodes";
+
   const PortableModel& model_;
   double ramp_;  // s
   int curve_count_ = 0;
-  bool has_all_nodes_ = false;
+  UniqueNames node_sets_{{kAllNodes}}, maps_;
+  std::vector<std::string> regions_;  // the names of the node sets of model_.regions
   std::string mesh_, data_, boundary_, loads_, curves_;
 };
 

@@ -2,11 +2,11 @@
 // Ateshian, J. A. Weiss, FEBio: Finite Elements for Biomechanics, J. Biomech. Eng. 134, 2012; FEBio
 // User Manual 4).
 //
-// The file holds the mesh (tet4 or tet10, whose node order is that of TetMesh), node sets, the
-// material, and two steps as in an .inp file: the equilibrium at the start of the motion, then the
-// motion. The first step lasts 1 s, and a thousand times the longest relaxation time where there
-// are viscoelastic branches, which FEBio does not let relax otherwise. SI units; all digits are
-// written.
+// The file holds the mesh (tet4 or tet10, whose node order is that of TetMesh), a node set for each
+// region of the recording, the material, and two steps as in an .inp file: the equilibrium at the
+// start of the motion, then the motion. The first step lasts 1 s, and a thousand times the longest
+// relaxation time where there are viscoelastic branches, which FEBio does not let relax otherwise.
+// SI units; all digits are written.
 //
 // Laws, with λ and μ from E and ν:
 //  * "isotropic elastic" is Hooke's law between the second Piola–Kirchhoff stress and the

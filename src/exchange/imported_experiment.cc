@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/quoted_text.h"
 #include "effects/standard_cards.h"
 #include "exchange/inp_writer.h"
 #include "geometry/mesh_io.h"
@@ -20,9 +20,6 @@ namespace {
 constexpr double kSoftModulus = 1e5;  // Pa
 constexpr double kSoftPoisson = 0.45;
 constexpr double kWaterDensity = 1000;  // kg/m³
-
-// As a text in YAML, whatever characters it holds.
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
 
 const ImportedMaterial* MaterialOf(const ImportedModel& model) {
   for (const ImportedMaterial& material : model.materials)
@@ -42,8 +39,8 @@ std::string Recording(const ImportedModel& model, const std::string& name,
       "  marker_places:                  # TO DO: each marker's position on the undeformed object\n"
       "    - {{name: tip, position: [{} m, {} m, {} m]}}\n"
       "reference: {{from: tet_mesh, file: {}, length_unit: m}}\n",
-      source.filename().string(), Quoted(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
-      model.mesh.nodes(2, 0), Quoted(name + ".msh"));
+      source.filename().string(), QuotedText(name), model.mesh.nodes(0, 0), model.mesh.nodes(1, 0),
+      model.mesh.nodes(2, 0), QuotedText(name + ".msh"));
   text +=
       "# TO DO: use the node sets where they belong: parts that do not move (fixed), parts that\n"
       "# are moved (gripped), or the regions of measured forces.\n";
@@ -80,7 +77,7 @@ std::string Experiment(const ImportedModel& model, const std::string& name,
       "# Made from {}. docs/prediction.md has the keys.\n"
       "#   lacuna fit {}.yaml\n"
       "schema_version: 1\nname: {}\noutput: {}\n",
-      source.filename().string(), name, Quoted(name), Quoted(name + "_run"));
+      source.filename().string(), name, QuotedText(name), QuotedText(name + "_run"));
   text += MaterialText(material);
   for (const ImportedMaterial& other : model.materials)
     if (&other != material)

@@ -8,10 +8,10 @@
 #include <charconv>
 #include <iterator>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "core/error.h"
+#include "exchange/unique_names.h"
 
 namespace lacuna {
 namespace {
@@ -193,17 +193,13 @@ void AppendFrames(const PortableModel& model, std::string* text) {
 }  // namespace
 
 std::vector<std::string> InpSetNames(const std::vector<NamedNodes>& parts) {
-  constexpr size_t kLongest = 60;
-  std::set<std::string> taken{"ALL_NODES", "BODY"};
+  UniqueNames taken({"ALL_NODES", "BODY"});
   std::vector<std::string> names;
   for (const NamedNodes& part : parts) {
-    std::string name;
-    for (const unsigned char letter : part.name.substr(0, kLongest))
-      name += std::isalnum(letter) != 0 ? static_cast<char>(std::toupper(letter)) : '_';
-    if (name.empty() || std::isalpha(static_cast<unsigned char>(name[0])) == 0) name = "N_" + name;
-    std::string unique = name;
-    for (int k = 2; !taken.insert(unique).second; ++k) unique = fmt::format("{}_{}", name, k);
-    names.push_back(unique);
+    std::string name = Identifier(part.name);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char letter) { return std::toupper(letter); });
+    names.push_back(taken.Add(name));
   }
   return names;
 }
@@ -213,13 +209,13 @@ std::string InpText(const PortableModel& model, InpDialect dialect) {
     throw InputError(fmt::format("{}: this elasticity law cannot be written into an .inp file",
                                  model.Elasticity().name));
   const std::vector<std::string> sets = InpSetNames(model.regions);
-  std::string text = fmt::format("*HEADING\nlacuna {}\n", model.run.substr(0, 60));
+  std::string text = fmt::format("*HEADING\nlacuna {}\n", CommentText(model.run.substr(0, 60)));
   text += FileComment(model, InpCounterparts(model, dialect), "** ");
   AppendMesh(model.mesh, &text);
   Sections sections;
   for (size_t k = 0; k < model.regions.size(); ++k) {
     if (sets[k] != model.regions[k].name)
-      text += fmt::format("** \"{}\" in the recording\n", model.regions[k].name);
+      text += fmt::format("** \"{}\" in the recording\n", CommentText(model.regions[k].name));
     AppendSet(sets[k], model.regions[k].nodes, &text);
   }
   for (size_t g = 0; g < model.grips.size(); ++g)

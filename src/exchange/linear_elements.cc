@@ -43,13 +43,6 @@ void RestrictLoad(const PortableModel& model, const std::vector<int>& kept, Port
 
 }  // namespace
 
-void AddLostMidpoints(const PortableModel& model, Counterparts* parts) {
-  if (model.mesh.Order() == 2)
-    parts->push_back(
-        {"quadratic elements", Counterpart::Kind::kNone,
-         "linear ones of the corner nodes are written, which are too stiff in bending"});
-}
-
 PortableModel WithLinearElements(const PortableModel& model) {
   if (model.mesh.Order() == 1) return model;
   PortableModel linear = model;

@@ -3,7 +3,13 @@
 // elements the corner nodes are kept. SI units.
 //
 // Sources: SOFA documentation, TetrahedronHyperelasticityFEMForceField and
-// TetrahedronFEMForceField; MuJoCo XML reference, flexcomp; USD, UsdGeomTetMesh.
+// TetrahedronFEMForceField; MuJoCo XML reference, flexcomp; USD 24.08, UsdGeomTetMesh,
+// UsdGeomSubset and UsdPhysics. The deformable body follows the proposal "Deformable Body Physics
+// in USD" (pull request 111 of PixarAnimationStudios/OpenUSD-proposals, as of commit 584939b):
+// PhysicsVolumeDeformableMaterialAPI has Young's modulus, Poisson's ratio and the density, a
+// quarter of the mass of an element belongs to each of its points as in Lacuna, and a
+// PhysicsAttachment ties the nodes of a grip to a frame. No prim has PhysicsCollisionAPI, so that
+// nothing collides.
 #ifndef LACUNA_EXCHANGE_SCENE_WRITERS_H_
 #define LACUNA_EXCHANGE_SCENE_WRITERS_H_
 
@@ -21,14 +27,20 @@ PortableModel WithLinearElements(const PortableModel& model);
 // What WithLinearElements loses of a quadratic model.
 void AddLostMidpoints(const PortableModel& model, Counterparts* parts);
 
-// The texts name the mesh file "model.msh" (Gmsh 2.2), which is that of WithLinearElements; the USD
-// text holds the mesh itself, with points in single precision.
+// What is lost of a model whose motion begins with the equilibrium of the held body, or is
+// quasi-static, since a scene begins with the rest shape and has inertia.
+void AddLostStart(const PortableModel& model, Counterparts* parts);
+
+// The texts name the mesh file "model.msh", which is that of WithLinearElements; the USD text holds
+// the mesh itself, with points in single precision. The functions …Text throw InputError where the
+// elasticity law has no counterpart.
 Counterparts SofaCounterparts(const PortableModel& model);
 std::string SofaText(const PortableModel& model);
 
 Counterparts MujocoCounterparts(const PortableModel& model);
 std::string MujocoText(const PortableModel& model);
 
+// The regions are subsets of the points; the values of all effects are custom attributes.
 Counterparts UsdCounterparts(const PortableModel& model);
 std::string UsdText(const PortableModel& model);
 

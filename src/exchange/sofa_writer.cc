@@ -77,6 +77,11 @@ bool IsWritten(const PortableGrip& grip) {
   return grip.displacements.empty() || (grip.IsTranslation() && grip.axes.IsAll());
 }
 
+// The indices that follow are those of this part.
+std::string PartComment(const NamedNodes& part) {
+  return fmt::format("    # {}\n", CommentText(part.name));
+}
+
 std::string GripText(const PortableGrip& grip, const PortableModel& model) {
   if (grip.displacements.empty() && !grip.axes.IsAll())
     return fmt::format(
@@ -84,7 +89,6 @@ std::string GripText(const PortableGrip& grip, const PortableModel& model) {
         "                   fixedDirections=[{}, {}, {}])\n",
         fmt::join(grip.part.nodes, ", "), grip.axes.Has(0) ? 1 : 0, grip.axes.Has(1) ? 1 : 0,
         grip.axes.Has(2) ? 1 : 0);
-  if (!IsWritten(grip)) return "";
   if (grip.displacements.empty())
     return fmt::format("    body.addObject('FixedProjectiveConstraint', indices=[{}])\n",
                        fmt::join(grip.part.nodes, ", "));
@@ -129,10 +133,7 @@ Counterparts SofaCounterparts(const PortableModel& model) {
   for (const PortableLoad& load : model.loads)
     parts.push_back({"force " + load.part.name, IsConstant(load) ? How::kExact : How::kNone,
                      IsConstant(load) ? "ConstantForceField" : "a force that changes in time"});
-  parts.push_back({"equilibrium at the start", How::kNone,
-                   "the scene begins with the rest shape, to which loads are applied at once"});
-  if (model.is_static)
-    parts.push_back({"quasi-static motion", How::kNone, "the scene has inertia"});
+  AddLostStart(model, &parts);
   return parts;
 }
 
@@ -158,9 +159,10 @@ std::string SofaText(const PortableModel& given) {
       "    body.addObject({})\n",
       gravity.x(), gravity.y(), gravity.z(), model.time_step, damping.alpha, damping.beta,
       model.density, ForceField(model.Elasticity()));
-  for (const PortableGrip& grip : model.grips) text += GripText(grip, model);
+  for (const PortableGrip& grip : model.grips)
+    if (IsWritten(grip)) text += PartComment(grip.part) + GripText(grip, model);
   for (const PortableLoad& load : model.loads)
-    if (IsConstant(load)) text += LoadText(load);
+    if (IsConstant(load)) text += PartComment(load.part) + LoadText(load);
   return text;
 }
 

@@ -2,6 +2,10 @@
 #ifndef LACUNA_TESTS_EXCHANGE_CANTILEVER_H_
 #define LACUNA_TESTS_EXCHANGE_CANTILEVER_H_
 
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <string>
@@ -59,6 +63,35 @@ struct Cantilever {
     return moved.colwise() - Eigen::VectorXd(mesh.nodes.reshaped());
   }
 };
+
+// With a middle that is shifted, a tip that is turned, two forces on the tip and a hold; `law` and
+// `order` are those of Cantilever. The regions: clamp, turned, moved, weight, pull, hold.
+inline Cantilever LoadedCantilever(const std::string& law, int order) {
+  Cantilever bar(law, {2, 1, 1}, order);
+  const Eigen::VectorXi tip = bar.Tip();
+  const Eigen::VectorXi middle =
+      NodesWhere(bar.mesh, [](const Eigen::Vector3d& x) { return std::abs(x.x() - 0.04) < 1e-9; });
+  const Eigen::Matrix3Xd rest_tip = bar.mesh.nodes(Eigen::all, tip);
+  const Eigen::Matrix3Xd rest_middle = bar.mesh.nodes(Eigen::all, middle);
+  bar.model.grips.push_back(
+      {tip, [rest_tip](double time) -> Eigen::Matrix3Xd {
+         return Eigen::AngleAxisd(time, Eigen::Vector3d::UnitX()).toRotationMatrix() * rest_tip;
+       }});
+  bar.model.grips.push_back({middle, [rest_middle](double time) -> Eigen::Matrix3Xd {
+                               return rest_middle.colwise() + Eigen::Vector3d(0, 0.01 * time, 0);
+                             }});
+  for (const double size : {0.01, 0.02})
+    bar.model.effects.push_back(std::make_shared<PrescribedForce>(
+        BoundaryShares(*bar.model.body, tip),
+        [size](double time) { return Eigen::Vector3d(0, size * time, size); }));
+  bar.names.grips = {"clamp", "turned", "moved"};
+  bar.names.loads = {"weight", "pull"};
+  bar.names.regions = {{"weight", {1, 2}}, {"pull", {1}}, {"hold", {5}}};
+  bar.frames = {0.1, 0.2};
+  bar.options.time_step = 0.05;
+  bar.options.held_force = Eigen::VectorXd::Constant(3 * bar.mesh.NodeCount(), 0.01);
+  return bar;
+}
 
 }  // namespace lacuna
 

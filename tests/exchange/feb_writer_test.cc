@@ -1,4 +1,4 @@
-// The .feb file. FEBio is not at hand: the tests check the text.
+// The .feb file. FEBio is not at hand: the tests check the text against the rules of the format.
 #include "exchange/feb_writer.h"
 
 #include <gmock/gmock.h>
@@ -7,12 +7,15 @@
 #include <cstdio>
 
 #include "exchange/cantilever.h"
+#include "exchange/feb_rules.h"
 
 namespace lacuna {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
 
 std::vector<std::string> MissingParts(const PortableModel& model) {
   std::vector<std::string> names;
@@ -69,37 +72,78 @@ TEST(FebWriter, NamesWhatHasNoCounterpart) {
   EXPECT_THAT(FebText(model), HasSubstr("<pt>40,1</pt>"));
 }
 
-TEST(FebWriter, ClosesEveryElementOfTheXml) {
-  PortableModel model = Bar().Describe();
-  model.regions[0].name = "a--b <&>";
+PortableModel Everything(const std::string& law, int order) {
+  Cantilever bar = LoadedCantilever(law, order);
+  bar.model.effects.push_back(
+      MakeEffect("viscoelastic_branch",
+                 {{"modulus", 5e4}, {"relaxation_time", 0.04}, {"poisson_ratio", 0.4}}));
+  return bar.Describe();
+}
+
+TEST(FebWriter, FollowsTheRulesOfTheFormat) {
+  for (const char* law : {"st_venant_kirchhoff", "neo_hookean", "corotational"})
+    for (const int order : {1, 2})
+      EXPECT_THAT(FebFaults(FebText(Everything(law, order))), IsEmpty()) << law << ", " << order;
+  EXPECT_THAT(FebFaults(FebText(Bar().Describe())), IsEmpty());
+  Cantilever still("linear", {2, 1, 1}, 1);
+  EXPECT_THAT(FebFaults(FebText(still.Describe())), IsEmpty());
+}
+
+// A rule that is broken is found, so that the test above means something.
+TEST(FebRules, FindWhatIsBroken) {
+  const std::string good = FebText(Everything("neo_hookean", 1));
+  const std::pair<std::string, std::string> breaks[] = {
+      {"version=\"4.0\"", "version=\"3.0\""},
+      {"</Material>", "</Materials>"},
+      {"<MeshDomains>", "<Output></Output><MeshDomains>"},
+      {"<Mesh>", "<Geometry></Geometry><Mesh>"},
+      {"mat=\"lacuna\"", "mat=\"lacuna2\""},
+      {"<SolidDomain name=\"elements\"", "<SolidDomain name=\"element\""},
+      {"type=\"tet4\"", "type=\"hex8\""},
+      {"<node id=\"2\">", "<node id=\"1\">"},
+      {"<elem id=\"1\">", "<elem id=\"0\">"},
+      {"<NodeSet name=\"clamp\">", "<NodeSet name=\"clump\">"},
+      {"<NodeSet name=\"turned\">", "<NodeSet name=\"clamp\">"},
+      {"<NodeSet name=\"hold\">6", "<NodeSet name=\"hold\">0"},
+      {"lc=\"1\"", "lc=\"1000\""},
+      {"type=\"map\">pull_z", "type=\"map\">pull_w"},
+      {"<load_controller id=\"2\"", "<load_controller id=\"3\""},
+      {"<dof>x</dof>", "<dof>u</dof>"},
+      {"<v>0.4</v>", "<v>0.5</v>"},
+      {"<v>0.4</v>", "<nu>0.4</nu>"},
+      {"<NodeData name=\"weight_z\"", "<NodeData title=\"weight_z\""},
+      {"<analysis>STATIC", "<analysis>Static"},
+      {"<node lid=\"1\">", "<node lid=\"2\">"}};
+  for (const auto& [from, to] : breaks) {
+    std::string text = good;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+    EXPECT_THAT(FebFaults(text), Not(IsEmpty())) << to;
+  }
+}
+
+TEST(FebWriter, NamesNodeSetsLikeTheRecording) {
+  PortableModel model = Everything("linear", 1);
+  EXPECT_THAT(FebText(model), HasSubstr("<NodeSet name=\"clamp\">1,4,7,10</NodeSet>"));
+  EXPECT_THAT(FebText(model), HasSubstr("<bc name=\"clamp\" node_set=\"clamp\""));
+  EXPECT_THAT(FebText(model), HasSubstr("<NodeData name=\"pull_z\" node_set=\"nodes\""));
+  // Names that the format or the file already has, and names that the file cannot hold.
+  model.regions[0].name = "a--b <&>\n";
+  model.regions[3].name = "nodes";
+  model.regions[4].name = "turned_3";
   model.run = "x -- y";
   const std::string text = FebText(model);
-  std::vector<std::string> open;
-  for (size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
-    if (text.compare(at, 4, "<!--") == 0) {
-      at = text.find("--", at + 4);
-      ASSERT_EQ(text[at + 2], '>') << "two hyphens inside a comment";
-      continue;
-    }
-    if (text[at + 1] == '?') continue;
-    const size_t end = text.find('>', at);
-    const std::string name = text.substr(at + 1, text.find_first_of(" >/", at + 2) - at - 1);
-    if (text[at + 1] == '/') {
-      ASSERT_FALSE(open.empty());
-      EXPECT_EQ(text.substr(at + 2, end - at - 2), open.back());
-      open.pop_back();
-    } else if (text[end - 1] != '/') {
-      open.push_back(name);
-    }
-  }
-  EXPECT_TRUE(open.empty());
+  EXPECT_THAT(FebFaults(text), IsEmpty());
+  EXPECT_THAT(text, HasSubstr("<!-- \"a-b <&> \" in the recording -->\n"
+                              "<NodeSet name=\"a__b_____\">"));
+  EXPECT_THAT(text, HasSubstr("<NodeSet name=\"nodes_2\">"));
 }
 
 TEST(FebWriter, HoldsPartsAlongTheirAxesOnly) {
   Cantilever bar("st_venant_kirchhoff", {2, 1, 1}, 1);
   bar.model.grips[0].axes = AxisSet::Of(0) | AxisSet::Of(2);
   EXPECT_THAT(FebText(bar.Describe()),
-              testing::HasSubstr("<x_dof>1</x_dof><y_dof>0</y_dof><z_dof>1</z_dof>"));
+              HasSubstr("<x_dof>1</x_dof><y_dof>0</y_dof><z_dof>1</z_dof>"));
 }
 
 }  // namespace

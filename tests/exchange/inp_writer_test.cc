@@ -126,6 +126,14 @@ TEST(InpWriter, MakesNamesOfSetsThatAreValidAndUnique) {
               ElementsAre("CLAMP", "CLAMP_2", "N_52_G", "N_", "BODY_2"));
 }
 
+// A name from a recording stays within its comment.
+TEST(InpWriter, WritesNoLineOfTheRecordingsOwn) {
+  PortableModel model = Cantilever("linear", {2, 1, 1}, 1).Describe();
+  model.run = model.regions[0].name = "x\n*NODE";
+  EXPECT_THAT(InpText(model, InpDialect::kCalculix), HasSubstr("** \"x *NODE\" in the recording"));
+  EXPECT_EQ(WrittenAndRead(model, InpDialect::kCalculix).mesh.nodes, model.mesh.nodes);
+}
+
 TEST(InpWriter, WritesNumbersThatBothProgramsRead) {
   for (const double value : {-1.2345678901234567e-100, 1.0 / 3, -2e300, 0.0})
     EXPECT_LE(InpNumber(value).size(), 20u) << value;

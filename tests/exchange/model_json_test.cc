@@ -7,9 +7,11 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "exchange/cantilever.h"
 #include "exchange/export_format.h"
+#include "exchange/gmsh_regions.h"
 #include "geometry/gmsh_io.h"
 #include "geometry/mesh_io.h"
 #include "support/temporary_folder.h"
@@ -43,8 +45,11 @@ TEST(GmshExport, PassesThroughGmshWithTheSameBits) {
     for (const int order : {1, 2}) {
       TemporaryFolder folder;
       const TetMesh mesh = UnevenMesh(order);
+      PortableModel model;
+      model.mesh = mesh;
+      model.regions = {{"left \"clamp\"", {0, 2}}, {"tip", {1}}};
       std::ofstream(folder / "model.msh")
-          << GmshText(mesh, is_4 ? GmshVersion::k41 : GmshVersion::k22);
+          << GmshText(mesh, is_4 ? GmshVersion::k41 : GmshVersion::k22) + GmshRegions(model);
       const std::string command = "cd " + folder.Path().string() +
                                   " && gmsh -v 1 model.msh -save -save_all -format " +
                                   (is_4 ? "msh22" : "msh41") + " -o other.msh >log 2>&1";
@@ -53,6 +58,41 @@ TEST(GmshExport, PassesThroughGmshWithTheSameBits) {
       EXPECT_EQ(read.mesh.tets, mesh.tets);
       // Gmsh writes 16 significant digits.
       EXPECT_LT((read.mesh.nodes - mesh.nodes).cwiseAbs().maxCoeff(), 1e-17);
+    }
+}
+
+TEST(GmshExport, HasTheRegionsAsFieldsAndIsReadBackWithTheSameBits) {
+  for (const char* format : {"msh", "msh2"})
+    for (const int order : {1, 2}) {
+      const PortableModel model = LoadedCantilever("linear", order).Describe();
+      const std::string text = FindExportFormat(format).files(model).at("model.msh");
+      TemporaryFolder folder;
+      std::ofstream(folder / "model.msh") << text;
+      const TetMeshFile read = ReadTetMesh(folder / "model.msh");
+      EXPECT_EQ(read.mesh.nodes, model.mesh.nodes);
+      EXPECT_EQ(read.mesh.tets, model.mesh.tets);
+      std::istringstream file(text.substr(text.find("$NodeData")));
+      for (const NamedNodes& region : model.regions) {
+        std::string line;
+        for (const std::string& expected :
+             {std::string("$NodeData"), std::string("1"), "\"" + region.name + "\"",
+              std::string("1"), std::string("0"), std::string("3"), std::string("0"),
+              std::string("1"), std::to_string(model.mesh.NodeCount())}) {
+          std::getline(file, line);
+          EXPECT_EQ(line, expected);
+        }
+        std::vector<int> nodes;
+        for (int node = 0; node < model.mesh.NodeCount(); ++node) {
+          int number = 0, is_inside = 0;
+          file >> number >> is_inside;
+          EXPECT_EQ(number, node + 1);
+          if (is_inside == 1) nodes.push_back(node);
+        }
+        EXPECT_EQ(nodes, region.nodes);
+        std::getline(file, line);
+        std::getline(file, line);
+        EXPECT_EQ(line, "$EndNodeData");
+      }
     }
 }
 
