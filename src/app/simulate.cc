@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include "app/commands.h"
 #include "core/atomic_file.h"
@@ -108,12 +109,19 @@ std::filesystem::path OutputFolder(const Arguments& arguments, const std::string
 // are several.
 int PlayExperiment(const Arguments& arguments, const Config& config) {
   const PredictionStudy study = ReadPredictionStudy(config);
-  for (const PredictedRecording& item : study.recordings)
+  std::set<std::string> folders;
+  for (const PredictedRecording& item : study.recordings) {
     if (item.scans != nullptr)
       throw InputError(SourcePosition{arguments.scene},
                        fmt::format("recording {} shows scans; only recordings of markers can be "
                                    "played",
                                    item.name));
+    if (!folders.insert(FileNameFor(item.name)).second)
+      throw InputError(SourcePosition{arguments.scene},
+                       fmt::format("recording {} would have the same folder, {}, as another; give "
+                                   "it another name",
+                                   item.name, FileNameFor(item.name)));
+  }
   const bool several = study.recordings.size() > 1;
   const TetMesh mesh = MakeReferenceBody(study).mesh;
   const auto body = std::make_shared<const Body>(MakeBody(mesh, study.density));

@@ -53,6 +53,8 @@ class Config {
   bool Flag(const std::string& key, bool default_value) const;
   std::string Text(const std::string& key) const;
   std::string Text(const std::string& key, const std::string& default_value) const;
+  // A string that a file or folder is named after (IsFileName in core/file_name.h).
+  std::string Name(const std::string& key) const;
   // One string or a list of strings; empty if the key is absent.
   std::vector<std::string> Texts(const std::string& key) const;
   // A list of whole numbers; empty if the key is absent.

@@ -9,6 +9,7 @@
 
 #include "core/config.h"
 #include "core/config_node.h"
+#include "core/file_name.h"
 #include "core/suggestion.h"
 
 namespace lacuna {
@@ -103,6 +104,15 @@ std::string Config::Text(const std::string& key, const std::string& default_valu
   if (Has(key)) return Text(key);
   node_->values[key] = default_value;
   return default_value;
+}
+
+std::string Config::Name(const std::string& key) const {
+  const std::string name = Text(key);
+  if (!IsFileName(name))
+    Fail(key,
+         "names a folder of results, so it must not be empty, begin with a dot or contain a slash, "
+         "a backslash or a control character");
+  return name;
 }
 
 std::vector<std::string> Config::Texts(const std::string& key) const {

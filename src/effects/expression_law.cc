@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 #include <utility>
+
+#include "core/quoted_text.h"
 
 namespace lacuna {
 namespace {
@@ -187,9 +188,6 @@ void CheckAmplitude(const Config& config, const Law& law) {
   }
 }
 
-// A quoted string, in the syntax that YAML and JSON share.
-std::string Quoted(const std::string& text) { return nlohmann::json(text).dump(); }
-
 std::string FormatParameter(const ParameterCard& card, double value) {
   const std::string unit = card.dimension.unit;
   const auto quantity = [&](double number) {
@@ -206,7 +204,7 @@ std::string FormatParameter(const ParameterCard& card, double value) {
   if (std::isfinite(card.bounds.max)) text += ", max: " + quantity(card.bounds.max);
   if (!std::isnan(card.null_value)) text += ", null_value: " + quantity(card.null_value);
   if (card.log_scale) text += ", log_scale: true";
-  return text + ", meaning: " + Quoted(card.meaning) + "}";
+  return text + ", meaning: " + QuotedText(card.meaning) + "}";
 }
 
 }  // namespace
@@ -218,9 +216,9 @@ std::string FormatExpressionLaw(const ExpressionLaw& law) {
   std::string text = fmt::format(
       "{{type: {}, name: {}, per: {}, force: [{}, {}, {}], amplitude: {}, citation: {}, "
       "parameters: {{",
-      law.card.type, Quoted(law.name), per, Quoted(law.force[0].text()),
-      Quoted(law.force[1].text()), Quoted(law.force[2].text()), law.card.parameters.front().name,
-      Quoted(law.card.citation));
+      law.card.type, QuotedText(law.name), per, QuotedText(law.force[0].text()),
+      QuotedText(law.force[1].text()), QuotedText(law.force[2].text()),
+      law.card.parameters.front().name, QuotedText(law.card.citation));
   for (size_t k = 0; k < law.card.parameters.size(); ++k)
     text += fmt::format(
         "{}{}: {}", k == 0 ? "" : ", ", law.card.parameters[k].name,

@@ -121,7 +121,7 @@ Eigen::Matrix3Xd AsPoints(const Eigen::VectorXd& stacked) {
 Scene ReadScene(const Config& config) {
   Scene scene;
   config.Integer("schema_version", 1, 1);
-  scene.name = config.Text("name");
+  scene.name = config.Name("name");
   const int seed = config.Integer("seed", 0, 1 << 30, 1);
   scene.bar = ReadBar(config.Child("bar"));
   scene.mesh = ReadMeshSettings(config.Child("mesh"));

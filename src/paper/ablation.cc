@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/atomic_file.h"
+#include "core/csv_text.h"
 #include "core/text_layout.h"
-#include "record/csv_text.h"
 
 namespace lacuna {
 namespace {
@@ -167,8 +167,8 @@ std::string CsvOf(const AblationSummary& summary) {
     text += fmt::format(",{}", column.first);
   text += "\n";
   for (const AblationRow& row : summary.rows) {
-    text += fmt::format("{},{},{},{}", row.name, CsvField(row.varies), CsvField(row.against),
-                        row.seeds);
+    text += fmt::format("{},{},{},{}", CsvField(row.name), CsvField(row.varies),
+                        CsvField(row.against), row.seeds);
     for (const auto& column : ColumnsOf(row)) text += fmt::format(",{}", column.second->median);
     text += "\n";
   }

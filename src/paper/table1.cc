@@ -4,12 +4,12 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "core/atomic_file.h"
 #include "core/claim.h"
+#include "core/file_name.h"
 #include "core/hash.h"
 #include "experiment/kept_recording.h"
 #include "paper/evaluation_record.h"
@@ -100,13 +100,6 @@ SearchedParameters TruthOf(const Table1Study& study, const Table1Configuration& 
   const std::vector<SearchVariable>& variables = configuration.search.variables;
   return {variables[0].start, variables[1].start, study.true_young_modulus,
           study.true_poisson_ratio};
-}
-
-bool IsFolderName(const std::string& name) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '+' || c == '.';
-  };
-  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), plain);
 }
 
 void RefuseOtherScans(const Table1Configuration& configuration, const nlohmann::json& first,
@@ -266,8 +259,10 @@ Table1Study ReadTable1(const std::vector<Config>& files) {
     Table1Configuration configuration{
         config.Text("name"), config, ReadParameterSearch(config.Child("search")), {}};
     // A search lies in a folder of that name, beside the recording.
-    if (!IsFolderName(configuration.name) || configuration.name == "recording")
-      config.Fail("name", "must be of letters, digits and _ - + ., and not \"recording\"");
+    if (configuration.name != FileNameFor(configuration.name) || configuration.name == "recording")
+      config.Fail("name",
+                  "must consist of letters, digits and _ - + ., not begin with a dot, and not be "
+                  "\"recording\"");
     if (config.Has("paper_drop"))
       configuration.paper_drop = config.Number("paper_drop", {0, 1, false, false});
     configuration.varies = config.Text("varies", "");

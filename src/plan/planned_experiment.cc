@@ -79,7 +79,7 @@ void WriteProtocol(const FittedRun& fitted, const PredictionStudy& study, const 
                    const fs::path& file) {
   std::vector<std::string> effects;
   for (size_t k = 1; k < study.effects.size(); ++k) effects.push_back(Written(*study.effects[k]));
-  std::vector<YamlChange> changes = {{"name", fmt::format("\"{}\"", entry.name), {}},
+  std::vector<YamlChange> changes = {{"name", fmt::format("\"{}\"", FileNameFor(entry.name)), {}},
                                      {"output", "simulated", {}},
                                      {"density", fmt::format("{} kg/m^3", study.density), {}},
                                      {"material", Written(*study.effects.front()), {}},

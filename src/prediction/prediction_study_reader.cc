@@ -125,7 +125,7 @@ PredictionStudy ReadPredictionStudy(const Config& config) {
                 "a list of `recordings`");
   config.Integer("schema_version", 1, 1);
   study.file = config.File();
-  study.name = config.Text("name");
+  study.name = config.Name("name");
   study.output = config.Path("output", "../results/" + study.name);
   const Config mesh = config.Child("mesh");
   study.mesh = ReadMeshSettings(mesh);

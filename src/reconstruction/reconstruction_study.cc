@@ -161,7 +161,7 @@ ReconstructionStudy ReadReconstruction(const Config& config) {
 ReconstructionStudy ReadReconstruction(const Config& config, const Recording& recording) {
   ReconstructionStudy study;
   config.Integer("schema_version", 1, 1);
-  study.name = config.Text("name");
+  study.name = config.Name("name");
   if (config.Has("output") && config.Text("output").empty())
     config.Fail("output", "is empty; expected a folder");
   study.output = config.Path("output", "../results/" + study.name);

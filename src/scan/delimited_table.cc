@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/error.h"
@@ -16,11 +17,28 @@ namespace lacuna {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kDelimiters = ";,\t";
 
 std::string_view Unquote(std::string_view text) {
   if (text.size() >= 2 && text.front() == '"' && text.back() == '"') {
     return Trim(text.substr(1, text.size() - 2));
   }
+  return text;
+}
+
+// The place of the quote that closes the entry opened at `begin`: two quotes stand for one in it.
+size_t FindClosingQuote(std::string_view line, size_t begin) {
+  size_t end = line.find('"', begin + 1);
+  while (end != std::string_view::npos && line.substr(end + 1).starts_with('"'))
+    end = line.find('"', end + 2);
+  return end;
+}
+
+// `entry` with one quote in the place of two.
+std::string WithSingleQuotes(std::string_view entry) {
+  std::string text(entry);
+  for (size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1))
+    text.erase(at, 1);
   return text;
 }
 
@@ -39,8 +57,20 @@ bool AreNumbers(const std::vector<std::string_view>& fields) {
                      [](std::string_view field) { return ParseEntry(field).has_value(); });
 }
 
+// `line` without what stands in quotes, or all of it where no delimiter is outside of them.
+std::string OutsideQuotes(std::string_view line) {
+  std::string outside;
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"') is_quoted = !is_quoted;
+    if (!is_quoted) outside += c;
+  }
+  return outside.find_first_of(kDelimiters) == std::string::npos ? std::string(line) : outside;
+}
+
 char FindDelimiter(std::string_view line) {
-  const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
+  const std::string outside = OutsideQuotes(line);
+  const auto has = [&outside](char c) { return outside.find(c) != std::string::npos; };
   if (has(';')) return ';';
   if (has(',')) {
     // The commas are decimal ones where tabs or blanks cut the line into numbers.
@@ -55,7 +85,6 @@ char FindDelimiter(std::string_view line) {
 
 // Whether `line` is a title above the names of the columns, which `rest` begins with.
 bool IsTitle(std::string_view line, std::string_view rest) {
-  constexpr std::string_view kDelimiters = ";,\t";
   if (line.find_first_of(kDelimiters) != std::string_view::npos ||
       AreNumbers(SplitFields(line, ' ')))
     return false;
@@ -138,7 +167,7 @@ std::vector<std::string_view> SplitFields(std::string_view line, char delimiter)
     // A quoted entry may contain the delimiter.
     size_t from = line.find_first_not_of(' ', at);
     const bool is_quoted = from != std::string_view::npos && line[from] == '"';
-    if (is_quoted) from = line.find('"', from + 1);
+    if (is_quoted) from = FindClosingQuote(line, from);
     const size_t end =
         line.find(delimiter, is_quoted && from != std::string_view::npos ? from : at);
     fields.push_back(
@@ -210,7 +239,8 @@ DelimitedTable ReadDelimitedTable(const std::filesystem::path& file) {
         if (names.size() == width) table.commented_header.assign(names.begin(), names.end());
       }
       if (!AreNumbers(fields)) {
-        table.header.assign(fields.begin(), fields.end());
+        std::transform(fields.begin(), fields.end(), std::back_inserter(table.header),
+                       WithSingleQuotes);
         DoubtHeader(&table, line_number);
         continue;
       }

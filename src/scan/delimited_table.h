@@ -15,9 +15,10 @@ namespace lacuna {
 // and the stage of GOM software, a table of its own (kStageHeader).
 // A first line that is a title is skipped, too: one without delimiter above a line of names with
 // delimiters. The first line is the header when one of its entries is neither a number nor empty.
-// The delimiter is the first of ';', ',' and tab that occurs in the first line, and otherwise any
-// run of blanks. Where the delimiter is not ',', and in quotes, numbers may have a decimal comma. A
-// byte order mark is not part of the first entry (ReadTextFile).
+// The delimiter is the first of ';', ',' and tab that occurs in the first line outside of quotes,
+// and otherwise any run of blanks. Where the delimiter is not ',', and in quotes, numbers may have
+// a decimal comma. Two quotes in the quotes of a name stand for one. A byte order mark is not part
+// of the first entry (ReadTextFile).
 inline constexpr std::string_view kStageHeader = "stage;index;relative_time;date";
 
 struct DelimitedTable {

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "core/atomic_file.h"
+#include "core/csv_text.h"
 #include "core/error.h"
+#include "core/quoted_text.h"
 #include "scan/frame_points.h"
 #include "scan/marker_files.h"
 
@@ -56,6 +58,16 @@ void CheckDistances(const MarkerFrames& source, int frame, const Eigen::Matrix3X
                      fmt::format("frame {}: marker {} is {:.3g} m away", frame,
                                  source.tracks.names[static_cast<size_t>(m)], distance));
   }
+}
+
+// What stands before the marker's name in the columns of markers.csv. An apostrophe in each of them
+// keeps a spreadsheet from evaluating a name like "=1+1", and a blank at the beginning of a name
+// from being trimmed. The patterns of `columns` remove it, so that the name is read back as it is.
+std::string PrefixOfColumns(const std::vector<std::string>& names) {
+  const auto needs_one = [](const std::string& name) {
+    return name.starts_with(' ') || IsSpreadsheetFormula(name + "_x");
+  };
+  return std::any_of(names.begin(), names.end(), needs_one) ? "'" : "";
 }
 
 }  // namespace
@@ -115,20 +127,33 @@ std::vector<InfoLine> DescribeSource(const MarkerFrames& source) {
 std::string WriteMarkerFrames(const std::filesystem::path& folder, const std::vector<double>& times,
                               const Markers& markers) {
   CHECK_EQ(times.size(), markers.positions.size());
+  const std::string prefix = PrefixOfColumns(markers.names);
   std::string csv = "t";
-  for (const std::string& name : markers.names) csv += fmt::format(",{0}_x,{0}_y,{0}_z", name);
+  for (const std::string& name : markers.names) {
+    if (name.find_first_of("\r\n") != std::string::npos)
+      throw InputError(
+          fmt::format("the name of marker {} has a line break, which a table cannot "
+                      "have in the name of a column",
+                      QuotedText(name)));
+    for (const char axis : {'x', 'y', 'z'})
+      csv += "," + VerbatimCsvField(fmt::format("{}{}_{}", prefix, name, axis));
+  }
   for (size_t i = 0; i < times.size(); ++i) {
     csv += fmt::format("\n{}", times[i]);
     for (const double coordinate : markers.positions[i].reshaped())
       csv += fmt::format(",{:.9f}", coordinate);
   }
   WriteFileAtomically(folder / "markers.csv", csv + "\n");
-  std::string yaml =
-      "  kind: markers\n  file: markers.csv\n  columns: {time: t}\n  marker_places:\n";
+  std::string columns = "time: t";
+  if (!prefix.empty())
+    for (const char axis : {'x', 'y', 'z'})
+      columns += fmt::format(", {}: \"{}*_{}\"", axis, prefix, axis);
+  std::string yaml = fmt::format(
+      "  kind: markers\n  file: markers.csv\n  columns: {{{}}}\n  marker_places:\n", columns);
   for (size_t m = 0; m < markers.names.size(); ++m) {
     const Eigen::Vector3d place = markers.places.col(static_cast<Eigen::Index>(m));
-    yaml += fmt::format("    - {{name: \"{}\", position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
-                        markers.names[m], place.x(), place.y(), place.z());
+    yaml += fmt::format("    - {{name: {}, position: [{:.6f} m, {:.6f} m, {:.6f} m]}}\n",
+                        QuotedText(markers.names[m]), place.x(), place.y(), place.z());
   }
   return yaml;
 }

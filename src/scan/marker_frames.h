@@ -60,7 +60,8 @@ inline bool RefineByFirstFrame(const Frame&, MarkerFrames*, std::vector<std::str
 
 // Writes markers.csv in `folder`: a column `t` with `times` (s, one per frame), then the
 // coordinates of each marker, m, with nine decimals. Returns the entries of `frames:` in
-// recording.yaml.
+// recording.yaml, with which the names are read back as they are. Throws InputError for a name with
+// a line break.
 std::string WriteMarkerFrames(const std::filesystem::path& folder, const std::vector<double>& times,
                               const Markers& markers);
 

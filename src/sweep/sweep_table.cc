@@ -8,9 +8,9 @@
 
 #include "core/atomic_file.h"
 #include "core/claim.h"
+#include "core/csv_text.h"
 #include "core/json_number.h"
 #include "core/text_layout.h"
-#include "record/csv_text.h"
 
 namespace lacuna {
 namespace {

@@ -265,6 +265,85 @@ TEST(CommandLine, WhatNeedsMotionIsNotAddedToABarAtRest) {
   EXPECT_FALSE(std::filesystem::exists(folder / "hidden_effect+drag"));
 }
 
+// The first recording of a hidden effect with very few elements and one unknown.
+std::string FitSmallModel(const TemporaryFolder& folder) {
+  std::ofstream(folder / "small.yaml")
+      << "use: " << Experiment("hidden_effect.yaml") << "\noutput: run\n"
+      << "mesh: {max_volume: 8000 mm^3, order: 2, preserve_surface: false}\n"
+      << "motion: {time_step: 10 ms}\nfit: {parameters: [{name: young_modulus}]}\n"
+      << "recordings: [{recording: " << Experiment("recordings/hidden_effect/recording_1")
+      << ", to: 0.2 s, hold: {release: 0.1037 s, region: {half_space: "
+         "{point: [71.4274 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}]\n";
+  const Ending fit = Lacuna("fit " + (folder / "small.yaml").string());
+  EXPECT_EQ(fit.status, 0) << fit.said;
+  return folder / "run";
+}
+
+TEST(CommandLine, AFittedModelIsExportedAndWhatIsExportedIsImported) {
+  const TemporaryFolder folder;
+  const std::string run = FitSmallModel(folder);
+  const Ending mesh = Lacuna("export " + run + " --to msh");
+  ASSERT_EQ(mesh.status, 0) << mesh.said;
+  EXPECT_THAT(FileContent(folder / "run/export/msh/model.msh"), HasSubstr("$MeshFormat"));
+  EXPECT_THAT(FileContent(folder / "run/export/msh/model.json"), HasSubstr("stiffness_damping"));
+
+  const std::string febio = "export " + run + " --to feb";
+  const Ending refused = Lacuna(febio);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.said, HasSubstr("stiffness_damping: none"));
+  EXPECT_THAT(refused.said, HasSubstr("--allow-missing"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "run/export/feb"));
+  const Ending allowed = Lacuna(febio + " --allow-missing");
+  EXPECT_EQ(allowed.status, 0) << allowed.said;
+  EXPECT_THAT(FileContent(folder / "run/export/feb/model.feb"), HasSubstr("<febio_spec"));
+
+  ASSERT_EQ(Lacuna("export " + run + " --to inp --output " + (folder / "inp").string()).status, 0);
+  const Ending imported = Lacuna("import " + (folder / "inp/model.inp").string() +
+                                 " --unit m --output " + (folder / "study").string());
+  EXPECT_EQ(imported.status, 0) << imported.said;
+  EXPECT_THAT(imported.said, HasSubstr("tetrahedra of order 2"));
+  for (const char* file : {"model.msh", "model.yaml", "recording.yaml", "nodes_CLAMP.txt"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "study" / file)) << file;
+  EXPECT_THAT(Lacuna("export " + run + " --to imp").said, HasSubstr("did you mean \"inp\"?"));
+}
+
+// Names that lead upwards: of an experiment, and of the recordings of one.
+TEST(CommandLine, WhatIsWrittenStaysInItsFolder) {
+  const TemporaryFolder folder;
+  std::string text = FileContent(WriteSmallScene(folder));
+  text.replace(text.find("name: small"), 11, "name: ../../ESC");
+  std::ofstream(folder / "scene.yaml") << text;
+  const Ending scene = Lacuna("simulate " + (folder / "scene.yaml").string());
+  EXPECT_EQ(scene.status, 2);
+  EXPECT_THAT(scene.said, HasSubstr("scene.yaml:2:7: name: names a folder"));
+
+  const auto recording = [](const std::string& name) {
+    return "  - {name: \"" + name +
+           "\", recording: " + Experiment("recordings/hidden_effect/recording_1") +
+           ", to: 0.12 s, hold: {release: 0.1037 s, force: [0 N, 0 N, 0.05 N], region: "
+           "{half_space: {point: [71.4274 mm, 0 mm, 0 mm], normal: [1, 0, 0]}}}}\n";
+  };
+  const std::string begin = "use: " + Experiment("hidden_effect.yaml") +
+                            "\nmesh: {max_volume: 8000 mm^3, order: 2, preserve_surface: false}\n"
+                            "motion: {time_step: 10 ms}\nrecordings:\n";
+  std::filesystem::create_directories(folder / "a");
+  std::ofstream(folder / "a/e.yaml") << begin << recording("..") << recording("../../ESC");
+  const std::string simulate = "simulate " + (folder / "a/e.yaml").string() + " -o " +
+                               (folder / "a/out").string() + " --recording " +
+                               (folder / "a/played").string();
+  const Ending played = Lacuna(simulate);
+  EXPECT_EQ(played.status, 0) << played.said;
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/out/_./body.pvd"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/played/_._.._ESC/recording.yaml"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/body.pvd"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "ESC"));
+
+  std::ofstream(folder / "a/e.yaml") << begin << recording("a b") << recording("a/b");
+  const Ending same = Lacuna(simulate);
+  EXPECT_EQ(same.status, 2);
+  EXPECT_THAT(same.said, HasSubstr("recording a/b would have the same folder, a_b, as another"));
+}
+
 TEST(CommandLine, AnUnwritableOutputIsToldBeforeTheComputation) {
   const TemporaryFolder folder;
   std::ofstream(folder / "occupied") << "a file";

@@ -146,6 +146,17 @@ TEST(Config, TakesPathsRelativeToTheFileAndExpandsTheEnvironment) {
   EXPECT_THROW(config.Path("d"), InputError);
 }
 
+TEST(Config, RefusesANameThatWouldLeadOutOfItsFolder) {
+  for (const char* name : {"..", "../../ESC", "a/b", ".hidden", "\"\"", "\"a\\nb\""}) {
+    const Config config = Config::Parse(std::string("n: 1\nname: ") + name, "a.yaml");
+    ExpectInputError([&] { config.Name("name"); },
+                     HasSubstr("a.yaml:2:7: name: names a folder of results, so it must not"));
+  }
+  EXPECT_EQ(Config::Parse("name: silicone beam, 52 g", "a.yaml").Name("name"),
+            "silicone beam, 52 g");
+  ExpectInputError([] { Config::Parse("a: 1", "a.yaml").Name("name"); }, HasSubstr("is missing"));
+}
+
 TEST(Config, ResolvesToSiWithDefaults) {
   const Config beam = Config::Parse("material: {young_modulus: 0.1 MPa}\n", "a.yaml");
   beam.Child("material").Quantity("young_modulus", kPressure, kPositive);

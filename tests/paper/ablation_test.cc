@@ -147,10 +147,19 @@ TEST(Ablation, ACommaStaysInItsField) {
   EXPECT_THAT(FileContent(folder / "ablation.csv"), HasSubstr("rival,\"forces, y and p\",base,1,"));
 }
 
+// Read by a spreadsheet as a formula otherwise.
+TEST(Ablation, AFormulaIsWrittenAsAText) {
+  const TemporaryFolder folder;
+  Ablation ablation = MakeAblation();
+  ablation.study.configurations[1].varies = "=1+1";
+  WriteAblation(ablation.study, ablation.result, folder.Path());
+  EXPECT_THAT(FileContent(folder / "ablation.csv"), HasSubstr("rival,\"'=1+1\",base,1,"));
+}
+
 // Its search would lie outside the output, or in the recording's folder.
 TEST(Ablation, ANameThatIsNoFolderIsRefused) {
   const fs::path base = fs::path(LACUNA_SOURCE_DIR) / "experiments/ablation/base.yaml";
-  for (const char* name : {"../evil", "recording", ".hidden", "a b"}) {
+  for (const char* name : {"../evil", "..", "recording", ".hidden", "a b"}) {
     std::string text = FileContent(base);
     text.replace(text.find("name: base"), 10, std::string("name: ") + name);
     EXPECT_THAT([&] { ReadTable1(std::vector<Config>{Config::Parse(text, base)}); },

@@ -201,6 +201,8 @@ TEST_F(ReadingAPredictionStudy, RefusesMarkersThatRestWhereTheySitAnyway) {
 }
 
 TEST_F(ReadingAPredictionStudy, RefusesParametersThatTheModelDoesNotHave) {
+  EXPECT_THAT(MessageAfter({{"name: bar\n", "name: ../bar\n"}}),
+              ContainsRegex("study.yaml:[0-9]+:[0-9]+: name: names a folder"));
   EXPECT_THAT(MessageAfter({{"{name: young_modulus}", "{name: young_modulos}"}}),
               ContainsRegex("fit.parameters.0..name: got \"young_modulos\".*did you mean "
                             "\"young_modulus\""));

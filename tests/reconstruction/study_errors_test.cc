@@ -64,6 +64,8 @@ TEST(StudyErrors, NameTheLineAndTheField) {
   const std::string gravity = "{type: gravity, acceleration: [0, 0, -9.81 m/s^2]}";
   EXPECT_THAT(MessageAfter("effects: []", "effects: [" + gravity + ", " + gravity + "]"),
               HasSubstr("effects[1].type: gravity is listed twice"));
+  EXPECT_THAT(MessageAfter("name: bend\n", "name: ..\n"),
+              ContainsRegex("e.yaml:[0-9]+:[0-9]+: name: names a folder"));
   EXPECT_THAT(MessageAfter("output: ../results/bend ", "output: \"\" "),
               HasSubstr("output: is empty"));
 }

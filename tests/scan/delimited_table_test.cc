@@ -34,6 +34,14 @@ TEST(DelimitedTable, ReadsDecimalCommasWhereAnotherDelimiterIsUsed) {
   }
 }
 
+TEST(DelimitedTable, ANameInQuotesMayHoldDelimitersAndQuotes) {
+  const DelimitedTable table = Table("t,\"a;b,c\",\"said \"\"so, so\"\"\",\"\"\"\"\n0,1,2,3\n");
+  EXPECT_THAT(table.header, ElementsAre("t", "a;b,c", "said \"so, so\"", "\""));
+  EXPECT_EQ(table.values(0, 3), 3);
+  EXPECT_THAT(Table("t;\"a,b\"\n0;1,5\n").header, ElementsAre("t", "a,b"));
+  EXPECT_EQ(Table("\"1,5\"\n\"2,5\"\n").values(1, 0), 2.5) << "all in quotes";
+}
+
 TEST(DelimitedTable, NamesDecimalCommasThatCannotBeTold) {
   EXPECT_THAT(ErrorOf([] { Table("x,y,z\n1,5,2,5,3,5\n"); }),
               HasSubstr("t.csv:2:1: has 6 entries where the first line has 3; decimal commas need "

@@ -12,8 +12,10 @@
 namespace lacuna {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST_F(RecordingTest, LoadsMarkersWithGapsAndFollowsThem) {
   folder_.Write("m.csv",
@@ -77,6 +79,35 @@ TEST_F(RecordingTest, WrittenMarkerFramesAreReadBack) {
   EXPECT_LT((recording.markers.places - markers.places).norm(), 1e-6);
   EXPECT_FALSE(IsScan(recording));
   EXPECT_THAT(DescribeRecording(recording), HasSubstr("markers      a, b"));
+}
+
+TEST_F(RecordingTest, EveryNameOfAMarkerIsReadBackAsItIs) {
+  const std::vector<std::string> names = {"a,b",         "a;b",       "said \"so\"", "\"\"",
+                                          "back\\slash", "two words", "größer",      "'quoted'",
+                                          "#1",          "a: {b}"};
+  std::vector<std::string> formulas = names;
+  for (const char* name : {"=1+1", "+1", "-3", "@SUM(A1)", "\t=1", " blank"})
+    formulas.emplace_back(name);
+  WriteTriMesh(folder_.Path() / "box.ply", BoxSurface({0.1, 0.05, 0.02}, {1, 1, 1}));
+  for (const std::vector<std::string>& all : {names, formulas}) {
+    const auto count = static_cast<Eigen::Index>(all.size());
+    const Markers markers{
+        all, Eigen::Matrix3Xd::Constant(3, count, 0.01),
+        std::vector<Eigen::Matrix3Xd>(2, Eigen::Vector3d(0.1, 0.2, 0.3).replicate(1, count))};
+    const std::string frames = WriteMarkerFrames(folder_.Path(), {0.25, 0.5}, markers);
+    const Recording recording = Load(Yaml(frames, "reference: {from: mesh, file: box.ply}\n", "m"));
+    EXPECT_EQ(recording.markers.names, all);
+    EXPECT_TRUE(recording.markers.places.isApprox(markers.places));
+    EXPECT_TRUE(recording.markers.positions[1].isApprox(markers.positions[1]));
+  }
+  // No column begins like a formula, which a spreadsheet would evaluate.
+  const std::string csv = FileContent(folder_ / "markers.csv");
+  EXPECT_THAT(csv, HasSubstr(",'=1+1_x,'=1+1_y,'=1+1_z,"));
+  EXPECT_THAT(csv, HasSubstr(",\"'a,b_x\","));
+  EXPECT_THAT(csv, Not(ContainsRegex(",\"?[=+@]")));
+  const Markers broken{{"a\nb"}, Eigen::Matrix3Xd::Zero(3, 1), {Eigen::Matrix3Xd::Zero(3, 1)}};
+  EXPECT_THAT(ErrorOf([&] { WriteMarkerFrames(folder_.Path(), {0}, broken); }),
+              HasSubstr("marker \"a\\u000ab\" has a line break"));
 }
 
 TEST_F(RecordingTest, ARateReplacesTheTimesOfAMarkerFile) {
