@@ -11,11 +11,11 @@
 #include "calibration/prior_conflicts.h"
 #include "calibration/reaction_report.h"
 #include "core/error.h"
-#include "core/hash.h"
 #include "prediction/predicted_body.h"
 #include "prediction/prediction_study_reader.h"
 #include "prediction/recording_noise.h"
 #include "record/csv_table.h"
+#include "record/input_files.h"
 #include "record/run_stage.h"
 
 namespace lacuna {
@@ -132,21 +132,22 @@ CalibrationStage Calibrated(PredictionStudy study, const ReferenceBody& referenc
   return stage;
 }
 
-// Hashes of the recordings' files, by file name.
-std::map<std::string, std::string> InputHashes(const PredictionStudy& study) {
-  std::map<std::string, std::string> hashes;
+InputFiles InputsOf(const PredictionStudy& study) {
+  InputFiles inputs;
   for (const PredictedRecording& item : study.recordings)
-    for (const std::filesystem::path& file : RecordingFiles(item.recording))
-      AddInput(item.name + "/" + InputName(file, item.recording.file.parent_path()), file, &hashes);
-  return hashes;
+    for (const FileState& file : item.recording.files)
+      inputs.Add(item.name + "/" + InputName(file.file, item.recording.file.parent_path()), file);
+  return inputs;
 }
 
 }  // namespace
 
 CalibrationRecord RunCalibration(const PredictionStudy& study, Progress* progress) {
   RunDirectory run(study.output);
-  const std::map<std::string, std::string> inputs = InputHashes(study);
+  const InputFiles files = InputsOf(study);
+  const std::map<std::string, std::string>& inputs = files.hashes();
   run.Begin(study.configuration, inputs, 0);
+  run.Watch(files);
 
   nlohmann::json behind_mesh = study.configuration.at("mesh");
   if (study.recordings.front().recording.reference.source == ReferenceSource::kFirstFrame) {
@@ -219,7 +220,7 @@ FittedRun OpenRun(const std::filesystem::path& run) {
   // Compared as text, because JSON writes an infinite bound as null.
   if (opened.study.configuration.dump() != manifest.configuration.dump())
     throw changed(experiment.string());
-  const std::map<std::string, std::string> inputs = InputHashes(opened.study);
+  const std::map<std::string, std::string> inputs = InputsOf(opened.study).hashes();
   for (const auto& [file, hash] : inputs) {
     const auto then = manifest.inputs.find(file);
     if (then == manifest.inputs.end() || then->second != hash) throw changed(file);

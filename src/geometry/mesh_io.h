@@ -44,6 +44,8 @@ struct TetMeshFile {
 // Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
 // three are refused.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
+// The files that it reads for this name: two of TetGen, one of any other format.
+std::vector<std::filesystem::path> FilesOfTetMesh(const std::filesystem::path& file);
 
 // Write a binary PLY file of doubles and a Gmsh .msh 2.2 text file, respectively. Reading them back
 // gives the same doubles. Both write atomically and throw InputError if that fails.

@@ -150,6 +150,13 @@ TetMeshFile ReadTetMesh(const std::filesystem::path& file) {
   return FinishTetMesh(reader->second(file), file);
 }
 
+std::vector<std::filesystem::path> FilesOfTetMesh(const std::filesystem::path& file) {
+  const std::string extension = LowerExtension(file);
+  if (extension != ".node" && extension != ".ele") return {file};
+  std::filesystem::path nodes = file, elements = file;
+  return {nodes.replace_extension(".node"), elements.replace_extension(".ele")};
+}
+
 void WriteTetMesh(const std::filesystem::path& msh, const TetMesh& mesh) {
   WriteFileAtomically(msh, GmshText(mesh, GmshVersion::k22));
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/hash.h"
 #include "core/interrupt.h"
 #include "experiment/frame_states.h"
 #include "experiment/reference_body.h"
@@ -14,6 +13,7 @@
 #include "reconstruction/reconstruction_measures.h"
 #include "reconstruction/recorded_states.h"
 #include "reconstruction/shown_reconstruction.h"
+#include "record/input_files.h"
 #include "record/run_directory.h"
 #include "record/run_stage.h"
 
@@ -26,20 +26,30 @@ constexpr int kReferenceVersion = 1;
 constexpr int kMotionVersion = 3;
 constexpr int kResultsVersion = 3;
 
-// Hashes of the recording's files, by file name, so that changes of the input are noticed.
-std::map<std::string, std::string> HashInputs(const ReconstructionStudy& study) {
-  std::map<std::string, std::string> hashes;
-  for (const std::filesystem::path& file : RecordingFiles(study.recording))
-    AddInput(InputName(file, study.recording.file.parent_path()), file, &hashes);
-  return hashes;
+InputFiles InputsOf(const ReconstructionStudy& study) {
+  InputFiles inputs;
+  for (const FileState& file : study.recording.files)
+    inputs.Add(InputName(file.file, study.recording.file.parent_path()), file);
+  return inputs;
+}
+
+// The known answers. Nothing has been read of them yet.
+InputFiles TruthOf(const ReconstructionStudy& study) {
+  InputFiles truth;
+  for (const auto& file :
+       {study.validation.true_positions, study.validation.true_mesh, study.validation.true_forces})
+    if (!file.empty()) truth.Add(file.filename().string(), StateOf(file));
+  return truth;
 }
 
 }  // namespace
 
 RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress) {
   RunDirectory run(study.output);
-  const std::map<std::string, std::string> inputs = HashInputs(study);
+  const InputFiles files = InputsOf(study);
+  const std::map<std::string, std::string>& inputs = files.hashes();
   run.Begin(study.configuration, inputs, study.seed);
+  run.Watch(files);
   const nlohmann::json& options = study.configuration;
   const auto part = [&options](std::initializer_list<const char*> keys) {
     nlohmann::json chosen = nlohmann::json::object();
@@ -78,12 +88,15 @@ RunRecord RunReconstruction(const ReconstructionStudy& study, Progress* progress
       });
 
   behind["motion"] = run.ResultHash("motion");
-  for (const auto& file :
-       {study.validation.true_positions, study.validation.true_mesh, study.validation.true_forces})
-    if (!file.empty()) behind[file.filename().string()] = HashFile(file);
+  const InputFiles truth = TruthOf(study);
+  for (const auto& [name, hash] : truth.hashes()) behind[name] = hash;
   const auto record = RunStage<RunRecord>(
       &run, {"results", kResultsVersion, part({"name", "validation"}), behind}, progress,
-      [&] { return MeasureRun(study, reference, states, motion); },
+      [&] {
+        RunRecord measured = MeasureRun(study, reference, states, motion);
+        truth.RequireUnchanged();
+        return measured;
+      },
       [&](const RunRecord& value, const std::filesystem::path& folder) {
         SaveRunRecord(value, folder);
         WriteFields(study, states, motion, value, folder);

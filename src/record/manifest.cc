@@ -29,13 +29,6 @@ std::string InputName(const std::filesystem::path& file, const std::filesystem::
   return (is_inside ? inside : file.filename()).generic_string();
 }
 
-void AddInput(const std::string& name, const std::filesystem::path& file,
-              std::map<std::string, std::string>* inputs) {
-  const std::string hash = HashFile(file);
-  const auto [entry, is_new] = inputs->try_emplace(name, hash);
-  if (!is_new) entry->second = HashBytes(entry->second + hash);
-}
-
 void SaveManifest(const Manifest& manifest, const std::filesystem::path& file) {
   json stages = json::object();
   for (const auto& [name, result] : manifest.stages) {

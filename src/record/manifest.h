@@ -54,10 +54,6 @@ std::string StageKey(const StageIdentity& identity);
 // if it lies in there, and otherwise its own name, so that it depends neither on where the data lie
 // nor on how the paths were spelled.
 std::string InputName(const std::filesystem::path& file, const std::filesystem::path& folder);
-// Adds the hash of a file to inputs. Files of one name share an entry. Throws InputError if the
-// file cannot be read.
-void AddInput(const std::string& name, const std::filesystem::path& file,
-              std::map<std::string, std::string>* inputs);
 
 // Writes the file atomically. Throws InputError if that fails.
 void SaveManifest(const Manifest& manifest, const std::filesystem::path& file);

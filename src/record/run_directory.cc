@@ -171,6 +171,7 @@ void RunDirectory::Store(const std::string& stage, const std::string& key,
     fs::remove_all(partial);
     fs::create_directory(partial);
     write(partial);
+    watched_.RequireUnchanged();
     result.files = SyncAndList(partial);
     // From here to the last Save the manifest does not list the stage, whatever happens in between.
     if (manifest_.stages.erase(stage) > 0) Save();
@@ -200,6 +201,7 @@ std::string RunDirectory::ResultHash(const std::string& stage) const {
 }
 
 void RunDirectory::Finish() {
+  watched_.RequireUnchanged();
   std::vector<std::string> outdated;
   for (const auto& [stage, result] : manifest_.stages) {
     if (!current_.contains(stage)) outdated.push_back(stage);

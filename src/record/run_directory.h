@@ -20,6 +20,7 @@
 #include <string>
 
 #include "core/claim.h"
+#include "record/input_files.h"
 #include "record/manifest.h"
 
 namespace lacuna {
@@ -48,6 +49,9 @@ class RunDirectory {
   void Begin(const nlohmann::json& configuration, const std::map<std::string, std::string>& inputs,
              uint64_t seed);
 
+  // From here on, Store and Finish throw InputError where one of these files has changed.
+  void Watch(const InputFiles& inputs) { watched_ = inputs; }
+
   // Checks whether the stage has a valid result for this key. Reads each file and compares its
   // hash.
   StageCheck Check(const std::string& stage, const std::string& key);
@@ -56,8 +60,8 @@ class RunDirectory {
   }
 
   // Calls write(folder) with an empty folder, whose contents then become the result of the stage.
-  // If `write` throws, the folder is removed, an earlier result is kept and the exception is
-  // rethrown.
+  // If `write` throws, or a watched file has changed, the folder is removed, an earlier result is
+  // kept and the exception is rethrown.
   void Store(const std::string& stage, const std::string& key,
              const std::function<void(const std::filesystem::path& folder)>& write);
 
@@ -74,6 +78,7 @@ class RunDirectory {
   std::filesystem::path folder_;
   std::optional<Claim> lock_;
   Manifest manifest_;
+  InputFiles watched_;
   std::set<std::string> current_;  // stages stored or found ready since Begin
 };
 

@@ -5,7 +5,6 @@
 #include <glog/logging.h>
 
 #include <algorithm>
-#include <set>
 
 #include "core/error.h"
 #include "geometry/tri_mesh.h"
@@ -115,19 +114,6 @@ bool HasTrackedPoints(const Recording& recording) {
 
 bool IsScan(const Recording& recording) {
   return recording.markers.names.empty() && !HasTrackedPoints(recording);
-}
-
-std::vector<std::filesystem::path> RecordingFiles(const Recording& recording) {
-  std::vector<std::filesystem::path> files = {recording.file, recording.times_file,
-                                              recording.reference.file};
-  const auto add = [&](const std::vector<std::filesystem::path>& more) {
-    files.insert(files.end(), more.begin(), more.end());
-  };
-  add(FilesOf(recording.object));
-  std::visit([&](const auto& source) { add(AllFiles(source)); }, recording.frames);
-  std::set<std::filesystem::path> seen = {""};
-  std::erase_if(files, [&](const auto& file) { return !seen.insert(file).second; });
-  return files;
 }
 
 std::string DescribeRecording(const Recording& recording) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file_state.h"
 #include "scan/frame.h"
 #include "scan/frame_source.h"
 #include "scan/instrument.h"
@@ -39,6 +40,10 @@ struct Recording {
   std::vector<std::string> warnings;  // e.g. a size that suggests another length unit
   std::string resolved;               // all values read, defaults included, SI, as JSON
 
+  // All files that the recording consists of, recording.yaml included, each once, in their states
+  // before they were read. A hash over them changes whenever the recording does.
+  std::vector<FileState> files;
+
   int FrameCount() const { return static_cast<int>(times.size()); }
 };
 
@@ -59,10 +64,6 @@ bool HasTrackedPoints(const Recording& recording);
 // Whether the frames are scans: neither markers nor tracked points, so that the points of two
 // frames correspond only through the surface that they lie on.
 bool IsScan(const Recording& recording);
-
-// All files that the recording consists of, recording.yaml included, each once. A hash over them
-// changes whenever the recording does.
-std::vector<std::filesystem::path> RecordingFiles(const Recording& recording);
 
 // A summary for people, several lines: frames, duration, sizes, what is known about the object,
 // warnings. Reads the first and the last frame.

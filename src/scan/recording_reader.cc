@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "geometry/mesh_io.h"
 #include "geometry/tri_mesh.h"
 #include "scan/frame_times.h"
 #include "scan/recording.h"
@@ -119,9 +121,8 @@ void UseFirstFrame(Recording* recording) {
   WarnOfReferenceSize(first, recording);
 }
 
-}  // namespace
-
-Recording LoadRecording(const std::filesystem::path& path) {
+// Reads all but the frames; for some kinds of frames these, too.
+Recording ReadDescribed(const std::filesystem::path& path) {
   const bool is_folder = std::filesystem::is_directory(path);
   const Config config = Config::Load(is_folder ? path / "recording.yaml" : path);
   config.Integer("schema_version", kSchemaVersion, kSchemaVersion);
@@ -154,6 +155,40 @@ Recording LoadRecording(const std::filesystem::path& path) {
   recording.reference = ReadReference(config, recording.data, own_folder, shows_surface);
   config.RefuseUnknownKeys();
   recording.resolved = config.Resolved().dump();
+  return recording;
+}
+
+// All files that the recording consists of, each once.
+std::vector<std::filesystem::path> FilesOf(const Recording& recording) {
+  std::vector<std::filesystem::path> files = {recording.file, recording.times_file};
+  const auto add = [&](const std::vector<std::filesystem::path>& more) {
+    files.insert(files.end(), more.begin(), more.end());
+  };
+  const ReferenceShape& reference = recording.reference;
+  if (reference.source == ReferenceSource::kTetMesh)
+    add(FilesOfTetMesh(reference.file));
+  else
+    files.push_back(reference.file);
+  add(FilesOf(recording.object));
+  std::visit([&](const auto& source) { add(AllFiles(source)); }, recording.frames);
+  std::set<std::filesystem::path> seen = {""};
+  std::erase_if(files, [&](const auto& file) { return !seen.insert(file).second; });
+  return files;
+}
+
+}  // namespace
+
+Recording LoadRecording(const std::filesystem::path& path) {
+  // Which files there are is known only once they have been read, so all are read a second time
+  // after their states were noted. The frames, which may take long, come after that.
+  const std::vector<std::filesystem::path> files = FilesOf(ReadDescribed(path));
+  std::vector<FileState> states;
+  for (const std::filesystem::path& file : files) states.push_back(StateOf(file));
+  Recording recording = ReadDescribed(path);
+  if (FilesOf(recording) != files)
+    throw InputError({recording.file.string()},
+                     "has changed while this command was reading it; run the command again");
+  recording.files = std::move(states);
   UseFirstFrame(&recording);
   return recording;
 }

@@ -26,6 +26,7 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
 constexpr rlim_t kNoLimit = RLIM_INFINITY;
+constexpr int kUnusableInput = 2;  // exit status
 
 // The content of a folder: hash by relative path. What a lock file holds belongs to a process.
 std::map<std::string, std::string> ContentOf(const fs::path& folder) {
@@ -141,12 +142,18 @@ class Trial {
   std::vector<FaultResult> Run() {
     std::vector<FaultResult> all{Killed(), DiskFull(), TwoProcesses(), ClockJump(), Damaged()};
     if (!subject_.input.empty()) all.push_back(ChangedInput());
+    // Where nothing had to run before, the subject is an experiment, which says where to write.
+    if (subject_.preparation.empty()) {
+      all.push_back(UnwritableOutput());
+      if (!subject_.input.empty()) all.push_back(InputChangedMeanwhile());
+    }
     return all;
   }
 
  private:
   fs::path Prepared() const { return folder_.string() + "_prepared"; }
   fs::path Finished() const { return folder_.string() + "_finished"; }
+  fs::path Input() const { return folder_ / subject_.input; }
 
   int Execute(const std::vector<std::string>& arguments, rlim_t largest_file = kNoLimit) {
     return Process(options_.program, arguments, folder_, log_, largest_file).Wait();
@@ -275,19 +282,31 @@ class Trial {
     return result;
   }
 
-  // The last digit of a measurement changes after the run; the results of before must not pass for
-  // those of the new input.
-  FaultResult ChangedInput() {
-    FaultResult result{"an input that changes afterwards", subject_.name};
-    Reset(Finished());
-    const fs::path file = folder_ / subject_.input;
-    const std::string before = FileContent(file);
+  // Changes the last byte of the input that is a digit. Returns the content before.
+  std::string ChangeInput() {
+    const std::string before = FileContent(Input());
     std::string bytes = before;
     const size_t digit = bytes.find_last_of("0123456789");
     bytes[digit] = bytes[digit] == '1' ? '2' : '1';
-    std::ofstream(file, std::ios::binary) << bytes;
+    WriteInput(bytes);
+    return before;
+  }
+  // At one stroke: whoever reads it meanwhile gets the old file or the new one.
+  void WriteInput(const std::string& bytes) {
+    const fs::path other = folder_ / "input";
+    std::ofstream(other, std::ios::binary) << bytes;
+    fs::rename(other, Input());
+  }
+  bool LogHas(const std::string& text) { return FileContent(log_).find(text) != std::string::npos; }
+
+  // A measurement changes after the run; the results of before must not pass for those of the new
+  // input.
+  FaultResult ChangedInput() {
+    FaultResult result{"an input that changes afterwards", subject_.name};
+    Reset(Finished());
+    const std::string before = ChangeInput();
     const int status = Execute(subject_.arguments);
-    const bool is_refused = status > 0 && FileContent(log_).find("changed") != std::string::npos;
+    const bool is_refused = status > 0 && LogHas("changed");
     // The manifest differs in any case: it has the hashes of the inputs.
     std::map<std::string, std::string> expected = expected_, found = ContentOf(results_);
     expected.erase("manifest.json");
@@ -297,7 +316,57 @@ class Trial {
               ? ""
               : fmt::format("exit status {}, and the results are those of the old input", status),
           &result);
-    std::ofstream(file, std::ios::binary) << before;
+    WriteInput(before);
+    return result;
+  }
+
+  // A measurement changes while the command runs, after it has hashed its inputs: nothing may be
+  // finished from a mixture of old and new data.
+  FaultResult InputChangedMeanwhile() {
+    FaultResult result{"an input that changes meanwhile", subject_.name};
+    StartOver();
+    const fs::path manifest = results_ / "manifest.json";
+    Process process(options_.program, subject_.arguments, folder_, log_);
+    while (!fs::exists(manifest) && !process.EndsWithin(std::chrono::milliseconds(10))) continue;
+    const std::string before = ChangeInput();
+    const int status = process.Wait();
+    const bool is_refused = status == kUnusableInput && LogHas("has changed") &&
+                            LogHas(subject_.input.filename().string()) &&
+                            FileContent(manifest).find("\"finished\": true") == std::string::npos;
+    WriteInput(before);
+    Count(is_refused
+              ? Finish()
+              : fmt::format("exit status {}, and nothing was said: {}", status, FileContent(log_)),
+          &result);
+    return result;
+  }
+
+  // The experiment names a folder below a file, and one that the kernel refuses to anybody.
+  FaultResult UnwritableOutput() {
+    FaultResult result{"an output that cannot be written", subject_.name};
+    StartOver();
+    const auto content = [this] {
+      std::map<std::string, std::string> files = ContentOf(folder_);
+      files.erase(log_.filename().string());
+      return files;
+    };
+    const std::map<std::string, std::string> before = content();
+    const std::string experiment = FileContent(folder_ / subject_.arguments.back());
+    const size_t begin = experiment.find("\noutput:") + 1, end = experiment.find('\n', begin);
+    const fs::path changed = folder_ / "experiments/unwritable.yaml";
+    for (const fs::path& output : {folder_ / "experiments/bend.yaml/run", fs::path("/proc/run")}) {
+      std::string text = experiment;
+      std::ofstream(changed) << text.replace(begin, end - begin, "output: " + output.string());
+      std::vector<std::string> arguments = subject_.arguments;
+      arguments.back() = changed.string();
+      const int status = Execute(arguments);
+      const std::string said = FileContent(log_);
+      fs::remove(changed);
+      std::string failure = Difference(before, content());
+      if (status != kUnusableInput || said.find(output.string()) == std::string::npos)
+        failure = fmt::format("exit status {} for {}: {}", status, output.string(), said);
+      Count(failure, &result);
+    }
     return result;
   }
 
@@ -313,7 +382,11 @@ class Trial {
 
 std::vector<Subject> BundledSubjects() {
   const std::vector<std::string> fit{"fit", "experiments/hidden_effect.yaml"};
-  return {{"reconstruct", {"reconstruct", "experiments/bend.yaml"}, "results/bend"},
+  return {{"reconstruct",
+           {"reconstruct", "experiments/bend.yaml"},
+           "results/bend",
+           {},
+           "experiments/recordings/bend/frames/points_015.ply"},
           {"fit",
            fit,
            "results/hidden_effect",

@@ -1,6 +1,7 @@
-// Faults that a computation must survive: killed at any moment, a full disk, damaged results,
-// inputs that change, a clock that jumps, two processes in one folder. After each of them the same
-// command must give the same bytes as a computation that nothing disturbed, or say what is wrong.
+// Faults that a computation must survive: killed at any moment, a full disk, a folder that cannot
+// be written to, damaged results, inputs that change, a clock that jumps, two processes in one
+// folder. After each of them the same command must give the same bytes as a computation that
+// nothing disturbed, or say what is wrong.
 #ifndef LACUNA_TESTS_FAULTS_FAULTS_H_
 #define LACUNA_TESTS_FAULTS_FAULTS_H_
 

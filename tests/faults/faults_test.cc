@@ -17,7 +17,7 @@ TEST(Faults, AFitSurvivesThem) {
   for (const Subject& subject : BundledSubjects()) {
     if (subject.name != "fit") continue;
     const std::vector<FaultResult> results = TryFaults(subject, options);
-    EXPECT_GE(results.size(), 6u);
+    EXPECT_GE(results.size(), 8u);
     for (const FaultResult& one : results) {
       EXPECT_GT(one.trials, 0) << one.fault;
       EXPECT_EQ(one.survived, one.trials) << one.fault << ": " << one.first_failure;

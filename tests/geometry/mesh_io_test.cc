@@ -202,6 +202,13 @@ TEST_P(TetFormat, GivesTheSameTwoTetrahedra) {
   EXPECT_THAT(read.notes, IsEmpty());
 }
 
+TEST(TetFiles, AreTwoOfTetGenAndOneOfOthers) {
+  using testing::ElementsAre;
+  EXPECT_THAT(FilesOfTetMesh("a/b.ele"), ElementsAre("a/b.node", "a/b.ele"));
+  EXPECT_THAT(FilesOfTetMesh("a/b.node"), ElementsAre("a/b.node", "a/b.ele"));
+  EXPECT_THAT(FilesOfTetMesh("a/b.msh"), ElementsAre("a/b.msh"));
+}
+
 TEST_P(TetFormat, RefusesEveryTruncation) {
   const TemporaryFolder folder;
   Write(folder / "a.node", kNode);

@@ -61,23 +61,6 @@ TEST(InputNameTest, DoesNotDependOnHowThePathIsSpelled) {
   EXPECT_EQ(InputName("../data/markers.csv", absolute / "recordings/a"), "markers.csv");
 }
 
-TEST(InputNameTest, FilesOfOneNameBothCount) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directories(folder / "one");
-  std::filesystem::create_directories(folder / "two");
-  std::ofstream(folder / "one/a.csv") << "1\n";
-  std::ofstream(folder / "two/a.csv") << "2\n";
-  std::map<std::string, std::string> first, both, changed;
-  AddInput("a.csv", folder / "one/a.csv", &first);
-  AddInput("a.csv", folder / "one/a.csv", &both);
-  AddInput("a.csv", folder / "two/a.csv", &both);
-  EXPECT_NE(first, both);
-  std::ofstream(folder / "two/a.csv") << "3\n";
-  AddInput("a.csv", folder / "one/a.csv", &changed);
-  AddInput("a.csv", folder / "two/a.csv", &changed);
-  EXPECT_NE(both, changed);
-}
-
 TEST(ManifestTest, DamagedOrNewerFilesAreRefused) {
   const TemporaryFolder folder;
   const auto file = folder / "manifest.json";

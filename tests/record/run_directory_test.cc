@@ -125,6 +125,26 @@ TEST_F(RunDirectoryTest, DamagedStageIsReplacedByStoringItAgain) {
   EXPECT_TRUE(run.Has("fit", "key f"));
 }
 
+TEST_F(RunDirectoryTest, InputsThatChangeMeanwhileStoreNothing) {
+  MakeFinishedRun();
+  const fs::path scan = parent_ / "scan.ply";
+  std::ofstream(scan) << "old";
+  InputFiles inputs;
+  inputs.Add("scan.ply", StateOf(scan));
+  RunDirectory run(folder_);
+  run.Begin({}, inputs.hashes(), 0);
+  run.Watch(inputs);
+  run.Store("surface", "key s", WriteResult("surface"));
+  std::ofstream(scan) << "newer";
+  const auto names_it = ThrowsMessage<InputError>(AllOf(
+      HasSubstr(scan.string()), HasSubstr("has changed"), HasSubstr("run the command again")));
+  EXPECT_THAT([&] { run.Store("fit", "new key", WriteResult("mixture")); }, names_it);
+  EXPECT_THAT([&] { run.Finish(); }, names_it);
+  EXPECT_FALSE(HasPartialFolder());
+  EXPECT_FALSE(run.Has("fit", "new key"));
+  EXPECT_FALSE(LoadManifest(folder_ / "manifest.json").finished);
+}
+
 TEST_F(RunDirectoryTest, ExceptionWhileWritingKeepsTheEarlierResult) {
   MakeFinishedRun();
   RunDirectory run(folder_);

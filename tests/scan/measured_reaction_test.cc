@@ -47,8 +47,7 @@ TEST_F(MeasuredReactionTest, ComponentsAreReadInTheirUnitsAndInterpolated) {
   EXPECT_FALSE(reaction.Covers(0.11));
   EXPECT_LT((ReadingAt(reaction, 0.05) - Eigen::Vector2d(2, 0.02)).norm(), 1e-12);
   EXPECT_THAT(DescribeRecording(recording), HasSubstr("jaw: 2 values of x, z, at most 3 N"));
-  const auto files = RecordingFiles(recording);
-  EXPECT_THAT(files, testing::Contains(folder_.Path() / "load.csv"));
+  EXPECT_THAT(recording.files, testing::Contains(StateOf(folder_.Path() / "load.csv")));
 }
 
 TEST_F(MeasuredReactionTest, ADirectionIsNormalisedAndTheOppositeForceChangesItsSign) {

@@ -50,7 +50,7 @@ TEST_F(RecordingTest, ReadsWhatIsKnownOfTheObjectInSi) {
   const Frame frame = LoadFrame(recording, 2);
   EXPECT_EQ(frame.cloud.Size(), 12);
   EXPECT_DOUBLE_EQ(frame.cloud.points(0, 11), 0.102);
-  EXPECT_EQ(RecordingFiles(recording).size(), 6u);
+  EXPECT_EQ(recording.files.size(), 6u);
   const std::string text = DescribeRecording(recording);
   for (const char* part : {"3 point clouds, 0 s to 0.1 s", "12 points, 100 mm × 50 mm × 20 mm",
                            "1070 kg/m³", "clamp: half-space", "hand: sphere", "given path",
