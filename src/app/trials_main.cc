@@ -91,8 +91,9 @@ int Main(int argc, char** argv) {
     return Report(folder);
   } catch (const InputError& problem) {
     WriteLineToStandardError(problem.what());
-  } catch (const Interrupted&) {
+  } catch (const Interrupted& interrupted) {
     WriteLineToStandardError(kStoppedMessage);
+    return interrupted.ExitCode();
   }
   return 1;
 }

@@ -42,16 +42,23 @@ bool IsIgnored(int signal) {
   _exit(128 + signal);
 }
 
-// Waits for the first signal and then for a second one, or for the end of the grace.
+// Waits for the first signal and then for a second one of the same number, or for the end of the
+// grace. (A terminal sends SIGINT to all processes, and the parent of workers then SIGTERM.)
 void Watch(sigset_t awaited) {
   int first = 0;
   if (sigwait(&awaited, &first) != 0) return;
   received_signal.store(first);
+  sigset_t same;
+  sigemptyset(&same);
+  sigaddset(&same, first);
   const timespec grace{kStopGrace.count() / 1000, kStopGrace.count() % 1000 * 1'000'000};
   int second = 0;
-  do second = sigtimedwait(&awaited, nullptr, &grace);
+  do second = sigtimedwait(&same, nullptr, &grace);
   while (second < 0 && errno == EINTR);
   if (second > 0) EndBy(second);
+  // Where nobody reads standard error any more, the message must not hold up the end.
+  signal(SIGALRM, SIG_DFL);
+  alarm(1);
   WriteLineToStandardError(kStoppedMessage);
   _exit(128 + first);
 }

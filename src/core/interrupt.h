@@ -1,7 +1,8 @@
 // Handling of Ctrl-C: long computations stop at points where no incomplete result is left behind.
 //
 // The first SIGINT or SIGTERM sets a flag that long loops poll. Where none of them does within
-// kStopGrace, inside a library for instance, the program is ended; a second signal ends it at once.
+// kStopGrace, inside a library for instance, the program is ended; the same signal once more ends
+// it at once.
 // Results are written atomically, so the run folder remains valid in all cases.
 //
 // The signals are blocked in all threads and taken by one that waits for them. Libraries that set

@@ -42,7 +42,10 @@ int Work(size_t k, int threads, const std::function<void(size_t)>& job) {
 }
 
 bool StoppedFromOutside(int status) {
-  if (WIFEXITED(status)) return WEXITSTATUS(status) == kStopped;
+  if (WIFEXITED(status)) {
+    const int code = WEXITSTATUS(status);  // the sums: it did not stop within kStopGrace
+    return code == kStopped || code == 128 + SIGINT || code == 128 + SIGTERM;
+  }
   for (const int signal : {SIGKILL, SIGTERM, SIGINT, SIGHUP})
     if (WTERMSIG(status) == signal) return true;
   return false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "effects/catalogue.h"
 
@@ -63,7 +64,6 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
   const EffectRanking& ranking = context.ranking;
   DecisionInput input;
   input.baseline = SpaceOf(ranked.baseline.hypothesis, ranking, "", noise.level);
-  const EffectRanking& beside_refits = ranked.along ? *ranked.along : ranking;
   const double penalty = SelectionPenalty(ranked.effects.size());
   for (size_t k = 0; k < ranked.effects.size(); ++k) {
     const RankedEffect& effect = ranked.effects[k];
@@ -71,10 +71,16 @@ DecisionInput MakeDecisionInput(const RefitContext& context, const RefittedRanki
     if (candidate.effect != nullptr)
       input.families[candidate.type] = candidate.effect->Card().family;
     if (!ranked.IsUsable(k)) continue;
+    const FittedHypothesis& hypothesis = ranked.refits[k].hypothesis;
+    HypothesisSpace space;
+    if (!ranked.along)
+      space = SpaceOf(hypothesis, ranking, candidate.type, noise.level);
+    else if (candidate.type == ranked.along_type)
+      space = SpaceOf(hypothesis, *ranked.along, "", noise.level);
+    else
+      space = SpaceOf(hypothesis, *ranked.along_for_others, candidate.type, noise.level);
     input.refits.push_back(
-        {candidate.type, effect.evidence + penalty,
-         SpaceOf(ranked.refits[k].hypothesis, beside_refits, candidate.type, noise.level),
-         effect.predicts});
+        {candidate.type, effect.evidence + penalty, std::move(space), effect.predicts});
     if (const double natural = EvidenceOfNaturalValue(effect); natural != 0)
       input.natural_value[candidate.type] = natural;
   }

@@ -112,6 +112,7 @@ std::vector<size_t> WithoutRefit(const Decision& decision, const RefittedRanking
 Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked, RefitNoise* noise,
                            Diagnosis* diagnosis) {
   for (;;) {
+    WeighNuisances(*ranked, *noise, &diagnosis->nuisances);
     diagnosis->decision_input = MakeDecisionInput(context, *ranked, *noise, *diagnosis);
     Decision decision = Decide(diagnosis->decision_input);
     const int before = ranked->count;
@@ -219,7 +220,7 @@ Diagnosis DiagnoseRanked(const CalibrationProblem& problem, const Eigen::VectorX
   }
   RefitAll(context, LookAlikesOfBest(ranked.effects), &ranked);
   RefitNoise noise = WeighRefits(context, &ranked);
-  RefitRivalNuisances(context, ranked, noise, &ranking.nuisances);
+  RefitRivalNuisances(context, &ranked);
   diagnosis.nuisances = ranking.nuisances;
   DecideUpon(context, options, &ranked, &noise, &diagnosis);
   return diagnosis;
@@ -239,7 +240,7 @@ std::optional<Diagnosis> DiagnoseWithShorterStep(const CalibrationProblem& probl
   study.time_step = std::ldexp(study.time_step, -now);
   setting.progress->Begin("time step", 0);
   setting.progress->End(
-      fmt::format("{:.3g} ms, because the error of {:.3g} ms could look like an effect",
+      fmt::format("{:.3g} ms, because the error of steps of {:.3g} ms could look like an effect",
                   1e3 * study.time_step, 1e3 * problem.study().time_step));
   const CalibrationProblem shorter(study, problem.body()->mesh);
   const Calibration fit = RefineFit(shorter, fitted, setting.progress);

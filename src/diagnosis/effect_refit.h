@@ -66,7 +66,7 @@ struct RefitEvidence {
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise);
 
 // The space of all other hypotheses beside a refitted effect, with the columns that the ranking
-// found along the baseline's motion. `type`: the refitted effect.
+// found. `type`: the refitted effect.
 HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking& ranking,
                         const std::string& type, const NoiseLevel& noise);
 

@@ -51,8 +51,8 @@ struct NuisanceCard {
   NuisanceSource source = NuisanceSource::kMeasurement;
   // The nuisance is simulated and bounded, and belongs to every model, whatever its evidence.
   bool is_always_in_model = false;
-  // The columns are differences of further simulations. They hardly depend on the parameters or on
-  // one more effect, so that all rankings of one scene share them (effect_ranking.h).
+  // The columns are differences of further simulations, which rankings along the same motion share
+  // (scene_columns.h). RefittedModel computes them anew along the motion of a refit.
   bool is_shared_in_scene = false;
   // Each frame has amounts of its own: those of the fitted frames predict nothing in held-out ones.
   bool acts_on_single_frames = false;

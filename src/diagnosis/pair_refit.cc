@@ -1,5 +1,6 @@
 #include "diagnosis/pair_refit.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "diagnosis/grip_motions.h"
@@ -42,6 +43,12 @@ std::vector<NuisanceCandidate> NuisancesAlong(const CalibrationProblem& problem,
 SceneColumns OtherScene(const SceneColumns& of_baseline, const ScoredVariant& effect,
                         std::vector<NuisanceCandidate> nuisances) {
   SceneColumns scene = of_baseline;
+  // One that cannot be simulated along this motion stays as it was.
+  for (const NuisanceCandidate& before : of_baseline.nuisances)
+    if (std::none_of(nuisances.begin(), nuisances.end(), [&](const NuisanceCandidate& nuisance) {
+          return nuisance.card.name == before.card.name;
+        }))
+      nuisances.push_back(before);
   scene.nuisances = std::move(nuisances);
   if (effect.candidate.IsPilot()) scene.pilots.reset();
   return scene;

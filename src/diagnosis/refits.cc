@@ -283,10 +283,14 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked) {
-  // The ranking has the effect in its base, the other refits have not.
+  ranked->pairs.clear();
+  ranked->along_type = type;
+  ranked->along = std::make_shared<const EffectRanking>(along);
+  // Beside the refit with the effect, `along` may have it a second time.
+  std::erase_if(along.tried, [&](const TriedVariant& tried) { return tried.type == type; });
   for (const TriedVariant& tried : context.ranking.tried)
     if (tried.type == type) along.tried.push_back(tried);
-  ranked->along = std::make_shared<const EffectRanking>(std::move(along));
+  ranked->along_for_others = std::make_shared<const EffectRanking>(std::move(along));
   ParallelFor(static_cast<int64_t>(ranked->refits.size()), 1, [&](int64_t effect) {
     PutBesideAlong(context, static_cast<size_t>(effect), ranked);
   });
@@ -307,40 +311,51 @@ RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked) {
   return noise;
 }
 
-void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ranked,
-                         const RefitNoise& noise, std::vector<ScoredNuisance>* nuisances) {
+void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked) {
   const RefitThresholds& thresholds = kThresholds.refit;
-  const RankedEffect* best = BestRefitted(ranked.effects);
+  const std::vector<ScoredNuisance>& nuisances = context.ranking.nuisances;
+  const RankedEffect* best = BestRefitted(ranked->effects);
   if (best == nullptr || best->evidence < thresholds.least_evidence) return;
   const double least = std::max(
       thresholds.rival_nuisance_share * std::min(best->evidence, best->scored.score.evidence),
       thresholds.least_evidence);
-  std::vector<ScoredNuisance*> rivals;
-  for (ScoredNuisance& nuisance : *nuisances)
-    if (!nuisance.adopted && nuisance.evidence > least) rivals.push_back(&nuisance);
-  std::stable_sort(rivals.begin(), rivals.end(),
-                   [](const auto* a, const auto* b) { return a->evidence > b->evidence; });
+  std::vector<size_t> rivals;
+  for (size_t k = 0; k < nuisances.size(); ++k)
+    if (!nuisances[k].adopted && nuisances[k].evidence > least) rivals.push_back(k);
+  std::stable_sort(rivals.begin(), rivals.end(), [&](size_t a, size_t b) {
+    return nuisances[a].evidence > nuisances[b].evidence;
+  });
   rivals.resize(std::min(rivals.size(), thresholds.most_rival_nuisances));
   if (rivals.empty()) return;
-  const double before = EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence;
   Progress& progress = *context.model.progress;
   progress.Begin("refit with nuisances", static_cast<int64_t>(rivals.size()));
+  std::vector<EffectRefit> refits(rivals.size());
   std::atomic<int64_t> done = 0;
   ParallelFor(static_cast<int64_t>(rivals.size()), 1, [&](int64_t k) {
-    ScoredNuisance& nuisance = *rivals[static_cast<size_t>(k)];
+    const size_t at = static_cast<size_t>(k);
     Progress silent({.style = ProgressStyle::kSilent});
     BaselineModel model = context.model;
     model.progress = &silent;
-    const EffectRefit with =
-        Refit(model, nullptr, context.ranking.adopted.And(nuisance.candidate), false);
+    refits[at] =
+        Refit(model, nullptr, context.ranking.adopted.And(nuisances[rivals[at]].candidate), false);
     progress.Report(++done);
-    if (!with.message.empty()) return;
-    const double evidence = EvidenceOf(with.hypothesis, noise.level).log_evidence - before -
+  });
+  for (size_t k = 0; k < rivals.size(); ++k)
+    if (refits[k].message.empty()) ranked->nuisances[rivals[k]] = std::move(refits[k].hypothesis);
+  progress.End();
+}
+
+void WeighNuisances(const RefittedRanking& ranked, const RefitNoise& noise,
+                    std::vector<ScoredNuisance>* nuisances) {
+  const double before = EvidenceOf(ranked.baseline.hypothesis, noise.level).log_evidence;
+  for (const auto& [k, hypothesis] : ranked.nuisances) {
+    ScoredNuisance& nuisance = (*nuisances)[k];
+    const double evidence = EvidenceOf(hypothesis, noise.level).log_evidence - before -
                             nuisance.candidate.selection_penalty -
                             SelectionPenalty(nuisances->size());
+    nuisance.refitted.reset();
     if (std::isfinite(evidence)) nuisance.refitted = evidence;
-  });
-  progress.End();
+  }
 }
 
 NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,

@@ -10,6 +10,7 @@
 #define LACUNA_DIAGNOSIS_REFITS_H_
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,10 +40,13 @@ struct RefittedRanking {
   double baseline_evidence = 0, best_evidence = 0;
   double underrated = 0;       // by how much first order has underrated the evidence of that refit
   std::optional<size_t> best;  // the effect of that refit
-  // The ranking along the motion of a refit, whose columns stand beside all refits; null: those of
-  // the baseline do.
-  std::shared_ptr<const EffectRanking> along;
-  std::vector<WeighedPair> pairs;  // fits with two effects
+  // The ranking along the motion of the refit with the effect `along_type`, whose columns stand
+  // beside all refits; null: those of the baseline do. `along_for_others` has that effect among the
+  // hypotheses, with the baseline's columns.
+  std::string along_type;
+  std::shared_ptr<const EffectRanking> along, along_for_others;
+  std::vector<WeighedPair> pairs;                // fits with two effects, beside these columns
+  std::map<size_t, FittedHypothesis> nuisances;  // fits with a nuisance, by its index
 
   bool IsUsable(size_t effect) const {
     return effects[effect].refitted && effects[effect].refit_message.empty();
@@ -95,9 +99,9 @@ void RefitAsRankedEarly(const RefitContext& context, const std::vector<ScoredEff
 
 // Puts the columns of `along`, a ranking along the motion of the refit with the effect `type`,
 // beside all refits, and settles them (BesideNuisances). Every refit that follows the measurements
-// moves like that one, while the baseline, without the effect, may move otherwise: its columns
-// of the mesh and the time step are then wrong for all of them, and what is wrong looks like a
-// further effect.
+// moves like that one, while the baseline, without the effect, may move otherwise: its columns of
+// the mesh and the time step are then wrong for all of them, and what is wrong looks like a further
+// effect. Pairs that were fitted beside other columns are dropped. Throws Interrupted.
 void LookAlong(const RefitContext& context, const std::string& type, EffectRanking along,
                RefittedRanking* ranked);
 
@@ -105,10 +109,12 @@ void LookAlong(const RefitContext& context, const std::string& type, EffectRanki
 // refits. Replaces the results of an earlier call.
 RefitNoise WeighRefits(const RefitContext& context, RefittedRanking* ranked);
 
-// Refits the model with each nuisance that first order puts near the best effect or above it, and
-// sets ScoredNuisance::refitted.
-void RefitRivalNuisances(const RefitContext& context, const RefittedRanking& ranked,
-                         const RefitNoise& noise, std::vector<ScoredNuisance>* nuisances);
+// Refits the model with each nuisance that first order puts near the best effect or above it.
+void RefitRivalNuisances(const RefitContext& context, RefittedRanking* ranked);
+
+// Sets ScoredNuisance::refitted of the nuisances that were refitted.
+void WeighNuisances(const RefittedRanking& ranked, const RefitNoise& noise,
+                    std::vector<ScoredNuisance>* nuisances);
 
 // Refits `wanted` effects, at most, in place of the adopted nuisances.
 NuisanceAlternatives RefitInPlaceOfNuisances(const RefitContext& context,

@@ -3,8 +3,7 @@
 // A scene is one body in one set of recordings. The columns of the mesh, the time step, the
 // object's dimensions and the extent of the grips, and those of the pilots, are differences of
 // simulations, which cost more than all tangents of a ranking together. They hardly change when the
-// parameters move a little or when one more effect joins the model, so that further rankings of the
-// scene take them over.
+// parameters move a little, so that further rankings along nearly the same motion take them over.
 #ifndef LACUNA_DIAGNOSIS_SCENE_COLUMNS_H_
 #define LACUNA_DIAGNOSIS_SCENE_COLUMNS_H_
 
