@@ -21,8 +21,7 @@ size_t CountOf(const std::vector<HypothesisProbability>& hypotheses, Kind kind) 
 const WeighedPair* FindPair(const DecisionInput& input, const std::string& a,
                             const std::string& b) {
   for (const WeighedPair& pair : input.pairs)
-    if ((pair.first == a && pair.second == b) || (pair.first == b && pair.second == a))
-      return &pair;
+    if (pair.IsOf(a, b)) return &pair;
   return nullptr;
 }
 

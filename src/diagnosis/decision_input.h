@@ -27,6 +27,10 @@ struct WeighedPair {
   double gain = 0;        // log Bayes factor against the refit with the first alone
   HypothesisSpace space;  // along the refit; the parameters of both are in its base
   bool predicts = true;   // beyond the first alone
+
+  bool IsOf(const std::string& a, const std::string& b) const {
+    return (first == a && second == b) || (first == b && second == a);
+  }
 };
 
 // The model fitted again with one nuisance beside those of the baseline.

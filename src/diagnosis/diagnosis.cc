@@ -124,7 +124,7 @@ Decision RefitWhatIsStated(const RefitContext& context, RefittedRanking* ranked,
 
 bool IsRefitted(const std::vector<WeighedPair>& pairs, const HypothesisProbability& pair) {
   return std::any_of(pairs.begin(), pairs.end(), [&](const WeighedPair& one) {
-    return pair.Contains(one.first) && pair.Contains(one.second);
+    return one.IsOf(pair.names[0], pair.names[1]);
   });
 }
 

@@ -8,27 +8,8 @@
 #include "calibration/held_out_misfit.h"
 #include "core/parallel.h"
 #include "diagnosis/thresholds.h"
-#include "fit/active_bounds.h"
 
 namespace lacuna {
-namespace {
-
-// Settle() makes at most so many Gauss–Newton steps, shortens a step that does not help
-// by this factor, and stops when the next step would gain less log evidence than this.
-constexpr int kSettlingSteps = 5;
-constexpr double kStepReduction = 0.3;
-constexpr double kSettledGain = 0.5;
-
-std::vector<LinearPrior> WithoutMeans(std::vector<LinearPrior> priors) {
-  for (LinearPrior& prior : priors) {
-    prior.mean = 0;
-    prior.positive = false;
-  }
-  return priors;
-}
-
-}  // namespace
-
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                      const LinearisedMisfit* known) {
   double fitted = 0, held_out = 0, fitted_noise = 0, held_out_noise = 0;
@@ -70,91 +51,6 @@ ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& v
   return errors;
 }
 
-namespace {
-
-// `misfit` with the residuals whitened as those of `correspondences`, which belong to other values
-// of the parameters. For recordings with markers.
-LinearisedMisfit ComparedAs(LinearisedMisfit misfit, const LinearisedMisfit& correspondences) {
-  for (size_t k = 0; k < misfit.parts.size(); ++k) {
-    misfit.parts[k].layout.deformation = correspondences.parts[k].layout.deformation;
-    misfit.parts[k].observed = correspondences.parts[k].observed;
-  }
-  return misfit;
-}
-
-// Replaces the columns of the adopted nuisances of a hypothesis, after those of the parameters.
-void SetNuisances(const AdoptedNuisances& adopted, const LinearisedMisfit& correspondences,
-                  FittedHypothesis* hypothesis) {
-  const Eigen::MatrixXd& nuisances = adopted.columns;
-  Eigen::MatrixXd& columns = hypothesis->misfit.jacobian;
-  columns.conservativeResize(Eigen::NoChange, hypothesis->parameters + nuisances.cols());
-  columns.rightCols(nuisances.cols()) = nuisances;
-  hypothesis->priors.resize(static_cast<size_t>(hypothesis->parameters));
-  hypothesis->priors.insert(hypothesis->priors.end(), adopted.priors.begin(), adopted.priors.end());
-  hypothesis->residual = hypothesis->misfit.residual;
-  if (nuisances.cols() == 0) return;
-  const LinearFit fit =
-      LinearGaussianModel(WhitenedRows(hypothesis->residual, correspondences, 0, false),
-                          WhitenedRows(nuisances, correspondences, 0, false), adopted.priors)
-          .FitAll(1);
-  hypothesis->residual += nuisances * fit.change;
-}
-
-// The model at `values`, with the residuals between the same points as in `correspondences`. Given
-// `near`, its Jacobian is used instead of a new one; given `known`, the misfit with Jacobian at
-// `values`, nothing is predicted.
-FittedHypothesis HypothesisAt(const CalibrationProblem& problem, const Eigen::VectorXd& values,
-                              const AdoptedNuisances& adopted,
-                              const LinearisedMisfit& correspondences,
-                              const FittedHypothesis* near = nullptr,
-                              const LinearisedMisfit* known = nullptr) {
-  FittedHypothesis hypothesis;
-  if (known != nullptr)
-    hypothesis.misfit = ComparedAs(*known, correspondences);
-  else
-    hypothesis.misfit = problem.Linearise(values, near == nullptr, {}, &correspondences,
-                                          near != nullptr ? &near->misfit : &correspondences);
-  if (!hypothesis.misfit.usable) return hypothesis;
-  hypothesis.priors = PriorsAbout(problem.parameters(), values);
-  hypothesis.parameters = static_cast<Eigen::Index>(hypothesis.priors.size());
-  if (near != nullptr) hypothesis.misfit.jacobian = near->misfit.jacobian;
-  SetNuisances(adopted, correspondences, &hypothesis);
-  return hypothesis;
-}
-
-}  // namespace
-
-HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
-                              bool fitted_only) {
-  const LinearisedMisfit& misfit = hypothesis.misfit;
-  const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
-  const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
-  const auto own = hypothesis.priors.begin() + hypothesis.parameters;
-  // The amounts of adopted nuisances are at their best; the parameters stay where they are.
-  const LinearFit adopted =
-      LinearGaussianModel(residual, columns.rightCols(columns.cols() - hypothesis.parameters),
-                          {own, hypothesis.priors.end()})
-          .FitAll(noise.variance);
-  double prior_cost = 0;
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
-    const double change = k < hypothesis.parameters ? 0 : adopted.change[k - hypothesis.parameters];
-    if (std::isfinite(prior.deviation))
-      prior_cost += std::pow((change - prior.mean) / prior.deviation, 2);
-  }
-  // With a residual of zero, the log evidence is the determinant term alone.
-  const LinearFit nothing = LinearGaussianModel(Eigen::VectorXd::Zero(residual.size()), columns,
-                                                WithoutMeans(hypothesis.priors))
-                                .FitAll(noise.variance);
-  HypothesisEvidence evidence;
-  evidence.misfit = adopted.misfit;
-  evidence.log_evidence =
-      nothing.log_evidence - 0.5 * (evidence.misfit / noise.variance + prior_cost);
-  return evidence;
-}
-
 RefitEvidence EvidenceOf(const EffectRefit& refit, const NoiseLevel& noise) {
   const HypothesisEvidence all = EvidenceOf(refit.hypothesis, noise);
   const double fitted = EvidenceOf(refit.at_fit, noise, /*fitted_only=*/true).log_evidence;
@@ -168,92 +64,6 @@ HypothesisSpace SpaceOf(const FittedHypothesis& hypothesis, const EffectRanking&
 }
 
 namespace {
-
-// A change of the parameters in the units of MovedBy, and the log evidence that it would gain.
-struct BestStep {
-  Eigen::VectorXd change;
-  double gain = 0;
-};
-
-// The best change within the bounds of the parameters, to first order.
-BestStep BestNear(const FittedHypothesis& hypothesis,
-                  const std::vector<CalibratedParameter>& parameters, const Eigen::VectorXd& values,
-                  const NoiseLevel& noise, bool fitted_only) {
-  const LinearisedMisfit& misfit = hypothesis.misfit;
-  const Eigen::MatrixXd columns =
-      WhitenedRows(misfit.jacobian, misfit, noise.correlation_time, fitted_only);
-  const Eigen::VectorXd residual =
-      WhitenedRows(misfit.residual, misfit, noise.correlation_time, fitted_only);
-  QuadraticCost model{0.5 * residual.squaredNorm() / noise.variance,
-                      columns.transpose() * residual / noise.variance,
-                      columns.transpose() * columns / noise.variance};
-  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd low = Eigen::VectorXd::Constant(columns.cols(), -kUnbounded), high = -low;
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    const LinearPrior& prior = hypothesis.priors[static_cast<size_t>(k)];
-    if (std::isfinite(prior.deviation)) {
-      const double precision = std::pow(prior.deviation, -2);
-      model.cost += 0.5 * precision * prior.mean * prior.mean;
-      model.gradient[k] -= precision * prior.mean;
-      model.information(k, k) += precision;
-    }
-    if (k >= hypothesis.parameters) continue;
-    const CalibratedParameter& parameter = parameters[static_cast<size_t>(k)];
-    const auto by = [&](double bound) {
-      return parameter.log_scale ? values[k] * std::log(bound / values[k]) : bound - values[k];
-    };
-    if (!parameter.log_scale || parameter.min > 0) low[k] = std::min(0.0, by(parameter.min));
-    high[k] = std::max(0.0, by(parameter.max));
-  }
-  // In units in which the information has a unit diagonal.
-  const Eigen::VectorXd unit = model.information.diagonal()
-                                   .cwiseMax(std::numeric_limits<double>::min())
-                                   .cwiseSqrt()
-                                   .cwiseInverse();
-  model.gradient = unit.cwiseProduct(model.gradient);
-  model.information = unit.asDiagonal() * model.information * unit.asDiagonal();
-  low = low.cwiseQuotient(unit);
-  high = high.cwiseQuotient(unit);
-  const Eigen::VectorXd step = StepWithin(model, low, high);
-  // The evidence has the nuisances at their best amounts already.
-  low.head(hypothesis.parameters).setZero();
-  high.head(hypothesis.parameters).setZero();
-  const Eigen::VectorXd of_nuisances = StepWithin(model, low, high);
-  return {unit.cwiseProduct(step), model.cost * (model.GainOf(step) - model.GainOf(of_nuisances))};
-}
-
-// A hypothesis, and the values of the problem's parameters there.
-struct Settled {
-  Eigen::VectorXd values;
-  FittedHypothesis hypothesis;
-};
-
-// The hypothesis at the best parameters for all frames or for those that were fitted, by
-// Gauss–Newton steps from `start`. The steps are small, so the Jacobian is kept.
-Settled Settle(const CalibrationProblem& problem, Settled start, const AdoptedNuisances& adopted,
-               const LinearisedMisfit& correspondences, const NoiseLevel& noise, bool fitted_only) {
-  Settled settled = std::move(start);
-  double evidence = EvidenceOf(settled.hypothesis, noise, fitted_only).log_evidence;
-  double share = 1;  // of the step
-  for (int step = 0; step < kSettlingSteps; ++step) {
-    const BestStep best =
-        BestNear(settled.hypothesis, problem.parameters(), settled.values, noise, fitted_only);
-    if (share * best.gain < kSettledGain) break;
-    const Eigen::VectorXd moved =
-        MovedBy(problem.parameters(), settled.values, share * best.change);
-    FittedHypothesis next =
-        HypothesisAt(problem, moved, adopted, correspondences, &settled.hypothesis);
-    const double gain =
-        next.misfit.usable ? EvidenceOf(next, noise, fitted_only).log_evidence - evidence : -1.0;
-    if (!(gain > 0)) {
-      share *= kStepReduction;
-      continue;
-    }
-    evidence += gain;
-    settled = {moved, std::move(next)};
-  }
-  return settled;
-}
 
 // Sets what a refit says of the fitted frames and of all frames, from a hypothesis near both.
 void SettleRefit(const CalibrationProblem& problem, const AdoptedNuisances& adopted,

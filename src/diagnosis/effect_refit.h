@@ -14,6 +14,7 @@
 #include "calibration/calibration_problem.h"
 #include "diagnosis/effect_ranking.h"
 #include "diagnosis/extended_problem.h"
+#include "diagnosis/fitted_hypothesis.h"
 #include "record/model_errors.h"
 
 namespace lacuna {
@@ -22,25 +23,6 @@ namespace lacuna {
 // misfit there, which is then not predicted again.
 ModelErrors ErrorsOf(const CalibrationProblem& problem, const Eigen::VectorXd& values,
                      const LinearisedMisfit* known = nullptr);
-
-// A fitted model, linearised about its parameters.
-struct FittedHypothesis {
-  LinearisedMisfit misfit;          // columns: the problem's parameters, then the adopted nuisances
-  std::vector<LinearPrior> priors;  // of the columns
-  Eigen::Index parameters = 0;      // number of columns that are the problem's parameters
-  Eigen::VectorXd residual;         // m, with the best amounts of the adopted nuisances
-};
-
-// The log evidence of all frames of the fitted recordings, up to a constant that all hypotheses
-// share, at the parameters as they are. (The evidence of linear_evidence.h assumes their best
-// values to first order, and would reward a fit that has not converged.)
-struct HypothesisEvidence {
-  double log_evidence = 0;
-  double misfit = 0;  // ‖whitened residual‖², adopted nuisances at their best amounts
-};
-// `fitted_only`: the evidence of the frames that were fitted.
-HypothesisEvidence EvidenceOf(const FittedHypothesis& hypothesis, const NoiseLevel& noise,
-                              bool fitted_only = false);
 
 struct EffectRefit {
   std::string message;  // why the refit is not usable; empty: it is usable

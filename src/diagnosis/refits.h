@@ -85,10 +85,10 @@ std::vector<size_t> MostPromising(const std::vector<RankedEffect>& effects, int 
 std::vector<size_t> LookAlikesOfBest(const std::vector<RankedEffect>& effects);
 
 // Refits the effects with these indices that have not been refitted, up to the limit, beside the
-// columns of RefittedRanking::along. Effects that
-// another refit has clearly beaten (RefitThresholds::beaten_by) are left out, but not those of the
-// best effect's family, unless their score comes from a simulation at a finite size: a derivative
-// may give no evidence for the member that is really missing.
+// columns of RefittedRanking::along. Effects that another refit has clearly beaten
+// (RefitThresholds::beaten_by) are left out, but not those of the best effect's family, unless
+// their score comes from a simulation at a finite size: a derivative may give no evidence for the
+// member that is really missing.
 void RefitAll(const RefitContext& context, const std::vector<size_t>& effects,
               RefittedRanking* ranked);
 

@@ -13,6 +13,7 @@
 #include "core/changed_yaml.h"
 #include "core/error.h"
 #include "core/file_name.h"
+#include "core/quoted_text.h"
 #include "effects/effect_text.h"
 #include "geometry/mesh_io.h"
 #include "plan/planned_recording.h"
@@ -45,7 +46,7 @@ std::string FormatHold(const Hold& hold) {
 
 std::string FormatEntry(const Entry& entry) {
   const PredictedRecording& item = entry.item;
-  std::string text = fmt::format("{{name: \"{}\", recording: {}", entry.name, entry.folder);
+  std::string text = fmt::format("{{name: {}, recording: {}", QuotedText(entry.name), entry.folder);
   if (item.clock_deviation > 0)
     text += fmt::format(", clock_deviation: {} s", item.clock_deviation);
   if (item.shift_deviation > 0)

@@ -229,8 +229,7 @@ std::optional<std::string> PartlyExplainedBy(const DiagnosisRecord& diagnosis) {
   if (remains == nullptr || !(remains->share > kMost)) return std::nullopt;
   double probability = 0;
   for (const HypothesisProbability& one : diagnosis.decision.probabilities)
-    if (std::count(one.names.begin(), one.names.end(), remains->effect) > 0)
-      probability += one.probability;
+    if (one.Contains(remains->effect)) probability += one.probability;
   if (probability < kStatedProbability) return std::nullopt;
   return remains->effect;
 }

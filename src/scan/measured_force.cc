@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/quoted_text.h"
 #include "scan/time_series.h"
 
 namespace lacuna {
@@ -47,8 +48,8 @@ std::string WriteForce(const std::filesystem::path& folder, const MeasuredForce&
   WriteTimeSeries(folder / name, force.times, force.forces);
   const std::string region =
       force.region ? fmt::format(", region: {}", FormatRegion(*force.region)) : "";
-  return fmt::format("{{name: \"{}\", file: {}, time: time, x: x, y: y, z: z, unit: N{}}}",
-                     force.name, name, region);
+  return fmt::format("{{name: {}, file: {}, time: time, x: x, y: y, z: z, unit: N{}}}",
+                     QuotedText(force.name), name, region);
 }
 
 }  // namespace lacuna

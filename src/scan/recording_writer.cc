@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/atomic_file.h"
+#include "core/quoted_text.h"
 #include "scan/marker_frames.h"
 #include "scan/yaml_format.h"
 
@@ -59,7 +60,7 @@ void WriteMarkerRecording(const std::filesystem::path& folder, const MarkerRecor
           .lexically_normal()
           .lexically_proximate(std::filesystem::absolute(folder).lexically_normal());
   std::string yaml = AsComment(recording.comment);
-  yaml += fmt::format("schema_version: 1\nname: \"{}\"\nlength_unit: m\n", recording.name);
+  yaml += fmt::format("schema_version: 1\nname: {}\nlength_unit: m\n", QuotedText(recording.name));
   yaml += WriteDensityAndGravity(recording.object);
   yaml += "frames:\n" + WriteMarkerFrames(folder, recording.times, recording.markers);
   yaml += WriteConstraints(folder, recording.object);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/npy.h"
+#include "core/quoted_text.h"
 #include "scan/delimited_table.h"
 #include "scan/yaml_format.h"
 
@@ -194,7 +195,8 @@ std::string FormatRegion(const Region& region) {
       return fmt::format("nodes: [{}]", fmt::join(r.nodes, ", "));
     }
   };
-  return fmt::format("{{name: \"{}\", {}}}", region.name, std::visit(Format{}, region.shape));
+  return fmt::format("{{name: {}, {}}}", QuotedText(region.name),
+                     std::visit(Format{}, region.shape));
 }
 
 }  // namespace lacuna

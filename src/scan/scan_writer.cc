@@ -6,6 +6,7 @@
 
 #include "core/atomic_file.h"
 #include "core/npy.h"
+#include "core/quoted_text.h"
 #include "scan/recording_writer.h"
 
 namespace lacuna {
@@ -39,7 +40,7 @@ void WriteScan(const std::filesystem::path& folder, const std::string& name,
   MakeFolder(folder / "frames");
   MakeFolder(folder / "truth");
 
-  std::string yaml = fmt::format("schema_version: 1\nname: \"{}\"\nlength_unit: m\n", name);
+  std::string yaml = fmt::format("schema_version: 1\nname: {}\nlength_unit: m\n", QuotedText(name));
   yaml += WriteDensityAndGravity(object);
   yaml += "frames:\n" + write_frames(folder, scan) + FormatTimes(scan.times);
   yaml += WriteConstraints(folder, object);

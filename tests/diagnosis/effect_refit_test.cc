@@ -277,7 +277,21 @@ class OfACoarseBar : public ::testing::Test {
   Progress progress_{Silent()};
 };
 using EffectRankingOfACoarseBar = OfACoarseBar;
-using EffectRefitOfACoarseBar = OfACoarseBar;
+
+class EffectRefitOfACoarseBar : public OfACoarseBar {
+ protected:
+  void SetUp() override {
+    fit_ = FitFromStart(*problem_, &progress_);
+    ASSERT_FALSE(fit_.estimates.empty()) << fit_.message;
+    misfit_ = problem_->Linearise(fit_.parameters, true);
+    ASSERT_TRUE(misfit_.usable) << misfit_.message;
+    none_ = {Eigen::MatrixXd(misfit_.residual.size(), 0), {}, 0};
+  }
+
+  Calibration fit_;
+  LinearisedMisfit misfit_;
+  AdoptedNuisances none_;
+};
 
 // A bar that is softer near one end may look like one that is stiffer near the other, so a refit
 // starts from both.
@@ -306,29 +320,23 @@ TEST_F(EffectRankingOfACoarseBar, KeepsThePlacesWithMoreEvidenceThanTheirNeighbo
 // First order may predict a size at which the motion is entirely different, and from which no fit
 // would return.
 TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
-  const Calibration fit = FitFromStart(*problem_, &progress_);
-  ASSERT_FALSE(fit.estimates.empty()) << fit.message;
-  const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
-  ASSERT_TRUE(misfit.usable) << misfit.message;
-
   ScoredEffect bed;
   bed.candidate = {"elastic_support", "", MakeEffect("elastic_support", {{"modulus", 0}}), {0}};
   bed.score.size = Eigen::VectorXd::Constant(1, 3e6);  // Pa/m: the bar cannot move
-  bed.expected_values = fit.parameters;
-  BaselineModel baseline{*problem_, fit.parameters, misfit, &progress_};
-  const AdoptedNuisances none{Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0};
-  const EffectRefit refit = Refit(baseline, &bed, none, false);
+  bed.expected_values = fit_.parameters;
+  BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
+  const EffectRefit refit = Refit(baseline, &bed, none_, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   // A refit ends when a step gains less than one standard deviation.
-  EXPECT_LE(refit.calibration.rms, 1.05 * fit.rms);
-  EXPECT_LT(refit.calibration.start_rms, 3 * fit.rms);
+  EXPECT_LE(refit.calibration.rms, 1.05 * fit_.rms);
+  EXPECT_LT(refit.calibration.start_rms, 3 * fit_.rms);
 
   // An unknown error of u = 2 standard deviations of the noise makes the interval √(1 + u²) times
   // as wide, or less where the residual that is left has widened it already. The size must be
   // positive.
   baseline.model_error = 2;
   const ParameterEstimate size = refit.sizes.front();
-  const ParameterEstimate wider = Refit(baseline, &bed, none, false).sizes.front();
+  const ParameterEstimate wider = Refit(baseline, &bed, none_, false).sizes.front();
   const double factor = std::hypot(1, 2 / std::max(1.0, refit.calibration.rms));
   EXPECT_EQ(wider.value, size.value);
   EXPECT_NEAR(wider.high - wider.value, factor * (size.high - size.value), 1e-9 * wider.high);
@@ -337,32 +345,29 @@ TEST_F(EffectRefitOfACoarseBar, IsNotWorseThanTheModelWithoutTheEffect) {
 // Columns that were computed along another motion take their part of the residual, and the
 // parameters follow. The same columns change nothing.
 TEST_F(EffectRefitOfACoarseBar, IsSettledBesideOtherNuisances) {
-  const Calibration fit = FitFromStart(*problem_, &progress_);
-  ASSERT_FALSE(fit.estimates.empty()) << fit.message;
-  const LinearisedMisfit misfit = problem_->Linearise(fit.parameters, true);
-  ASSERT_TRUE(misfit.usable) << misfit.message;
   ScoredEffect drag;
   drag.candidate = {"drag", "", MakeEffect("drag", {{"coefficient", 1}}), {0}};
   drag.score.size = Eigen::VectorXd::Constant(1, 1);
-  drag.expected_values = fit.parameters;
-  const BaselineModel baseline{*problem_, fit.parameters, misfit, &progress_};
-  const AdoptedNuisances none{Eigen::MatrixXd(misfit.residual.size(), 0), {}, 0};
-  const EffectRefit refit = Refit(baseline, &drag, none, false);
+  drag.expected_values = fit_.parameters;
+  const BaselineModel baseline{*problem_, fit_.parameters, misfit_, &progress_};
+  const EffectRefit refit = Refit(baseline, &drag, none_, false);
   ASSERT_TRUE(refit.message.empty()) << refit.message;
   const NoiseLevel white{0, 1};
   const RefitEvidence before = EvidenceOf(refit, white);
 
-  const RefitEvidence same = EvidenceOf(BesideNuisances(baseline, drag, none, refit), white);
+  const RefitEvidence same = EvidenceOf(BesideNuisances(baseline, drag, none_, refit), white);
   EXPECT_NEAR(same.all, before.all, 0.5);
   EXPECT_NEAR(same.held_out, before.held_out, 0.5);
 
-  // A column that explains the residual as it is, and what follows from a larger parameter.
-  const Eigen::VectorXd pushed = 0.01 * fit.parameters[0] * refit.hypothesis.misfit.jacobian.col(0);
+  // A column that explains the residual as it is.
   const AdoptedNuisances errors{refit.hypothesis.misfit.residual, {{-1, 0.01, false}}, 1};
   const EffectRefit settled = BesideNuisances(baseline, drag, errors, refit);
   EXPECT_LT(EvidenceOf(settled, white).misfit, 0.01 * before.misfit);
   EXPECT_GT(EvidenceOf(settled, white).all, before.all + 0.45 * before.misfit);
   EXPECT_EQ(settled.hypothesis.misfit.jacobian.cols(), settled.hypothesis.parameters + 1);
+  // A column that pushes the model by one per cent of a parameter, which returns.
+  const Eigen::VectorXd pushed =
+      0.01 * fit_.parameters[0] * refit.hypothesis.misfit.jacobian.col(0);
   const AdoptedNuisances shifted{pushed, {{1, 1e-3, false}}, 1};
   const EffectRefit moved = BesideNuisances(baseline, drag, shifted, refit);
   EXPECT_NEAR(EvidenceOf(moved, white).misfit, before.misfit, 0.02 * before.misfit);
