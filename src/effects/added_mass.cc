@@ -19,6 +19,8 @@ std::shared_ptr<const Eigen::VectorXd> AddedMass::Mass(const Body& body) const {
   return mass_.Of(body, [this](const Body& at_rest) { return MassPerUnit(at_rest); });
 }
 
+double AddedMass::Size(const Body&) const { return parameters_[0]; }
+
 Eigen::VectorXd AddedMass::MassPerUnitBy(const Body&, int, const Eigen::VectorXd&) const {
   LOG(FATAL) << "all other parameters of this effect are settings";
 }
@@ -30,14 +32,14 @@ void AddedMass::AddScaledForce(const Kinematics& at, double size, const Eigen::V
 }
 
 void AddedMass::AddForce(const Kinematics& at, Eigen::VectorXd* force) const {
-  AddScaledForce(at, Size(), *Mass(at.body), force);
+  AddScaledForce(at, Size(at.body), *Mass(at.body), force);
 }
 
 void AddedMass::AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
                             BlockMatrix* tangent) const {
   const auto mass = Mass(at.body);
   for (int i = 0; i < at.body.NodeCount(); ++i) {
-    const double added = Size() * (*mass)[i];
+    const double added = Size(at.body) * (*mass)[i];
     tangent->Block(tangent->pattern().diagonal[i]).diagonal().array() -=
         weights.acceleration * (convexify ? std::max(added, 0.0) : added);
   }
@@ -49,7 +51,7 @@ void AddedMass::AddParameterDerivative(const Kinematics& at, int parameter,
   if (parameter == 0) {
     AddScaledForce(at, 1, *mass, derivative);
   } else {
-    AddScaledForce(at, Size(), MassPerUnitBy(at.body, parameter, *mass), derivative);
+    AddScaledForce(at, Size(at.body), MassPerUnitBy(at.body, parameter, *mass), derivative);
   }
 }
 
@@ -58,7 +60,7 @@ std::optional<double> AddedMass::Energy(const Kinematics& at) const {
   const auto mass = Mass(at.body);
   double energy = 0;
   for (int i = 0; i < at.body.NodeCount(); ++i) {
-    energy -= Size() * (*mass)[i] *
+    energy -= Size(at.body) * (*mass)[i] *
               Gravity().dot(at.position.segment<3>(3 * i) - at.body.mesh.nodes.col(i));
   }
   return energy;

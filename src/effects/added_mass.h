@@ -44,11 +44,13 @@ class AddedMass : public Effect {
   virtual Eigen::VectorXd MassPerUnitBy(const Body& body, int parameter,
                                         const Eigen::VectorXd& mass) const;
 
+  // The size θ on a body: the first parameter, unless its zero depends on the body.
+  virtual double Size(const Body& body) const;
+
   // In the order of the card: θ first, the three components of g last. SI.
   Eigen::VectorXd parameters_;
 
  private:
-  double Size() const { return parameters_[0]; }
   Eigen::Vector3d Gravity() const { return parameters_.tail<3>(); }
   std::shared_ptr<const Eigen::VectorXd> Mass(const Body& body) const;
   void AddScaledForce(const Kinematics& at, double size, const Eigen::VectorXd& mass,

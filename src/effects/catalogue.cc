@@ -22,6 +22,7 @@ CatalogueEntry ViscoelasticBranch();
 CatalogueEntry ElastoplasticBranch();
 CatalogueEntry Softening();
 CatalogueEntry Swelling();
+CatalogueEntry SwellingField();
 CatalogueEntry ActiveContraction();
 CatalogueEntry Gravity();
 CatalogueEntry AttachedMass();
@@ -52,6 +53,7 @@ const std::vector<CatalogueEntry>& Catalogue() {
       ElastoplasticBranch(),
       Softening(),
       Swelling(),
+      SwellingField(),
       ActiveContraction(),
       // Loads, inertia, damping and supports.
       Gravity(),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "effects/catalogue.h"
+#include "effects/contact_points.h"
 #include "effects/rest_quantity.h"
 #include "effects/vector_parameters.h"
 #include "fem/cloneable_effect.h"
@@ -41,12 +42,12 @@ Penalty PenaltyAt(double depth, double smoothing) {
 // pressure per depth, so the law is independent of the mesh. The penetration under a pressure P is
 // P/k + s/2 (√(2 s P/k) while that is below s); a suitable k is about 10 E / (element size).
 //
-// Quadrature is nodal, over the areas A_i of the boundary at rest: there is then a potential,
-// E = Σ A_i ∫ p, and the tangent is block-diagonal. The consistent area of a corner of a quadratic
-// face is zero and could carry no penalty. Each such face therefore counts as the four flat
-// triangles of its nodes, a third of whose area belongs to each of their corners, which is always
-// positive. A node on a sharp edge also carries a share of the other face, so that it is stiffer
-// than the law; this error decreases as the mesh is refined.
+// The pressure acts at points i of the boundary with areas A_i at rest (contact_points.h): the
+// nodes of linear elements, and points within the faces of quadratic ones, from where the shape
+// functions distribute it to the nodes. There is then a potential, E = Σ A_i ∫ p. A node on a sharp
+// edge also carries a share of the other face, so that it is stiffer than the law; this error
+// decreases as the mesh is refined. A corner of a quadratic element may be below the plane by a
+// part of the element size before the first point of its faces is.
 //
 // Coulomb friction (optional), in the slip velocity u = (I − n nᵀ) v, regularised by a velocity w:
 //   traction = −μ p u/√(|u|² + w²),
@@ -83,8 +84,9 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
 
   void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
     ForEachContact(at, [&](const Contact& contact) {
-      force->segment<3>(3 * contact.node) +=
-          contact.area * Stiffness() * contact.penalty.pressure * Direction(contact);
+      Distribute(contact.point,
+                 contact.point.area * Stiffness() * contact.penalty.pressure * Direction(contact),
+                 force);
     });
   }
 
@@ -92,13 +94,13 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                    BlockMatrix* tangent) const override {
     const Eigen::Matrix3d tangential = Eigen::Matrix3d::Identity() - normal_ * normal_.transpose();
     ForEachContact(at, [&](const Contact& contact) {
-      const double scale = contact.area * Stiffness();
+      const double scale = contact.point.area * Stiffness();
       const Eigen::Vector3d direction = convexify ? normal_ : Direction(contact);
       Eigen::Matrix3d block = -0.5 * weights.position * scale * contact.penalty.slope *
                               (direction * normal_.transpose() + normal_ * direction.transpose());
       block -= weights.velocity * scale * contact.penalty.pressure * Friction() *
                SlipDerivative(contact, tangential);
-      tangent->Block(tangent->pattern().diagonal[contact.node]) += block;
+      AddBlocks(contact.point, block, tangent);
     });
   }
 
@@ -107,9 +109,10 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
     if (Friction() == 0 || weights.position == 0) return false;
     ForEachContact(at, [&](const Contact& contact) {
       const Eigen::Vector3d direction = Direction(contact);
-      tangent->Block(tangent->pattern().diagonal[contact.node]) -=
-          0.5 * weights.position * contact.area * Stiffness() * contact.penalty.slope *
-          (direction * normal_.transpose() - normal_ * direction.transpose());
+      AddBlocks(contact.point,
+                -0.5 * weights.position * contact.point.area * Stiffness() * contact.penalty.slope *
+                    (direction * normal_.transpose() - normal_ * direction.transpose()),
+                tangent);
     });
     return true;
   }
@@ -118,8 +121,8 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
                               Eigen::VectorXd* derivative) const override {
     CHECK(parameter >= 0 && parameter < kSlip);
     ForEachContact(at, [&](const Contact& contact) {
-      derivative->segment<3>(3 * contact.node) +=
-          contact.area * TractionDerivative(at, contact, parameter);
+      Distribute(contact.point, contact.point.area * TractionDerivative(at, contact, parameter),
+                 derivative);
     });
   }
 
@@ -127,17 +130,16 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
     if (Friction() != 0) return std::nullopt;
     double energy = 0;
     ForEachContact(at, [&](const Contact& contact) {
-      energy += contact.area * Stiffness() * contact.penalty.potential;
+      energy += contact.point.area * Stiffness() * contact.penalty.potential;
     });
     return energy;
   }
 
  private:
-  // A boundary node below the plane.
+  // A point of the boundary below the plane.
   struct Contact {
-    int node;
-    double area;           // m²
-    Penalty penalty;       // penalty at the depth of the node
+    const ContactPoint& point;
+    Penalty penalty;       // penalty at the depth of the point
     Eigen::Vector3d slip;  // u, m/s
     double slip_norm;      // √(|u|² + w²), m/s
   };
@@ -237,15 +239,33 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
 
   template <typename Visit>
   void ForEachContact(const Kinematics& at, const Visit& visit) const {
-    const auto areas = areas_.Of(at.body, NodeBoundaryAreas);
-    for (const int node : at.body.boundary.node) {
-      const double depth = parameters_[kOffset] - normal_.dot(at.position.segment<3>(3 * node));
+    const auto points = points_.Of(at.body, ContactPoints);
+    for (const ContactPoint& point : *points) {
+      const double depth = parameters_[kOffset] - normal_.dot(point.At(at.position));
       if (depth <= 0) continue;
-      const Eigen::Vector3d velocity = at.velocity.segment<3>(3 * node);
+      const Eigen::Vector3d velocity = point.At(at.velocity);
       const Eigen::Vector3d slip = velocity - normal_.dot(velocity) * normal_;
-      visit(Contact{node, (*areas)[node], PenaltyAt(depth, parameters_[kSmoothing]), slip,
+      visit(Contact{point, PenaltyAt(depth, parameters_[kSmoothing]), slip,
                     std::hypot(slip.norm(), parameters_[kSlip])});
     }
+  }
+
+  // Adds a force at the point to those of its nodes.
+  static void Distribute(const ContactPoint& point, const Eigen::Vector3d& at_point,
+                         Eigen::VectorXd* force) {
+    for (int a = 0; a < point.count; ++a)
+      force->segment<3>(3 * point.node[static_cast<size_t>(a)]) += point.weight[a] * at_point;
+  }
+
+  // Adds the derivative of a force at the point by the place of the point.
+  static void AddBlocks(const ContactPoint& point, const Eigen::Matrix3d& at_point,
+                        BlockMatrix* tangent) {
+    for (int a = 0; a < point.count; ++a)
+      for (int b = 0; b < point.count; ++b) {
+        const int block = tangent->pattern().Find(point.node[static_cast<size_t>(a)],
+                                                  point.node[static_cast<size_t>(b)]);
+        tangent->Block(block) += point.weight[a] * point.weight[b] * at_point;
+      }
   }
 
   // The traction divided by the pressure.
@@ -278,17 +298,17 @@ class PlaneContactEffect final : public CloneableEffect<PlaneContactEffect> {
     const Eigen::Vector3d turn =
         (Eigen::Vector3d::Unit(parameter - kNormal) - normal_[parameter - kNormal] * normal_) /
         parameters_.segment<3>(kNormal).norm();
-    const Eigen::Vector3d position = at.position.segment<3>(3 * contact.node);
-    const Eigen::Vector3d velocity = at.velocity.segment<3>(3 * contact.node);
+    const Eigen::Vector3d position = contact.point.At(at.position);
+    const Eigen::Vector3d velocity = contact.point.At(at.velocity);
     const Eigen::Vector3d slip_change =
         -turn * normal_.dot(velocity) - normal_ * turn.dot(velocity);
     return -slope * turn.dot(position) * Direction(contact) +
            pressure * (turn - Friction() * SlipDerivative(contact, slip_change));
   }
 
-  Eigen::VectorXd parameters_;           // in the order of the card
-  Eigen::Vector3d normal_;               // unit length
-  RestQuantity<Eigen::VectorXd> areas_;  // n, m²
+  Eigen::VectorXd parameters_;  // in the order of the card
+  Eigen::Vector3d normal_;      // unit length
+  RestQuantity<std::vector<ContactPoint>> points_;
 };
 
 }  // namespace

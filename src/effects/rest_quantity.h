@@ -14,7 +14,8 @@ namespace lacuna {
 // Keeps one value for each mesh in use; may be called from several threads. Copies share the
 // values, so that an effect with other parameter values need not derive them again. `T` may depend
 // on the mesh at rest and on the effect's settings (call Forget when they change), but not on the
-// density, which another body of the same mesh may have different.
+// density, which another body of the same mesh may have different. Not for elasticity laws: free
+// strains call them with a body of the same mesh that has other weights and shape gradients.
 template <typename T>
 class RestQuantity {
  public:

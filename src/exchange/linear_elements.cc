@@ -1,6 +1,7 @@
 #include <vector>
 
 #include "exchange/scene_writers.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {
@@ -21,13 +22,12 @@ std::vector<int> Keep(const std::vector<int>& kept, NamedNodes* part) {
 // Gives half of the share of each midpoint to each end of its edge: displacements that are linear
 // along the edge do the same work.
 void RestrictLoad(const PortableModel& model, const std::vector<int>& kept, PortableLoad* load) {
-  constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(model.mesh.NodeCount());
   shares(load->part.nodes) = load->shares;
   for (const auto tet : model.mesh.tets.colwise())
     for (int k = 0; k < 6; ++k) {
       double& middle = shares[tet[4 + k]];  // 0 after its first element
-      for (const int end : kEdges[k]) shares[tet[end]] += middle / 2;
+      for (const int end : kTetEdges[static_cast<size_t>(k)]) shares[tet[end]] += middle / 2;
       middle = 0;
     }
   load->part.nodes.clear();

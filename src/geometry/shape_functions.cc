@@ -1,22 +1,14 @@
 #include "geometry/shape_functions.h"
 
-#include <array>
 #include <cmath>
 
 namespace lacuna {
-namespace {
-
-constexpr std::array<std::array<int, 2>, 6> kEdges{
-    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
-
-}  // namespace
-
 Eigen::VectorXd ShapeValues(int order, const Eigen::Vector4d& barycentric) {
   if (order == 1) return barycentric;
   Eigen::VectorXd values(10);
   for (int a = 0; a < 4; ++a) values[a] = barycentric[a] * (2 * barycentric[a] - 1);
   for (int k = 0; k < 6; ++k) {
-    values[4 + k] = 4 * barycentric[kEdges[k][0]] * barycentric[kEdges[k][1]];
+    values[4 + k] = 4 * barycentric[kTetEdges[k][0]] * barycentric[kTetEdges[k][1]];
   }
   return values;
 }
@@ -26,7 +18,7 @@ Eigen::MatrixX4d ShapeDerivatives(int order, const Eigen::Vector4d& barycentric)
   Eigen::MatrixX4d derivatives = Eigen::MatrixX4d::Zero(10, 4);
   for (int a = 0; a < 4; ++a) derivatives(a, a) = 4 * barycentric[a] - 1;
   for (int k = 0; k < 6; ++k) {
-    const auto [a, b] = kEdges[k];
+    const auto [a, b] = kTetEdges[k];
     derivatives(4 + k, a) = 4 * barycentric[b];
     derivatives(4 + k, b) = 4 * barycentric[a];
   }
@@ -38,7 +30,7 @@ Eigen::Matrix4Xd NodeCoordinates(int order) {
   Eigen::Matrix4Xd coordinates = Eigen::Matrix4Xd::Zero(4, 10);
   coordinates.leftCols<4>().setIdentity();
   for (int k = 0; k < 6; ++k)
-    for (const int corner : kEdges[k]) coordinates(corner, 4 + k) = 0.5;
+    for (const int corner : kTetEdges[k]) coordinates(corner, 4 + k) = 0.5;
   return coordinates;
 }
 

@@ -3,8 +3,14 @@
 #define LACUNA_GEOMETRY_SHAPE_FUNCTIONS_H_
 
 #include <Eigen/Core>
+#include <array>
 
 namespace lacuna {
+
+// The corners at the ends of the six edges of a tetrahedron. Node 4 + k of a quadratic one is the
+// midpoint of edge k.
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
+    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
 // The shape functions N_a(ξ) of the 4 nodes (order 1) or 10 nodes (order 2) at the barycentric
 // coordinates ξ, four numbers with sum 1, in the node order of TetMesh:

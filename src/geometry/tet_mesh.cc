@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/shape_functions.h"
+
 namespace lacuna {
 namespace {
-
-constexpr std::array<std::array<int, 2>, 6> kEdges{
-    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
 // The faces opposite corners 0..3, counter-clockwise from outside: three corners, then the
 // midpoints of their edges (0,1) (1,2) (2,0).
@@ -38,7 +37,7 @@ std::vector<EdgePlace> SortedEdgePlaces(const Eigen::MatrixXi& tets) {
   std::vector<EdgePlace> places;
   places.reserve(6 * tets.cols());
   for (Eigen::Index e = 0; e < tets.cols(); ++e) {
-    for (const auto& [i, j] : kEdges) {
+    for (const auto& [i, j] : kTetEdges) {
       const auto [low, high] = std::minmax(tets(i, e), tets(j, e));
       const uint64_t edge = static_cast<uint64_t>(low) << 32 | static_cast<uint32_t>(high);
       places.push_back({edge, static_cast<int64_t>(places.size())});
@@ -110,7 +109,7 @@ TetMesh ToQuadratic(const TetMesh& linear) {
   for (size_t place = 0; place < first_place.size(); ++place) {
     const Eigen::Index e = place / 6, edge = place % 6;
     if (first_place[place] == static_cast<int64_t>(place)) {
-      const auto& [i, j] = kEdges[edge];
+      const auto& [i, j] = kTetEdges[edge];
       quadratic.tets(4 + edge, e) = static_cast<int>(linear.NodeCount() + midpoints.size());
       midpoints.push_back(
           0.5 * (linear.nodes.col(linear.tets(i, e)) + linear.nodes.col(linear.tets(j, e))));

@@ -6,14 +6,14 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/shape_functions.h"
+
 namespace lacuna {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::array<std::array<int, 2>, 6> kEdges{
-    {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
 
 struct Shape {
   double volume;
@@ -26,7 +26,7 @@ struct Shape {
 // |u²(v×w) + v²(w×u) + w²(u×v)| / 2|D| and the inradius |D| / Σ|face normals|.
 Shape Measure(const std::array<Vector3d, 4>& corner) {
   Shape shape{0, kInfinity, 0, 0, kInfinity, kInfinity, std::numbers::pi, 0};
-  for (const auto& [i, j] : kEdges) {
+  for (const auto& [i, j] : kTetEdges) {
     const double length = (corner[j] - corner[i]).norm();
     shape.min_edge = std::min(shape.min_edge, length);
     shape.max_edge = std::max(shape.max_edge, length);
@@ -47,7 +47,7 @@ Shape Measure(const std::array<Vector3d, 4>& corner) {
     shape.radius_edge_ratio = circumcentre.norm() / (2 * size) / shape.min_edge;
     shape.aspect_ratio = shape.max_edge * surface / size / (2 * std::sqrt(6.0));
   }
-  for (const auto& [i, j] : kEdges) {
+  for (const auto& [i, j] : kTetEdges) {
     const double angle = std::atan2(normal[i].cross(normal[j]).norm(), -normal[i].dot(normal[j]));
     shape.min_dihedral = std::min(shape.min_dihedral, angle);
     shape.max_dihedral = std::max(shape.max_dihedral, angle);

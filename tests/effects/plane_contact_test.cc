@@ -6,6 +6,9 @@
 #include <cmath>
 
 #include "effects/catalogue.h"
+#include "effects/contact_points.h"
+#include "fem/nodal_recovery.h"
+#include "fem/prescribed_force.h"
 #include "fem/simulate.h"
 #include "support/box_mesh.h"
 #include "support/check_effect.h"
@@ -53,24 +56,79 @@ TEST(PlaneContact, HasAnEnergyWithoutFrictionOnly) {
 
 TEST(PlaneContact, PushesByDepthAndAreaWithFrictionAgainstTheSlip) {
   // A block of 30 × 20 mm stands 2 mm deep: p = 1 MPa/m · (2 mm − s/2) = 1.5 kPa for s = 1 mm.
-  // Only the nodes of the lower face are below the plane. Their area is that of the face, 600 mm²,
-  // and half of the lowest row of triangles of the sides, which is 10 mm high for linear and 5 mm
-  // for quadratic elements. At a slip of 4 mm/s and w = 3 mm/s friction reaches 4/5 of μ p.
+  // The area below the plane is that of the lower face, 600 mm², and for linear elements, whose
+  // contact is evaluated at the nodes, half of the lowest row of triangles of the sides, which is
+  // 40 mm high. The lowest points in the sides of quadratic elements are at 9 % of that height,
+  // above the plane. At a slip of 4 mm/s and w = 3 mm/s friction reaches 4/5 of μ p.
   const auto contact = MakeEffect("plane_contact", {{"stiffness", 1e6},
                                                     {"offset", 0.05},
                                                     {"friction", 0.5},
                                                     {"slip_velocity", 0.003},
                                                     {"smoothing", 1e-3}});
   for (const int order : {1, 2}) {
-    const Body body = MakeBody(BoxMesh({0, 0, 0.048}, {0.03, 0.02, 0.088}, {3, 2, 4}, order), 1000);
+    const Body body = MakeBody(BoxMesh({0, 0, 0.048}, {0.03, 0.02, 0.088}, {3, 2, 1}, order), 1000);
     const Eigen::VectorXd velocity = Eigen::Vector3d(0, 0.004, 0.7).replicate(body.NodeCount(), 1);
     const Eigen::Vector3d total =
         Total(ForceAt(*contact, body, body.mesh.nodes.reshaped(), velocity));
-    const double area = 600e-6 + 0.5 * 0.1 * (0.01 / order);
+    const double area = 600e-6 + (order == 1 ? 0.5 * 0.1 * 0.04 : 0);
     EXPECT_NEAR(total.z(), 1500 * area, 1e-12);
     EXPECT_NEAR(total.y(), -0.5 * 0.8 * 1500 * area, 1e-12);
     EXPECT_NEAR(total.x(), 0, 1e-12);
   }
+}
+
+TEST(ContactPoints, GiveTheConsistentForcesOfAUniformPressure) {
+  const Body body = MakeBody(BoxMesh({0, 0, 0}, {0.03, 0.02, 0.01}, {3, 2, 1}, 2), 1000);
+  const Eigen::VectorXi all = NodesWhere(body.mesh, [](const Eigen::Vector3d&) { return true; });
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(body.NodeCount());
+  double area = 0;
+  for (const ContactPoint& point : ContactPoints(body)) {
+    area += point.area;
+    EXPECT_NEAR(point.weight.sum(), 1, 1e-12);
+    for (int k = 0; k < point.count; ++k)
+      share[point.node[static_cast<size_t>(k)]] += point.area * point.weight[k];
+  }
+  EXPECT_NEAR(area, 22e-4, 1e-15);
+  // BoundaryShares has the integrals of the shape functions in closed form.
+  EXPECT_LT((share / area - BoundaryShares(body, all)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+// The patch test of contact (R. L. Taylor & P. Papadopoulos, On a patch test for contact problems
+// in two dimensions, 1991): a block that is pressed on the plane is under a uniform stress.
+TEST(PlaneContact, CarriesAUniformPressureWithoutDisturbingTheStress) {
+  constexpr double kPressure = 2e3, kYoung = 1e5, kPoisson = 0.3;  // Pa
+  const TetMesh mesh = BoxMesh({0, 0, 0}, {0.03, 0.03, 0.03}, {3, 3, 3}, 2);
+  const auto body = std::make_shared<const Body>(MakeBody(mesh, 1000));
+  const Eigen::Vector3d force(0, 0, -kPressure * 9e-4);
+  const Eigen::VectorXi top =
+      NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x.z() > 0.03 - 1e-9; });
+  Model model{body,
+              {MakeEffect("linear", {{"young_modulus", kYoung}, {"poisson_ratio", kPoisson}}),
+               MakeEffect("plane_contact", {{"stiffness", 1e9}, {"smoothing", 1e-6}}),
+               std::make_shared<PrescribedForce>(BoundaryShares(*body, top),
+                                                 [force](double) { return force; })},
+              {}};
+  // Sliding supports that let the block expand freely.
+  model.grips.push_back(
+      {NodesWhere(mesh, [](const Eigen::Vector3d& x) { return x.x() == 0; }), {}, AxisSet::Of(0)});
+  model.grips.push_back({NodesWhere(mesh,
+                                    [](const Eigen::Vector3d& x) {
+                                      return x.x() > 0.029 && x.y() == 0 && x.z() == 0;
+                                    }),
+                         {},
+                         AxisSet::Of(1)});
+  MotionHistory history = RestHistory(model);
+  // Newton's method starts in contact.
+  history.position.reshaped(3, mesh.NodeCount()).row(2).array() -= 1e-6;
+  const StepSummary step = Stepper(model, {.relative_tolerance = 1e-11}).Equilibrium({}, &history);
+  ASSERT_TRUE(step.IsUsable()) << step.message;
+  const Eigen::MatrixXd stress =
+      RecoverNodalStress(model, history.position, history.velocity, 0, history.effect_state).cauchy;
+  // The Cauchy stress refers to the deformed area. The tolerance is that of Newton's method; with
+  // nodal quadrature, the stress would be 7 % off.
+  const double stretch = 1 + kPoisson * kPressure / kYoung;
+  EXPECT_LT((stress.row(2).array() + kPressure / (stretch * stretch)).abs().maxCoeff(),
+            1e-5 * kPressure);
 }
 
 TEST(PlaneContact, NeverPulls) {

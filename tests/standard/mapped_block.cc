@@ -56,9 +56,56 @@ BlockMap Paraboloid(const Config& config) {
   const Eigen::Vector3d size = config.Vector("size", kLength);
   const double radius = config.Quantity("radius", kLength, kPositive);
   return [size, radius](const Eigen::Vector3d& uvw) -> Eigen::Vector3d {
-    const Eigen::Vector3d at = size.cwiseProduct(uvw.cwiseAbs2());
+    // With u² alone the midpoint of the first edge would be at a quarter of it, where quadratic
+    // elements are singular.
+    constexpr double kUniform = 0.1;
+    const Eigen::Vector3d share = kUniform * uvw + (1 - kUniform) * uvw.cwiseAbs2();
+    const Eigen::Vector3d at = size.cwiseProduct(share);
     const double lower = at.head<2>().squaredNorm() / (2 * radius);
     return {at.x(), at.y(), at.z() + (1 - at.z() / size.z()) * lower};
+  };
+}
+
+// The elliptical grid map of the square [−1, 1]² to the unit disc, x = a √(1 − b²/2) and
+// y = b √(1 − a²/2). It is smooth, except that the corners of the square become flat.
+BlockMap RoundBar(const Config& config) {
+  const double radius = config.Quantity("radius", kLength, kPositive);
+  const double length = config.Quantity("length", kLength, kPositive);
+  return [radius, length](const Eigen::Vector3d& uvw) -> Eigen::Vector3d {
+    const double a = 2 * uvw[0] - 1, b = 2 * uvw[1] - 1;
+    return {radius * a * std::sqrt(1 - b * b / 2), radius * b * std::sqrt(1 - a * a / 2),
+            length * uvw[2]};
+  };
+}
+
+// A point of the meridian (r, z) of LE11, in m: between spheres of radius 1 and 1.4 about the
+// origin, a taper, and a cylinder on top. The lower part ends where the inner sphere has the slope
+// of 45° and the outer one the height of 0.7 m. `outwards` is 0 inside and 1 outside.
+Eigen::Vector2d MeridianOfLe11(double outwards, double upwards) {
+  const double inner_radius = std::sqrt(0.5), outer_angle = std::numbers::pi / 6;
+  const Eigen::Vector2d taper_bottom(1.4 * std::cos(outer_angle), 0.7), taper_top(1, 1.39);
+  Eigen::Vector2d inner, outer;
+  if (upwards <= 0.5) {
+    const double share = 2 * upwards, angle = share * std::numbers::pi / 4;
+    inner = {std::cos(angle), std::sin(angle)};
+    outer = 1.4 * Eigen::Vector2d(std::cos(share * outer_angle), std::sin(share * outer_angle));
+  } else if (upwards <= 0.75) {
+    const double share = 4 * (upwards - 0.5);
+    inner = {inner_radius, (1 - share) * inner_radius + share * taper_top.y()};
+    outer = (1 - share) * taper_bottom + share * taper_top;
+  } else {
+    const double height = taper_top.y() + 0.4 * 4 * (upwards - 0.75);
+    inner = {inner_radius, height};
+    outer = {taper_top.x(), height};
+  }
+  return (1 - outwards) * inner + outwards * outer;
+}
+
+BlockMap CylinderTaperSphere(const Config& /*config*/) {
+  return [](const Eigen::Vector3d& uvw) -> Eigen::Vector3d {
+    const Eigen::Vector2d meridian = MeridianOfLe11(uvw[0], uvw[2]);
+    const double angle = 0.5 * std::numbers::pi * uvw[1];
+    return {meridian.x() * std::cos(angle), meridian.x() * std::sin(angle), meridian.y()};
   };
 }
 
@@ -69,7 +116,9 @@ BlockMap ReadBlockMap(const Config& config) {
   return config.Choice<Reader>("shape", {{"box", &Box},
                                          {"panel", &Panel},
                                          {"elliptic_plate", &EllipticPlate},
-                                         {"paraboloid", &Paraboloid}})(config);
+                                         {"paraboloid", &Paraboloid},
+                                         {"round_bar", &RoundBar},
+                                         {"cylinder_taper_sphere", &CylinderTaperSphere}})(config);
 }
 
 bool BlockPart::Contains(const Eigen::Vector3d& uvw) const {

@@ -25,6 +25,11 @@ using BlockMap = std::function<Eigen::Vector3d(const Eigen::Vector3d& uvw)>;
 //   {shape: paraboloid, size: [x, y, z], radius}      a quarter of a block whose lower face, w = 0,
 //                                                     is z = (x² + y²)/(2 radius); cells become
 //                                                     smaller towards its vertex
+//   {shape: round_bar, radius, length}                along z; the sides of the square u, v become
+//                                                     quarters of the circle about x = y = 0
+//   {shape: cylinder_taper_sphere}                    the quarter of NAFEMS LE11; u goes outwards,
+//                                                     v from the x axis to the y axis, w upwards;
+//                                                     the parts meet at w = 1/2 and w = 3/4
 BlockMap ReadBlockMap(const Config& config);
 
 // A part of the block: the points at which the given coordinates have these values.

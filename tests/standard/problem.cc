@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
 #include "core/config.h"
 #include "scan/region.h"
+#include "standard/published_table.h"
 
 namespace lacuna {
 namespace {
@@ -73,7 +77,21 @@ Dimension DimensionOf(Kind kind) {
   return kDimensionless;
 }
 
-Wanted ReadWanted(const Config& config) {
+// `value: 3 mm`, or `published: {row: 4, column: z_mm, minus: z0_mm, scale: 1 mm}`: an entry of the
+// table, less another one of its row, times the scale. NaN without the table.
+double ReadPublished(const Config& config, const Dimension& dimension,
+                     const std::optional<PublishedTable>& table) {
+  if (!config.Has("published")) return config.Quantity("value", dimension, kAnyValue);
+  const Config entry = config.Child("published");
+  const int row = entry.Integer("row", 1, 1000000);
+  const std::string column = entry.Text("column"), minus = entry.Text("minus", "");
+  const double scale = entry.Quantity("scale", dimension, kPositive);
+  if (!table) return std::numeric_limits<double>::quiet_NaN();
+  const double value = table->Number(row, column) - (minus.empty() ? 0 : table->Number(row, minus));
+  return scale * value;
+}
+
+Wanted ReadWanted(const Config& config, const std::optional<PublishedTable>& table) {
   Wanted wanted;
   ReadQuantity(config, &wanted);
   if (wanted.kind == Kind::kDisplacement || wanted.kind == Kind::kStress ||
@@ -83,9 +101,25 @@ Wanted ReadWanted(const Config& config) {
     wanted.support = config.Text("of");
   if (wanted.kind == Kind::kFrequency) wanted.mode = config.Integer("mode", 1, 100);
   const Dimension dimension = DimensionOf(wanted.kind);
-  wanted.value = config.Quantity("value", dimension, kAnyValue);
+  wanted.label = config.Text("label", "");
+  wanted.time = config.Quantity("time", kTime, kNotNegative, 0);
+  wanted.value = ReadPublished(config, dimension, table);
   wanted.unit = config.Text("shown_in", dimension.unit);
   return wanted;
+}
+
+// The value of a wanted `time` is that after a step which ends there, on every mesh.
+void RequireStepsAtWantedTimes(const Problem& problem, const Config& config) {
+  for (const Wanted& wanted : problem.wanted) {
+    if (wanted.time == 0) continue;
+    if (problem.duration == 0) config.Fail("wanted", "`time` needs a motion");
+    for (const ProblemMesh& mesh : problem.meshes) {
+      const double steps = wanted.time / problem.duration * mesh.steps;
+      if (steps > mesh.steps || std::abs(steps - std::round(steps)) > 1e-6)
+        config.Fail("wanted",
+                    fmt::format("no step ends at {:g} s with {} steps", wanted.time, mesh.steps));
+    }
+  }
 }
 
 PeerResult ReadPeer(const Config& config, const std::vector<Wanted>& wanted) {
@@ -96,6 +130,17 @@ PeerResult ReadPeer(const Config& config, const std::vector<Wanted>& wanted) {
   peer.value = config.Quantity("value", DimensionOf(wanted[peer.wanted].kind), kAnyValue);
   peer.source = config.Text("source");
   return peer;
+}
+
+ProblemLoad ReadLoad(const Config& config) {
+  ProblemLoad load;
+  load.part = ReadBlockPart(config.Child("where"));
+  load.traction = config.Vector("traction", kPressure, load.traction);
+  load.line_force = config.Vector("line_force", kForce, load.line_force);
+  if (load.traction.isZero(0) == load.line_force.isZero(0))
+    config.Fail("", "expected a traction or a line_force");
+  load.profile = ReadProfile(config);
+  return load;
 }
 
 ProblemMesh ReadMesh(const Config& config) {
@@ -121,9 +166,7 @@ Problem ReadProblem(const std::filesystem::path& file) {
   problem.effects = ReadEffects(config);
   problem.density = config.Quantity("density", kDensity, kPositive, 1000);
   for (const Config& item : config.Items("supports")) problem.supports.push_back(ReadSupport(item));
-  for (const Config& item : config.Items("loads"))
-    problem.loads.push_back({ReadBlockPart(item.Child("where")), item.Vector("traction", kPressure),
-                             ReadProfile(item)});
+  for (const Config& item : config.Items("loads")) problem.loads.push_back(ReadLoad(item));
   const Config solve = config.Child("solve");
   problem.kind = solve.Choice<ProblemKind>("kind", {{"static", ProblemKind::kStatic},
                                                     {"modes", ProblemKind::kModes},
@@ -135,11 +178,24 @@ Problem ReadProblem(const std::filesystem::path& file) {
     problem.scheme = ReadTimeScheme(solve, "two_step");
     problem.velocity = solve.Vector("velocity", kVelocity, problem.velocity);
   }
-  for (const Config& item : config.Items("wanted")) problem.wanted.push_back(ReadWanted(item));
+  std::optional<PublishedTable> table;
+  if (config.Has("data")) {
+    const std::filesystem::path data = config.Path("data");
+    if (std::filesystem::exists(data))
+      table = PublishedTable::Load(data);
+    else
+      problem.missing_data = data;
+  }
+  for (const Config& item : config.Items("wanted"))
+    problem.wanted.push_back(ReadWanted(item, table));
   if (problem.wanted.empty()) config.Fail("wanted", "names no quantity");
+  for (const Wanted& wanted : problem.wanted)
+    if (std::isnan(wanted.value) && problem.missing_data.empty())
+      config.Fail("wanted", "a published entry needs the table `data`");
   for (const Config& item : config.Items("peers"))
     problem.peers.push_back(ReadPeer(item, problem.wanted));
   for (const Config& item : config.Items("meshes")) problem.meshes.push_back(ReadMesh(item));
+  RequireStepsAtWantedTimes(problem, config);
   problem.orders = config.Integers("orders", 1);
   problem.tolerances = config.Quantities("tolerances", kDimensionless, kPositive);
   if (problem.tolerances.size() != problem.orders.size())

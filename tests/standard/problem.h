@@ -31,9 +31,11 @@ struct ProblemSupport {
   bool Moves() const { return angle != 0 || !translation.isZero(0); }
 };
 
+// A traction on faces of the block, or a total force that is uniform along an edge.
 struct ProblemLoad {
-  BlockPart part;                                      // faces of the block
-  Eigen::Vector3d traction = Eigen::Vector3d::Zero();  // Pa
+  BlockPart part;
+  Eigen::Vector3d traction = Eigen::Vector3d::Zero();    // Pa
+  Eigen::Vector3d line_force = Eigen::Vector3d::Zero();  // N
   Profile profile;
 };
 
@@ -44,7 +46,7 @@ enum class ProblemKind {
   kMotion        // steps with inertia from the rest shape and an initial velocity
 };
 
-// What is computed and compared with the published value, at the end of the motion.
+// What is computed and compared with the published value, at a time of the motion.
 struct Wanted {
   enum class Kind {
     kDisplacement,  // of a point, along an axis, m
@@ -58,10 +60,12 @@ struct Wanted {
   };
   Kind kind = Kind::kDisplacement;
   std::string name;   // "displacement_y"
+  std::string label;  // distinguishes quantities of the same name; may be empty
   int component = 0;  // axis, or of the stress xx, yy, zz, yz, xz, xy
   BlockPart point;
   std::string support;
   int mode = 1;      // 1 is the lowest
+  double time = 0;   // s; 0: the end of the motion
   double value = 0;  // published
   double scale = 1;  // a value of the file's unit in SI units
   std::string unit;
@@ -96,6 +100,9 @@ struct Problem {
   std::vector<PeerResult> peers;
   std::vector<ProblemMesh> meshes;  // each finer than the one before
   int quick = 1;                    // so many of the meshes belong to the quick set
+  // The file of published values that is absent, because the data are not part of the project; the
+  // values that come from it are NaN, and the problem cannot be compared. Otherwise empty.
+  std::filesystem::path missing_data;
   // Largest relative error on the last mesh of the quick set, for each order of elements.
   std::vector<double> tolerances;
 };

@@ -10,6 +10,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "core/error.h"
 #include "experiment/held_parts.h"
@@ -17,6 +19,7 @@
 #include "fem/nodal_recovery.h"
 #include "fem/prescribed_force.h"
 #include "fem/simulate.h"
+#include "geometry/shape_functions.h"
 
 namespace lacuna {
 namespace {
@@ -26,6 +29,28 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Newton iterations are continued to this residual relative to the acting forces, so that their
 // error does not show beside that of the mesh.
 constexpr double kTolerance = 1e-11;
+
+// The share of each node (sum 1) in a uniform load along the edge that the nodes form: half of the
+// length of each segment for both of its ends, and by Simpson's rule for quadratic elements.
+Eigen::VectorXd LineShares(const TetMesh& mesh, const Eigen::VectorXi& nodes) {
+  const std::set<int> on_line(nodes.begin(), nodes.end());
+  std::set<std::pair<int, int>> seen;
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(mesh.NodeCount());
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e)
+    for (int k = 0; k < 6; ++k) {
+      const auto [first, second] = kTetEdges[static_cast<size_t>(k)];
+      const int a = mesh.tets(first, e), b = mesh.tets(second, e);
+      if (on_line.count(a) == 0 || on_line.count(b) == 0 || !seen.insert(std::minmax(a, b)).second)
+        continue;
+      const double length = (mesh.nodes.col(a) - mesh.nodes.col(b)).norm();
+      const bool is_quadratic = mesh.Order() == 2;
+      share[a] += length / (is_quadratic ? 6 : 2);
+      share[b] += length / (is_quadratic ? 6 : 2);
+      if (is_quadratic) share[mesh.tets(4 + k, e)] += length * 4 / 6;
+    }
+  CHECK_GT(share.sum(), 0) << "a line load on nodes that form no edge";
+  return share / share.sum();
+}
 
 // The area of the boundary of the body that the nodes span, m².
 double AreaOf(const Body& body, const Eigen::VectorXi& nodes) {
@@ -83,9 +108,12 @@ Model MakeModel(const Problem& problem, const MappedBlock& block) {
               MakeGrips(problem, block)};
   for (const ProblemLoad& load : problem.loads) {
     const Eigen::VectorXi nodes = block.NodesOf(load.part);
-    const Eigen::Vector3d force = AreaOf(*model.body, nodes) * load.traction;
+    const bool is_line = !load.line_force.isZero(0);
+    const Eigen::Vector3d force =
+        is_line ? load.line_force : Eigen::Vector3d(AreaOf(*model.body, nodes) * load.traction);
     model.effects.push_back(std::make_shared<PrescribedForce>(
-        BoundaryShares(*model.body, nodes), [force, profile = load.profile](double time) {
+        is_line ? LineShares(block.mesh, nodes) : BoundaryShares(*model.body, nodes),
+        [force, profile = load.profile](double time) {
           return Eigen::Vector3d(profile.At(time) * force);
         }));
   }
@@ -117,11 +145,10 @@ class Solver {
   ProblemSolution Run() {
     ProblemSolution solution;
     solution.nodes = model_.body->NodeCount();
-    if (problem_.kind == ProblemKind::kModes) {
+    if (problem_.kind == ProblemKind::kModes)
       FindModes(&solution);
-    } else if (Move(&solution)) {
-      for (const Wanted& wanted : problem_.wanted) solution.values.push_back(ValueOf(wanted));
-    }
+    else
+      Move(&solution);
     return solution;
   }
 
@@ -136,7 +163,7 @@ class Solver {
       solution->values.push_back(modes.frequencies[wanted.mode - 1]);
   }
 
-  bool Move(ProblemSolution* solution) {
+  void Move(ProblemSolution* solution) {
     StepOptions options;
     options.relative_tolerance = kTolerance;
     options.linear.relative_tolerance = kTolerance;
@@ -148,16 +175,24 @@ class Solver {
     start_energy_ = EnergyOf(model_, history_);
     const bool is_static = problem_.kind == ProblemKind::kStatic;
     time_step_ = is_static ? 0 : problem_.duration / steps_;
-    for (int k = 0; k < (is_static ? 1 : steps_); ++k) {
+    solution->values.assign(problem_.wanted.size(), kUnknown);
+    const int steps = is_static ? 1 : steps_;
+    for (int k = 0; k < steps; ++k) {
       before_ = history_;
       const StepSummary step =
           is_static ? stepper.Equilibrium({}, &history_) : stepper.Step(time_step_, {}, &history_);
       if (!step.IsUsable()) {
         solution->message = step.message;
-        return false;
+        return;
+      }
+      for (size_t i = 0; i < problem_.wanted.size(); ++i) {
+        const Wanted& wanted = problem_.wanted[i];
+        const bool is_now = wanted.time == 0
+                                ? k + 1 == steps
+                                : std::abs(history_.time - wanted.time) < 1e-6 * time_step_;
+        if (is_now) solution->values[i] = ValueOf(wanted);
       }
     }
-    return true;
   }
 
   Eigen::Index NodeAt(const BlockPart& point) const {

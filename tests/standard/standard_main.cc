@@ -41,6 +41,14 @@ int Run(int argc, char** argv) {
   std::vector<SolvedProblem> solved;
   for (const std::filesystem::path& file : ProblemFiles(names)) {
     const Problem problem = ReadProblem(file);
+    if (!problem.missing_data.empty()) {
+      if (!table.empty())
+        throw InputError({problem.missing_data.string()},
+                         "is absent, so that the table would lack " + problem.name);
+      std::cerr << fmt::format("{}: skipped, {} is absent; LACUNA_DATA names the folder of data\n",
+                               problem.name, problem.missing_data.string());
+      continue;
+    }
     SolvedProblem& entry = solved.emplace_back(SolvedProblem{problem, {}});
     const int count = quick ? problem.quick : static_cast<int>(problem.meshes.size());
     if (count == 0) {

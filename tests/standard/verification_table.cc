@@ -18,8 +18,10 @@ std::string Percent(double error) {
 }
 
 std::string NameOf(const Wanted& wanted) {
-  return wanted.kind == Wanted::Kind::kFrequency ? fmt::format("frequency {}", wanted.mode)
-                                                 : wanted.name;
+  const std::string name = wanted.kind == Wanted::Kind::kFrequency
+                               ? fmt::format("frequency {}", wanted.mode)
+                               : wanted.name;
+  return wanted.label.empty() ? name : name + ", " + wanted.label;
 }
 
 std::string Value(double value, const Wanted& wanted) {

@@ -1,0 +1,237 @@
+// Swelling, shrinking or thermal expansion that depends on the place: the free strain of
+// swelling.cc, ε, is the product of one number and of a field that the user writes as an expression
+// of the place in the rest shape, ε(X) = ε₀ g(X). With the stretch s = 1 + ε(X),
+//   ψ = s³ ψ_el(F/s) − ψ_el(F),
+// where ψ_el is the elasticity law of the body. For g = 1 this is `swelling`.
+//
+// With the quadrature of the body (weights w, shape gradients ∂N/∂X) the first term is the energy
+// that the law stores on a body with the weights s³ w and the gradients ∂N/∂X / s: the swollen
+// body, whose elements need not fit together. Force, energy and tangent therefore are those of the
+// law on the swollen body minus those on the body. The derivative is
+//   ∂f/∂ε₀ = 2 f′ − (∂f′/∂x) x,
+// where f′ is the force of the law on the swollen body with its weights multiplied by g/s.
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/expression.h"
+#include "core/quoted_text.h"
+#include "effects/catalogue.h"
+#include "effects/rest_quantity.h"
+#include "fem/cloneable_effect.h"
+
+namespace lacuna {
+namespace {
+
+const EffectCard& TheCard() {
+  static const EffectCard card{
+      .type = "swelling_field",
+      .family = EffectFamily::kVolumeStress,
+      .title = "Swelling or thermal expansion that depends on the place",
+      .equation =
+          "ψ = s³ ψ_el(F/s) − ψ_el(F),  s = 1 + ε₀ g(X, Y, Z),  ψ_el the body's elasticity law, "
+          "g an expression of the place at rest in m, e.g. {type: swelling_field, strain: 0.1 %, "
+          "field: \"1 + Z/0.02\"}; docs/expression.md describes the language",
+      .citation =
+          "J. M. C. Duhamel, Second mémoire sur les phénomènes thermo-mécaniques, J. de l'École "
+          "Polytechnique 15, 1837, 1–57; E. K. Rodriguez, A. Hoger, A. D. McCulloch, "
+          "Stress-Dependent Finite Growth in Soft Elastic Tissues, Journal of Biomechanics 27, "
+          "1994, 455–467",
+      .parameters = {{.name = "strain",
+                      .meaning = "linear strain, ε₀, that a free body would have where the field "
+                                 "is 1",
+                      .dimension = kDimensionless,
+                      .bounds = kAnyValue,
+                      .null_value = 0,
+                      .plausible_min = -0.1,
+                      .plausible_max = 0.1,
+                      .default_value = kMustBeGiven}},
+      .residual_when_missing =
+          "Even without load the body is bent or bulges, away from the side that is longer. The "
+          "residual does not change with the load.",
+      .separating_experiment =
+          "Remove all load and turn the body upside down: the shape stays as it is, the sag of "
+          "gravity changes sign. Wait until temperature and moisture are the same everywhere: the "
+          "body becomes straight",
+      .look_alikes = {"swelling", "gravity"},
+      .repeatable = true,
+      .conserves_momentum = true,
+      .conserves_angular_momentum = true};
+  return card;
+}
+
+class SwellingFieldEffect final : public CloneableEffect<SwellingFieldEffect> {
+ public:
+  SwellingFieldEffect(double strain, Expression field)
+      : strain_(strain), field_(std::make_shared<const Expression>(std::move(field))) {}
+
+  const Expression& Field() const { return *field_; }
+  const EffectCard& Card() const override { return TheCard(); }
+  Eigen::VectorXd Parameters() const override { return Eigen::VectorXd::Constant(1, strain_); }
+  void SetParameters(const Eigen::VectorXd& values) {
+    CHECK_EQ(values.size(), 1);
+    strain_ = values[0];
+    swollen_.Forget();
+  }
+
+  void AddForce(const Kinematics& at, Eigen::VectorXd* force) const override {
+    AddDifference(
+        at,
+        [&](const Kinematics& where, Eigen::VectorXd* of_law) { Law(at).AddForce(where, of_law); },
+        force);
+  }
+
+  bool AddStress(const Kinematics& at, Eigen::Matrix3Xd* stress) const override {
+    if (strain_ == 0) return true;
+    const auto swollen = Swollen(at.body);
+    Eigen::Matrix3Xd of_law = Eigen::Matrix3Xd::Zero(3, stress->cols());
+    Law(at).AddStress(On(*swollen, at), &of_law);
+    const Eigen::VectorXd stretch = Stretches(at.body);
+    for (Eigen::Index q = 0; q < stretch.size(); ++q)
+      stress->middleCols<3>(3 * q) += stretch[q] * stretch[q] * of_law.middleCols<3>(3 * q);
+    of_law.setZero();
+    Law(at).AddStress(On(at.body, at), &of_law);
+    *stress -= of_law;
+    return true;
+  }
+
+  // With `convexify` nothing: the law's own approximation stands for both.
+  void AddTangents(const Kinematics& at, const TangentWeights& weights, bool convexify,
+                   BlockMatrix* tangent) const override {
+    if (strain_ == 0 || weights.position == 0 || convexify) return;
+    const auto swollen = Swollen(at.body);
+    Law(at).AddTangents(On(*swollen, at), {.position = weights.position}, false, tangent);
+    Law(at).AddTangents(On(at.body, at), {.position = -weights.position}, false, tangent);
+  }
+
+  void AddParameterDerivative(const Kinematics& at, int parameter,
+                              Eigen::VectorXd* derivative) const override {
+    CHECK_EQ(parameter, 0);
+    const Eigen::VectorXd stretch = Stretches(at.body);
+    Body weighted = MakeSwollen(at.body, stretch);
+    weighted.weight.array() *= FieldAtPoints(at.body)->array() / stretch.array();
+    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(derivative->size());
+    Law(at).AddForce(On(weighted, at), &of_law);
+    *derivative += 2 * of_law;
+    BlockMatrix stiffness(at.body.pattern);
+    Law(at).AddTangents(On(weighted, at), {.position = 1}, false, &stiffness);
+    stiffness.Multiply(at.position, &of_law);
+    *derivative -= of_law;
+  }
+
+  void AddElasticityDerivative(const Kinematics& at, int parameter,
+                               Eigen::VectorXd* derivative) const override {
+    AddDifference(
+        at,
+        [&](const Kinematics& where, Eigen::VectorXd* of_law) {
+          Law(at).AddParameterDerivative(where, parameter, of_law);
+        },
+        derivative);
+  }
+
+  std::optional<double> Energy(const Kinematics& at) const override {
+    if (strain_ == 0) return 0.0;
+    const auto swollen = Swollen(at.body);
+    const std::optional<double> stored = Law(at).Energy(On(*swollen, at));
+    const std::optional<double> unswollen = Law(at).Energy(On(at.body, at));
+    if (!stored || !unswollen) return std::nullopt;
+    return *stored - *unswollen;
+  }
+
+ private:
+  static const Effect& Law(const Kinematics& at) {
+    CHECK(at.elasticity != nullptr) << "swelling is relative to an elasticity law";
+    return *at.elasticity;
+  }
+
+  // The same state of another body with the same nodes, as the elasticity law sees it.
+  Kinematics On(const Body& body, const Kinematics& at) const {
+    return {body,    at.position,  at.velocity, at.acceleration,
+            at.time, at.time_step, no_memory_,  at.elasticity};
+  }
+
+  // g at the quadrature points.
+  std::shared_ptr<const Eigen::VectorXd> FieldAtPoints(const Body& body) const {
+    return at_points_.Of(body, [this](const Body& rest) {
+      Eigen::VectorXd values(rest.PointCount());
+      for (Eigen::Index q = 0; q < values.size(); ++q) {
+        const Eigen::Vector3d point = rest.point.col(q);
+        values[q] = field_->At(point.data());
+      }
+      return values;
+    });
+  }
+
+  // s at the quadrature points; not a number where the strain is −1 or less, because nothing can
+  // shrink that far.
+  Eigen::VectorXd Stretches(const Body& body) const {
+    const Eigen::ArrayXd stretch = 1 + strain_ * FieldAtPoints(body)->array();
+    return (stretch > 0).select(stretch, std::numeric_limits<double>::quiet_NaN());
+  }
+
+  static Body MakeSwollen(const Body& body, const Eigen::VectorXd& stretch) {
+    Body swollen = body;
+    // Not owned: the value would otherwise keep the mesh alive that it is kept for.
+    swollen.schedule = {std::shared_ptr<void>(), body.schedule.get()};
+    swollen.weight.array() *= stretch.array().cube();
+    for (Eigen::Index q = 0; q < stretch.size(); ++q)
+      swollen.shape_gradient.middleCols<3>(3 * q) /= stretch[q];
+    return swollen;
+  }
+
+  std::shared_ptr<const Body> Swollen(const Body& body) const {
+    return swollen_.Of(body,
+                       [this](const Body& rest) { return MakeSwollen(rest, Stretches(rest)); });
+  }
+
+  // Adds q(swollen body) − q(body), where add(where, &q) adds nodal forces q of the law.
+  template <typename Add>
+  void AddDifference(const Kinematics& at, const Add& add, Eigen::VectorXd* result) const {
+    if (strain_ == 0) return;
+    const auto swollen = Swollen(at.body);
+    Eigen::VectorXd of_law = Eigen::VectorXd::Zero(result->size());
+    add(On(*swollen, at), &of_law);
+    *result += of_law;
+    of_law.setZero();
+    add(On(at.body, at), &of_law);
+    *result -= of_law;
+  }
+
+  double strain_ = 0;                        // ε₀
+  std::shared_ptr<const Expression> field_;  // g
+  Eigen::VectorXd no_memory_;                // elasticity laws have no internal variables
+  RestQuantity<Eigen::VectorXd> at_points_;  // g, shared by copies with another strain
+  RestQuantity<Body> swollen_;
+};
+
+std::shared_ptr<const Effect> MakeSwellingField(const Config& config) {
+  const ParameterCard& strain = TheCard().parameters.front();
+  const double value = config.Quantity(strain.name, strain.dimension, strain.bounds);
+  const std::string text = config.Text("field");
+  try {
+    return std::make_shared<SwellingFieldEffect>(value, Expression(text, {"X", "Y", "Z"}));
+  } catch (const ExpressionError& problem) {
+    config.Fail("field", fmt::format("\"{}\", {}", text, problem.what()));
+  }
+}
+
+std::string Format(const Effect& effect) {
+  const auto& swelling = static_cast<const SwellingFieldEffect&>(effect);
+  return fmt::format("{{type: {}, strain: {}, field: {}}}", TheCard().type,
+                     swelling.Parameters()[0], QuotedText(swelling.Field().text()));
+}
+
+}  // namespace
+
+CatalogueEntry SwellingField() {
+  CatalogueEntry entry;
+  entry.card = &TheCard();
+  entry.make_from_yaml = &MakeSwellingField;
+  entry.format = &Format;
+  return entry;
+}
+
+}  // namespace lacuna
