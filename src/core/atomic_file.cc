@@ -1,6 +1,7 @@
 #include "core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "core/error.h"
 
@@ -22,6 +24,25 @@ fs::path TemporaryName(const fs::path& file) {
   static std::atomic<unsigned> count{0};
   return file.parent_path() / ("." + file.filename().string() + "." + std::to_string(getpid()) +
                                "." + std::to_string(count++) + ".tmp");
+}
+
+// Tries to lock an open temporary file. The lock ends with the process that writes the file, so
+// that a temporary file whose lock is free was left by a process that is gone.
+bool LockTemporary(int descriptor, bool wait) {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  int result = 0;
+  do {
+    result = fcntl(descriptor, wait ? F_OFD_SETLKW : F_OFD_SETLK, &lock);
+  } while (result != 0 && errno == EINTR);
+  return result == 0;
+}
+
+// Whether the open file has no name any more.
+bool IsUnlinked(int descriptor) {
+  struct stat status {};
+  return fstat(descriptor, &status) == 0 && status.st_nlink == 0;
 }
 
 fs::path FolderOf(const fs::path& file) {
@@ -40,9 +61,18 @@ AtomicFile::AtomicFile(const fs::path& file) : file_(file) {
   if (fs::exists(file_, error) && !fs::is_regular_file(file_, error)) {
     throw InputError({file.string()}, "cannot be written: it is not an ordinary file");
   }
-  temporary_ = TemporaryName(file_);
-  descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) Fail(errno);
+  // Between open and lock another process may take the file for an abandoned one and remove it;
+  // then a new one is made.
+  // On a file system without locks the file stays unlocked, and RemoveLeftTemporaries leaves it.
+  constexpr int kAttempts = 5;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (descriptor_ >= 0) close(descriptor_);
+    temporary_ = TemporaryName(file_);
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) Fail(errno);
+    LockTemporary(descriptor_, /*wait=*/true);
+    if (!IsUnlinked(descriptor_)) return;
+  }
 }
 
 AtomicFile::~AtomicFile() {
@@ -62,13 +92,10 @@ void AtomicFile::Write(std::string_view content) {
 
 void AtomicFile::Commit() {
   if (fsync(descriptor_) != 0) Fail(errno);
-  const int closed = close(descriptor_);
+  // The lock ends with close; until then nobody takes the file for a left one.
+  if (rename(temporary_.c_str(), file_.c_str()) != 0) Fail(errno);
+  close(descriptor_);
   descriptor_ = -1;
-  if (closed != 0 || rename(temporary_.c_str(), file_.c_str()) != 0) {
-    const int error = errno;
-    unlink(temporary_.c_str());
-    Fail(error);
-  }
   SyncFolder(FolderOf(file_));
 }
 
@@ -80,6 +107,34 @@ void WriteFileAtomically(const fs::path& file, std::string_view content) {
   AtomicFile output(file);
   output.Write(content);
   output.Commit();
+}
+
+bool IsTemporaryFile(const fs::path& path) {
+  // ".NAME.PROCESS.COUNT.tmp"
+  const std::string name = path.filename().string();
+  if (!name.starts_with(".") || path.extension() != ".tmp") return false;
+  fs::path rest = path.stem();
+  for (int number = 0; number < 2; ++number, rest = rest.stem()) {
+    const std::string digits = rest.extension().string();
+    if (digits.size() < 2 || digits.find_first_not_of("0123456789", 1) != std::string::npos)
+      return false;
+  }
+  return rest.string().size() > 1;
+}
+
+void RemoveLeftTemporaries(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> found;
+  for (auto entry = fs::recursive_directory_iterator(folder, error);
+       !error && entry != fs::recursive_directory_iterator(); entry.increment(error))
+    if (IsTemporaryFile(entry->path()) && entry->is_regular_file(error))
+      found.push_back(entry->path());
+  for (const fs::path& file : found) {
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (LockTemporary(descriptor, /*wait=*/false)) unlink(file.c_str());
+    close(descriptor);
+  }
 }
 
 void MakeFolder(const std::filesystem::path& folder) {

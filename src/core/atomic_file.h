@@ -37,6 +37,15 @@ class AtomicFile {
   int descriptor_ = -1;
 };
 
+// Whether the path has the name of a temporary file of AtomicFile.
+bool IsTemporaryFile(const std::filesystem::path& path);
+
+// Removes the temporary files below `folder` that processes have left which were killed while they
+// wrote. Files that a living process writes are locked and stay; a process on another machine is
+// recognised only where the file system shares locks between machines. Nothing happens if the
+// folder does not exist; what cannot be removed stays.
+void RemoveLeftTemporaries(const std::filesystem::path& folder);
+
 // Creates the folder and its parents if they do not exist. Throws InputError naming the folder if
 // that fails or if the folder is not writable.
 void MakeFolder(const std::filesystem::path& folder);

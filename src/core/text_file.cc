@@ -88,10 +88,14 @@ std::string ReadTextFile(const std::filesystem::path& file) {
   if (content.starts_with("\xef\xbb\xbf")) content.erase(0, 3);
   if (const std::string problem = ForeignEncoding(content); !problem.empty())
     throw InputError({file.string()}, problem);
-  if (!IsUtf8(content)) content = Utf8FromLatin1(content);
+  content = InUtf8(std::move(content));
   if (content.find('\n') == std::string::npos)
     std::replace(content.begin(), content.end(), '\r', '\n');
   return content;
+}
+
+std::string InUtf8(std::string text) {
+  return IsUtf8(text) ? std::move(text) : Utf8FromLatin1(text);
 }
 
 }  // namespace lacuna

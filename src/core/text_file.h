@@ -17,6 +17,9 @@ std::string ReadWholeFile(const std::filesystem::path& file);
 // archives and other files that are no text.
 std::string ReadTextFile(const std::filesystem::path& file);
 
+// `text` where it is UTF-8; otherwise its bytes are taken for Latin-1 and converted.
+std::string InUtf8(std::string text);
+
 }  // namespace lacuna
 
 #endif  // LACUNA_CORE_TEXT_FILE_H_

@@ -33,6 +33,22 @@ std::filesystem::path DecisionFolder(const std::filesystem::path& run) {
   return run / "diagnosis" / "decision";
 }
 
+// Refits of a diagnosis that is not complete.
+std::filesystem::path RefitsFile(const std::filesystem::path& run) {
+  return run / "diagnosis" / "refits.json";
+}
+
+// One hash for what belongs to diagnosis.json: how its effects were set up, and the files that its
+// decision was made from.
+std::string DetailsHash(const std::filesystem::path& run, const json& settings) {
+  std::map<std::string, std::string> hashes;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(DecisionFolder(run), error))
+    if (!IsTemporaryFile(entry.path()))
+      hashes[entry.path().filename().string()] = HashFile(entry.path());
+  return HashBytes(settings.dump() + json(hashes).dump());
+}
+
 json OriginOf(const std::filesystem::path& run, const DiagnosisOptions& options) {
   return {{"version", kDiagnosisVersion},
           {"fit", HashFile(FinishedStage(run, "calibration") / "calibration.json")},
@@ -89,7 +105,20 @@ json OriginOfWhatStands(const std::filesystem::path& run) {
   if (!origin.is_object() || !std::filesystem::exists(ResultFile(run)) ||
       origin.value("diagnosis", "") != HashFile(ResultFile(run)))
     return {};
+  // Diagnoses of earlier versions have no such hash.
+  if (origin.contains("details") &&
+      origin.at("details") != DetailsHash(run, origin.value("settings", json())))
+    return {};
   return origin.value("of", json());
+}
+
+// Removes refits that the diagnosis of this origin has left because it was killed at its very end.
+// Those of another diagnosis, which is not complete, stay.
+void RemoveRefitsOf(const json& origin, const std::filesystem::path& run) {
+  const json refits = Parsed(RefitsFile(run));
+  std::error_code ignored;  // a file that remains is harmless
+  if (refits.is_object() && refits.value("of", json()) == origin)
+    std::filesystem::remove(RefitsFile(run), ignored);
 }
 
 // Whether the diagnosis that stands there is of the fit that stands there, with whatever options.
@@ -118,7 +147,9 @@ bool IsDiagnosed(const std::filesystem::path& run, const DiagnosisOptions& optio
 
 DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::path& run,
                              const DiagnosisOptions& options, Progress* progress) {
+  RemoveLeftTemporaries(run);
   if (IsDiagnosed(run, options)) {
+    RemoveRefitsOf(OriginOf(run, options), run);
     progress->Begin("diagnosis of " + fitted.study.name, 0);
     DiagnosisRecord record = ReadDiagnosisFile(ResultFile(run));
     progress->End("read back");
@@ -126,15 +157,17 @@ DiagnosisRecord RunDiagnosis(const FittedRun& fitted, const std::filesystem::pat
   }
   const CalibrationProblem problem(fitted.study, fitted.mesh);
   MakeFolder(ResultFile(run).parent_path());
-  RefitStore kept(ResultFile(run).parent_path() / "refits.json", OriginOf(run, options));
+  RefitStore kept(RefitsFile(run), OriginOf(run, options));
   const Diagnosis diagnosis =
       Diagnose(problem, fitted.values, options, progress, &kept, ValuesAtMeshLimit(fitted.record));
   SaveDecisionInput(diagnosis.decision_input, DecisionFolder(run));
   WriteDiagnosisFile(RecordOf(diagnosis), ResultFile(run));
+  const json settings = SettingsOf(diagnosis);
   const json origin = {{"schema_version", 2},
                        {"of", OriginOf(run, options)},
                        {"diagnosis", HashFile(ResultFile(run))},
-                       {"settings", SettingsOf(diagnosis)}};
+                       {"details", DetailsHash(run, settings)},
+                       {"settings", settings}};
   WriteFileAtomically(OriginFile(run), origin.dump(2) + "\n");
   kept.Drop();
   return ReadDiagnosisFile(ResultFile(run));

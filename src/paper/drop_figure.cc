@@ -102,6 +102,7 @@ PanelSurface Floor(const Eigen::AlignedBox3d& box, double height) {
   floor.mesh.triangles.resize(3, 2);
   floor.mesh.triangles << 0, 0, 1, 2, 2, 3;
   floor.colour = {0.88, 0.86, 0.82};
+  floor.is_lit = false;
   return floor;
 }
 

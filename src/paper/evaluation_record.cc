@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/text_file.h"
+#include "record/json_hash.h"
 
 namespace lacuna {
 namespace {
@@ -23,6 +24,13 @@ nlohmann::json Measured(double value) {
 }
 double NumberOf(const nlohmann::json& value) {
   return value.is_null() ? kNotMeasured : value.get<double>();
+}
+
+constexpr char kHash[] = "hash";
+
+// The hash of a line's content. Two runs write the same one, because the wall time is left out.
+std::string HashOf(const nlohmann::json& line) {
+  return HashWithout(line, {"/hash", "/evaluation/seconds"});
 }
 
 // Keys of the derivatives, in the order of ObjectiveEvaluation::by_moduli.
@@ -100,10 +108,15 @@ EvaluationRecord::EvaluationRecord(const std::filesystem::path& file, const std:
   }
   std::istringstream lines(text);
   int number = 0;
+  bool is_hashed = false;  // files of earlier versions are not
   for (std::string line; std::getline(lines, line);) {
     ++number;
     try {
       const nlohmann::json json = nlohmann::json::parse(line);
+      if (number == 1) is_hashed = json.contains(kHash);
+      if (is_hashed && json.value(kHash, "") != HashOf(json))
+        throw InputError({file.string(), number},
+                         "the line is damaged; remove the file's folder to search anew");
       if (number == 1) {
         if (json.at("objective") == key) continue;
         throw InputError({file.string(), 1},
@@ -122,7 +135,8 @@ const ObjectiveEvaluation* EvaluationRecord::Find(const SearchedParameters& para
   return found == known_.end() ? nullptr : &found->second;
 }
 
-void EvaluationRecord::AppendLine(const nlohmann::json& line) {
+void EvaluationRecord::AppendLine(nlohmann::json line) {
+  line[kHash] = HashOf(line);
   std::ofstream stream(file_, std::ios::app);
   stream << line.dump() << "\n" << std::flush;
   if (!stream) throw InputError(SourcePosition{file_.string()}, "cannot be written");

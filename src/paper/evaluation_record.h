@@ -3,6 +3,7 @@
 //
 // A line is written before the search's own log receives the evaluation, so that every evaluation
 // in the log is in the record too. An incomplete last line, as a crash may leave it, is dropped.
+// Each line has a hash of its content without the wall time.
 #ifndef LACUNA_PAPER_EVALUATION_RECORD_H_
 #define LACUNA_PAPER_EVALUATION_RECORD_H_
 
@@ -31,7 +32,7 @@ class EvaluationRecord {
   void Append(const SearchedParameters& parameters, const ObjectiveEvaluation& evaluation);
 
  private:
-  void AppendLine(const nlohmann::json& line);
+  void AppendLine(nlohmann::json line);  // and its hash
 
   std::filesystem::path file_;
   std::map<std::string, ObjectiveEvaluation> known_;

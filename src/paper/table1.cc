@@ -299,6 +299,7 @@ Table1Result RunTable1(const Table1Study& study, const Table1Options& options, P
   const Claim claim(claimed);
   if (!claim.holds())
     throw InputError({options.output.string()}, "is being worked on by " + HolderOf(claimed));
+  RemoveLeftTemporaries(options.output);
   Recordings recordings(study, options.output, progress);
   Table1Result result;
   for (int seed = options.first_seed; seed < options.first_seed + options.seeds; ++seed)

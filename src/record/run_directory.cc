@@ -43,7 +43,8 @@ void CheckStageName(const std::string& stage) {
 void RefuseForeignFolder(const fs::path& folder) {
   if (fs::exists(folder / kManifestName)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename() == kLockName || IsPartialFolder(entry.path())) continue;
+    const fs::path& path = entry.path();
+    if (path.filename() == kLockName || IsPartialFolder(path) || IsTemporaryFile(path)) continue;
     throw InputError(
         {folder.string()},
         fmt::format("is not a run folder (it has no {}) and is not empty; choose another",
@@ -125,6 +126,7 @@ RunDirectory::RunDirectory(const fs::path& folder) : folder_(folder) {
   for (const auto& entry : fs::directory_iterator(folder_)) {
     if (IsPartialFolder(entry.path())) fs::remove_all(entry.path());
   }
+  RemoveLeftTemporaries(folder_);
   if (fs::exists(folder_ / kManifestName) && !(was_run && IsNoJson(folder_ / kManifestName)))
     manifest_ = LoadManifest(folder_ / kManifestName);
   // Another version of the program or of a library may give other results.
@@ -156,7 +158,10 @@ StageCheck RunDirectory::Check(const std::string& stage, const std::string& key)
     return {Status::kOtherKey, "the options or inputs of " + stage + " have changed"};
   }
   const std::string damage = FindDamage(StageFolder(stage), found->second);
-  if (!damage.empty()) return {Status::kDamaged, damage};
+  if (!damage.empty()) {
+    LOG(WARNING) << damage << "; " << stage << " is computed again";
+    return {Status::kDamaged, damage};
+  }
   current_.insert(stage);
   return {Status::kReady, ""};
 }

@@ -23,8 +23,10 @@ std::string ArrayOf(const std::vector<int>& numbers);
 // The job script: task K runs `lacuna sweep run FOLDER --case K` with the cores allotted to it.
 std::string SlurmScript(const std::filesystem::path& folder, const SlurmOptions& options);
 
-// Writes <folder>/slurm/job.sh and submits it; the output of the tasks goes to <folder>/slurm, too.
-// Returns the id of the job. Throws InputError if there is no sbatch in PATH or if it refuses.
+// Writes <folder>/slurm/job.sh and submits it; the output of the tasks goes to <folder>/slurm, too,
+// and the id of the job to job_id.txt there. Returns the id. Throws InputError if there is no
+// sbatch in PATH or if it refuses, and Interrupted after it has ended sbatch. Tasks that are
+// submitted already go on.
 std::string SubmitToSlurm(const std::filesystem::path& folder, const SlurmOptions& options);
 
 }  // namespace lacuna

@@ -9,6 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/json_number.h"
+#include "record/json_hash.h"
 
 namespace lacuna {
 namespace {
@@ -28,6 +29,13 @@ auto ReadJson(const std::filesystem::path& file, const Read& read) {
   } catch (const nlohmann::json::exception& problem) {
     throw InputError({file.string()}, problem.what());
   }
+}
+
+constexpr char kHash[] = "hash";
+
+// The hash of an outcome's content. Two runs write the same one, because the wall time is left out.
+std::string HashOf(const nlohmann::ordered_json& outcome) {
+  return HashWithout(outcome, {"/hash", "/seconds"});
 }
 
 void Write(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
@@ -101,18 +109,23 @@ void SaveOutcome(const CaseOutcome& outcome, const std::filesystem::path& case_f
   for (const auto& [name, value] : outcome.numbers)
     numbers[name] = NumberOrNull<nlohmann::ordered_json>(value);
   for (const auto& [name, text] : outcome.words) words[name] = text;
-  Write(case_folder / "outcome.json", {{"schema_version", kSchemaVersion},
-                                       {"done", outcome.done},
-                                       {"message", outcome.message},
-                                       {"numbers", numbers},
-                                       {"words", words},
-                                       {"seconds", outcome.seconds}});
+  nlohmann::ordered_json json = {{"schema_version", kSchemaVersion},
+                                 {"done", outcome.done},
+                                 {"message", outcome.message},
+                                 {"numbers", numbers},
+                                 {"words", words},
+                                 {"seconds", outcome.seconds}};
+  json[kHash] = HashOf(json);
+  Write(case_folder / "outcome.json", json);
 }
 
 std::optional<CaseOutcome> LoadOutcome(const std::filesystem::path& case_folder) {
   const std::filesystem::path file = case_folder / "outcome.json";
   if (!std::filesystem::exists(file)) return std::nullopt;
-  return ReadJson(file, [](const auto& json) {
+  return ReadJson(file, [&](const auto& json) {
+    // Outcomes of earlier versions have no hash.
+    if (json.contains(kHash) && json.at(kHash) != HashOf(json))
+      throw InputError({file.string()}, "is damaged; remove it, and the case is run again");
     CaseOutcome outcome;
     outcome.done = json.at("done");
     outcome.message = json.at("message");

@@ -104,7 +104,7 @@ void RefuseForeignFolder(const fs::path& folder, const SweepIdentity& identity) 
     return;
   }
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().filename() != kLockName)
+    if (entry.path().filename() != kLockName && !IsTemporaryFile(entry.path()))
       throw InputError({folder.string()}, "is neither empty nor a sweep; choose another folder");
 }
 
@@ -135,6 +135,7 @@ SweepPlan PlanSweep(const Config& sweep_file, const fs::path& given_folder) {
   RefuseForeignFolder(folder, file.identity);
   const Claim claim(folder / kLockName);
   if (!claim.holds()) throw InputError({folder.string()}, "is being planned by another process");
+  RemoveLeftTemporaries(folder);
 
   SweepPlan plan;
   std::map<std::string, SweepCase> known;  // by hash

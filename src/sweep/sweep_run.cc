@@ -11,6 +11,7 @@
 #include <cstring>
 #include <exception>
 
+#include "core/atomic_file.h"
 #include "core/claim.h"
 #include "core/error.h"
 #include "core/interrupt.h"
@@ -45,6 +46,7 @@ void RunCase(const SweepIdentity& identity, const SweepCase& entry, const fs::pa
              bool retry_failed) {
   const Claim claim(case_folder / "claimed");
   if (!claim.holds() || !IsToRun(case_folder, retry_failed)) return;
+  RemoveLeftTemporaries(case_folder);
   const auto began = std::chrono::steady_clock::now();
   const int terminal = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
   SpeakInto(case_folder / "log.txt");

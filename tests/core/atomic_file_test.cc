@@ -112,5 +112,34 @@ TEST_F(AtomicFileTest, FullDiskIsAnErrorAndKeepsTheOldContent) {
   EXPECT_EQ(FileCount(), 1);
 }
 
+TEST_F(AtomicFileTest, WhatAKilledProcessHasLeftIsRemovedAndWhatALivingOneWritesIsNot) {
+  fs::create_directory(folder_ / "below");
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile file(folder_ / "below/a");
+    file.Write("half");
+    raise(SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_FALSE(fs::is_empty(folder_ / "below"));
+  WriteFileAtomically(folder_ / ".hidden.tmp", "not ours: it has no numbers");
+  AtomicFile living(folder_ / "b");
+  living.Write("new");
+  RemoveLeftTemporaries(folder_.Path());
+  EXPECT_TRUE(fs::is_empty(folder_ / "below"));
+  EXPECT_TRUE(fs::exists(folder_ / ".hidden.tmp"));
+  living.Commit();
+  EXPECT_EQ(FileContent(folder_ / "b"), "new");
+  RemoveLeftTemporaries(folder_ / "absent");
+}
+
+TEST(TemporaryFile, IsKnownByItsName) {
+  EXPECT_TRUE(IsTemporaryFile("run/.manifest.json.4711.0.tmp"));
+  EXPECT_TRUE(IsTemporaryFile(".a.1.23.tmp"));
+  for (const char* other :
+       {"a.1.2.tmp", ".a.1.tmp", ".a.1.x.tmp", ".1.2.tmp", ".a..2.tmp", ".a.tmp"})
+    EXPECT_FALSE(IsTemporaryFile(other)) << other;
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -178,6 +178,24 @@ TEST_F(RunDirectoryTest, ProcessKilledWhileWritingLeavesNothingThatIsTrusted) {
   EXPECT_TRUE(run.Has("surface", "key s"));
 }
 
+TEST_F(RunDirectoryTest, TheVeryFirstManifestMayBeKilledAndLeavesNothingBehind) {
+  InKilledProcess([this] {
+    RunDirectory run(folder_);
+    AtomicFile manifest(folder_ / "manifest.json");
+    manifest.Write("{");
+    raise(SIGKILL);
+  });
+  const auto temporaries = [this] {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      count += IsTemporaryFile(entry.path());
+    return count;
+  };
+  EXPECT_EQ(temporaries(), 1);
+  const RunDirectory run(folder_);  // the folder counts as a run all the same
+  EXPECT_EQ(temporaries(), 0);
+}
+
 // A process stores two results in turn until it is killed. Whatever the moment, each result is
 // afterwards complete or absent.
 TEST_F(RunDirectoryTest, AfterAKillAtAnyMomentAStageIsCompleteOrAbsent) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "support/interrupted_call.h"
 #include "support/temporary_folder.h"
 
 namespace lacuna {
@@ -82,6 +83,20 @@ TEST(Slurm, ReportsAMissingOrRefusingSbatch) {
   const OnlySbatch path(folder.Path(), "exit 1\n");
   EXPECT_THAT([&] { SubmitToSlurm(folder.Path(), options); },
               ThrowsMessage<InputError>(HasSubstr("sbatch refused")));
+}
+
+[[noreturn]] void InterruptSbatch(const TemporaryFolder& folder) {
+  const OnlySbatch path(folder.Path(), "");
+  WriteNumberedScript(folder / "sbatch", folder / "number", "exec /bin/sleep 60");
+  SlurmOptions options;
+  options.numbers = {1};
+  options.wait = true;
+  ExitAfterInterruptedCall(folder / "number", [&] { SubmitToSlurm(folder.Path(), options); });
+}
+
+TEST(SlurmDeathTest, AnInterruptEndsSbatch) {
+  const TemporaryFolder folder;
+  EXPECT_EXIT(InterruptSbatch(folder), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -158,5 +158,18 @@ TEST_F(SweepRunTest, ErrorNamesADamagedOutcome) {
               ::testing::ThrowsMessage<InputError>(HasSubstr("outcome.json")));
 }
 
+TEST_F(SweepRunTest, AnOutcomeWithAnotherNumberIsRefused) {
+  plan_ = PlanSmallSweep(folder_.Path(), kTwo);
+  SaveOutcome(MadeUp(0.25), Case(0));
+  EXPECT_TRUE(LoadOutcome(Case(0))->done);
+  std::string text = FileContent(Case(0) / "outcome.json");
+  const size_t at = text.find("0.25");
+  ASSERT_NE(at, std::string::npos);
+  std::ofstream(Case(0) / "outcome.json") << text.replace(at, 4, "0.27");
+  EXPECT_THAT(
+      [this] { LoadOutcome(Case(0)); },
+      ::testing::ThrowsMessage<InputError>(AllOf(HasSubstr("outcome.json"), HasSubstr("damaged"))));
+}
+
 }  // namespace
 }  // namespace lacuna
