@@ -22,6 +22,11 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
+bool IsControl(char c) {
+  const auto code = static_cast<unsigned char>(c);
+  return (code < 0x20 && c != '\t') || code == 0x7f;
+}
+
 // In capital letters, without quotes around it.
 std::string Name(std::string_view text) {
   text = Trimmed(text);
@@ -64,9 +69,13 @@ bool InpLines::NextText(std::string_view* text) {
 
 void InpLines::ReadKeyword(std::string_view text) {
   keyword_text_ = std::string(text);
+  keyword_line_ = line_;
   parameters_.clear();
   bool is_first = true;
   for (bool continues = true; continues;) {
+    // Names are written into YAML files, where a carriage return ends a line.
+    if (std::any_of(text.begin(), text.end(), IsControl))
+      Fail("a keyword line holds a control character");
     continues = text.ends_with(',');
     for (const std::string_view field : Split(is_first ? text.substr(1) : text)) {
       if (is_first) {
@@ -84,6 +93,9 @@ void InpLines::ReadKeyword(std::string_view text) {
     }
     if (continues && !NextText(&text))
       Fail("the file ends where a keyword line should continue after its comma");
+    if (continues && std::isalpha(static_cast<unsigned char>(text.front())) == 0)
+      Fail(fmt::format("the keyword line above ends with a comma; got \"{}\"; expected a parameter",
+                       text));
   }
 }
 

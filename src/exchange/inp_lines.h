@@ -31,8 +31,10 @@ class InpLines {
   const std::string* Parameter(const std::string& name) const;
   // The same, but the parameter must be there and have a value.
   const std::string& RequiredParameter(const std::string& name) const;
-  // The keyword line as it stands in the file, without what continues it.
+  // The keyword line as it stands in the file, without what continues it, and its line number. It
+  // has no control characters.
   const std::string& KeywordText() const { return keyword_text_; }
+  int KeywordLine() const { return keyword_line_; }
 
   // The fields of the present data line, without blanks around them. An empty field after the last
   // comma is not counted.
@@ -52,7 +54,7 @@ class InpLines {
   std::filesystem::path file_;
   std::string content_;
   size_t next_ = 0;
-  int line_ = 0;
+  int line_ = 0, keyword_line_ = 0;
   bool is_keyword_ = false, ends_with_comma_ = false;
   std::string keyword_, keyword_text_;
   std::map<std::string, std::string> parameters_;

@@ -14,6 +14,10 @@
 namespace lacuna {
 namespace {
 
+// Entries of all sets together. A short file could otherwise name a large set so often that its
+// copies fill the memory; no model that can be computed comes near.
+constexpr size_t kMostEntries = 30'000'000;
+
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file), lines_(file) {}
@@ -32,6 +36,9 @@ class Reader {
   // Each reads from a keyword line up to the next one and returns whether there is one.
   bool ReadBlock() {
     const std::string keyword = lines_.Keyword();
+    if (IsRead(keyword) && lines_.Parameter("INPUT") != nullptr)
+      lines_.Fail(fmt::format(
+          "*{} with INPUT is not read: put the content of that file in its place", keyword));
     if (keyword == "NODE") return ReadNodes();
     if (keyword == "ELEMENT") return ReadElements();
     if (keyword == "NSET") return ReadSet("NSET", nodes_, &node_sets_, &node_set_order_);
@@ -40,12 +47,22 @@ class Reader {
     if (keyword == "ELASTIC" || keyword == "DENSITY") return ReadProperty(keyword == "ELASTIC");
     if (keyword == "INCLUDE")
       lines_.Fail("*INCLUDE is not read: put the content of that file in its place");
+    if (keyword == "SYSTEM")
+      lines_.Fail(
+          "*SYSTEM is not read: give the coordinates of all nodes in the global Cartesian system");
     if (keyword != "HEADING") NotRead();
     return SkipData();
   }
 
+  static bool IsRead(const std::string& keyword) {
+    static const std::set<std::string> read = {"NODE",     "ELEMENT", "NSET",   "ELSET",
+                                               "MATERIAL", "ELASTIC", "DENSITY"};
+    return read.contains(keyword);
+  }
+
   void NotRead() {
-    model_.not_read.push_back(fmt::format("line {}: {}", lines_.Line(), lines_.KeywordText()));
+    model_.not_read.push_back(
+        fmt::format("line {}: {}", lines_.KeywordLine(), lines_.KeywordText()));
   }
 
   bool NextData() { return has_next_ = lines_.Next(), has_next_ && !lines_.IsKeyword(); }
@@ -63,7 +80,15 @@ class Reader {
     return &set->second;
   }
 
+  void CountEntries(size_t count) {
+    entries_ += count;
+    if (entries_ > kMostEntries)
+      lines_.Fail(fmt::format("the sets up to here have more than {} entries", kMostEntries));
+  }
+
   bool ReadNodes() {
+    if (const std::string* system = lines_.Parameter("SYSTEM"); system != nullptr && *system != "R")
+      lines_.Fail(fmt::format("only Cartesian coordinates are read, not SYSTEM={}", *system));
     std::set<int>* set = SetOf("NSET", &node_sets_, &node_set_order_);
     while (NextData()) {
       const int label = lines_.Label(0, "the number of a node");
@@ -85,7 +110,7 @@ class Reader {
     }
     std::set<int>* set = SetOf("ELSET", &element_sets_, &element_set_order_);
     while (NextData()) {
-      const int label = lines_.Label(0, "the number of an element");
+      const int line = lines_.Line(), label = lines_.Label(0, "the number of an element");
       if (!elements_.emplace(label, static_cast<int>(soup_.tets.size())).second)
         lines_.Fail(fmt::format("element {} appears a second time", label));
       std::vector<int> tet;
@@ -101,7 +126,7 @@ class Reader {
       if (at < lines_.Fields().size())
         lines_.Fail(fmt::format("element {} has more than {} nodes", label, size));
       // The node order of C3D10 is that of TetMesh.
-      soup_.Add(tet, lines_.Line());
+      soup_.Add(tet, line);
       if (set != nullptr) set->insert(label);
     }
     return has_next_;
@@ -128,10 +153,12 @@ class Reader {
         if (lines_.Fields()[k].empty()) continue;
         const auto other = sets->find(InCapitals(lines_.Fields()[k]));
         if (other != sets->end()) {
+          CountEntries(other->second.size());
           if (&other->second != set) set->insert(other->second.begin(), other->second.end());
           continue;
         }
         const int label = lines_.Label(k, "a number or the name of a set above");
+        CountEntries(1);
         if (numbers.contains(label))
           set->insert(label);
         else if (!MayBeSkipped(numbers))
@@ -154,10 +181,16 @@ class Reader {
     if (last < first) lines_.Fail("the last number is smaller than the first");
     long long found = 0;
     for (auto at = numbers.lower_bound(static_cast<int>(first));
-         at != numbers.end() && at->first <= last; ++at) {
-      if ((at->first - first) % step != 0) continue;
+         at != numbers.end() && at->first <= last;) {
+      CountEntries(1);
+      if (const long long beyond = (at->first - first) % step; beyond != 0) {
+        const long long next = at->first + step - beyond;
+        at = next > last ? numbers.end() : numbers.lower_bound(static_cast<int>(next));
+        continue;
+      }
       ++found;
       set->insert(at->first);
+      ++at;
     }
     if (const long long wanted = (last - first) / step + 1;
         found != wanted && !MayBeSkipped(numbers))
@@ -234,6 +267,7 @@ class Reader {
   std::filesystem::path file_;
   InpLines lines_;
   bool has_next_ = false, skips_elements_ = false;
+  size_t entries_ = 0;  // of all sets, those that repeat included
   TetSoup soup_;
   Numbers nodes_, elements_;
   Sets node_sets_, element_sets_;

@@ -3,7 +3,8 @@
 // Read are *NODE, *ELEMENT with TYPE=C3D4 or C3D10, *NSET and *ELSET (also GENERATE and names of
 // other sets), and *MATERIAL with *ELASTIC and *DENSITY; *HEADING is skipped. The file is flat:
 // node numbers are unique, as CalculiX requires. Every other keyword, elements of other types
-// included, is listed in `not_read`. Numbers stay in the file's own units, which an .inp file does
+// included, is listed in `not_read`. No other file is opened: *INCLUDE and, where data would have
+// to be read, INPUT=… are refused. Numbers stay in the file's own units, which an .inp file does
 // not state.
 #ifndef LACUNA_EXCHANGE_INP_READER_H_
 #define LACUNA_EXCHANGE_INP_READER_H_
@@ -32,8 +33,9 @@ struct ImportedModel {
 };
 
 // Throws InputError with file and line for a line that does not follow the format, numbers that are
-// not finite, nodes or sets that do not exist, numbers that appear twice, an elasticity that is not
-// isotropic or depends on temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
+// not finite, nodes or sets that do not exist, numbers that appear twice, sets of more than 30
+// million entries in all, coordinates that are not Cartesian, an elasticity that is not isotropic
+// or depends on temperature, or a mesh that ReadTetMesh would refuse (mesh_io.h).
 ImportedModel ReadInp(const std::filesystem::path& file);
 
 }  // namespace lacuna

@@ -16,8 +16,12 @@ std::string Identifier(std::string_view text) {
 }
 
 std::string UniqueNames::Add(const std::string& name) {
-  std::string unique = name;
-  for (int k = 2; !taken_.insert(unique).second; ++k) unique = fmt::format("{}_{}", name, k);
+  if (taken_.insert(name).second) return name;
+  int& number = next_.try_emplace(name, 2).first->second;
+  std::string unique;
+  do {
+    unique = fmt::format("{}_{}", name, number++);
+  } while (!taken_.insert(unique).second);
   return unique;
 }
 

@@ -2,6 +2,7 @@
 #ifndef LACUNA_EXCHANGE_UNIQUE_NAMES_H_
 #define LACUNA_EXCHANGE_UNIQUE_NAMES_H_
 
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -23,6 +24,7 @@ class UniqueNames {
 
  private:
   std::set<std::string> taken_;
+  std::map<std::string, int> next_;  // the number to try next behind a name that is taken
 };
 
 }  // namespace lacuna

@@ -42,7 +42,7 @@ struct TetMeshFile {
 //   .txt          the numbers of nodes and tetrahedra, the nodes, the tetrahedra (indices from 0)
 // Tetrahedra with negative volume are reoriented and unused nodes are dropped, each with a note.
 // Tetrahedra that have no volume or a repeated node, overlap across a face, or share one face among
-// three are refused.
+// three are refused, and so are lines behind those that a count announces.
 TetMeshFile ReadTetMesh(const std::filesystem::path& file);
 // The files that it reads for this name: two of TetGen, one of any other format.
 std::vector<std::filesystem::path> FilesOfTetMesh(const std::filesystem::path& file);

@@ -2,6 +2,8 @@
 #ifndef LACUNA_GEOMETRY_NODE_NUMBERS_H_
 #define LACUNA_GEOMETRY_NODE_NUMBERS_H_
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <unordered_map>
 
@@ -26,7 +28,17 @@ class NodeNumbers {
   }
 
  private:
-  std::unordered_map<long long, int> place_;
+  // The finaliser of SplitMix64. The standard library takes whole numbers for their own hashes, so
+  // that numbers with a common factor may all fall into one bucket.
+  struct Hash {
+    size_t operator()(long long number) const {
+      auto bits = static_cast<uint64_t>(number);
+      bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9;
+      bits = (bits ^ bits >> 27) * 0x94d049bb133111eb;
+      return bits ^ bits >> 31;
+    }
+  };
+  std::unordered_map<long long, int, Hash> place_;
 };
 
 // Reads a whole number that is not negative; throws InputError otherwise.

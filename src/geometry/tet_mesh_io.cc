@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cctype>
 #include <functional>
 #include <map>
 
@@ -20,6 +21,9 @@ void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
   std::array<int, 4> tet;
   for (int& node : tet) {
     const long long number = scanner.Integer("the number of a node");
+    if (soup.nodes.empty()) {
+      scanner.Fail(fmt::format("there is no node {}: none has been read", number));
+    }
     if (number < first || number - first >= static_cast<long long>(soup.nodes.size())) {
       scanner.Fail(fmt::format("there is no node {}: they count from {} to {}", number, first,
                                first + static_cast<long long>(soup.nodes.size()) - 1));
@@ -27,6 +31,20 @@ void AddTet(TextScanner& scanner, long long first, TetSoup& soup) {
     node = static_cast<int>(number - first);
   }
   soup.Add(tet, scanner.Line());
+}
+
+// The same where the line must end behind them: a tetrahedron of ten nodes would otherwise lose six
+// in silence.
+void AddWholeTet(TextScanner& scanner, TetSoup& soup) {
+  AddTet(scanner, 0, soup);
+  if (!scanner.AtLineEnd()) scanner.Fail("a tetrahedron has more than 4 nodes");
+}
+
+// Lines behind those that were counted would otherwise be left out in silence.
+void ExpectFileEnd(TextScanner& scanner, long long count, const char* what) {
+  if (scanner.NextLine()) {
+    scanner.Fail(fmt::format("a line follows, but the number of {} is {}", what, count));
+  }
 }
 
 TetSoup ReadVertexTetLines(const std::filesystem::path& file) {
@@ -40,7 +58,7 @@ TetSoup ReadVertexTetLines(const std::filesystem::path& file) {
         scanner.Fail(fmt::format("got \"{}\"; expected v or t", kind));
       }
       if (kind == "v" && !reads_tets) soup.nodes.push_back(scanner.Point("a coordinate"));
-      if (kind == "t" && reads_tets) AddTet(scanner, 0, soup);
+      if (kind == "t" && reads_tets) AddWholeTet(scanner, soup);
     }
   }
   return soup;
@@ -58,8 +76,9 @@ TetSoup ReadCountedLists(const std::filesystem::path& file) {
   }
   for (long long e = 0; e < tets; ++e) {
     scanner.ExpectLine(fmt::format("tetrahedron {} of {}", e + 1, tets));
-    AddTet(scanner, 0, soup);
+    AddWholeTet(scanner, soup);
   }
+  ExpectFileEnd(scanner, tets, "tetrahedra");
   return soup;
 }
 
@@ -75,6 +94,7 @@ TetSoup ReadTetGen(std::filesystem::path file) {
     numbers.Add(node_scanner.Integer("the number of the node"), node_scanner);
     soup.nodes.push_back(node_scanner.Point("a coordinate"));
   }
+  ExpectFileEnd(node_scanner, nodes, "nodes");
   TextScanner scanner(file.replace_extension(".ele"), '#');
   scanner.ExpectLine("the number of tetrahedra");
   const long long tets = Count(scanner, "the number of tetrahedra");
@@ -91,6 +111,7 @@ TetSoup ReadTetGen(std::filesystem::path file) {
     }
     soup.Add(tet, scanner.Line());
   }
+  ExpectFileEnd(scanner, tets, "tetrahedra");
   return soup;
 }
 
@@ -103,6 +124,10 @@ TetSoup ReadMedit(const std::filesystem::path& file) {
       if (scanner.AtLineEnd()) scanner.ExpectLine("a number after " + keyword);
       return Count(scanner, "a number of lines");
     };
+    // Numbers behind the lines that were counted would otherwise be taken for a section.
+    if (std::isalpha(static_cast<unsigned char>(keyword[0])) == 0) {
+      scanner.Fail(fmt::format("got \"{}\"; expected a keyword such as Vertices", keyword));
+    }
     if (keyword == "End") return soup;
     if (keyword == "MeshVersionFormatted") {
       count();

@@ -35,8 +35,15 @@ Eigen::MatrixXi UniformTets(const TetSoup& soup, const std::filesystem::path& fi
   return tets;
 }
 
-// Reorients the tetrahedra of negative volume and returns their number; refuses flat ones.
+// Reorients the tetrahedra of negative volume and returns their number; refuses flat ones, and
+// those that lie so far out that a product of three distances may overflow.
 Eigen::Index TurnPositive(const TetSoup& soup, const std::filesystem::path& file, TetMesh& mesh) {
+  constexpr double kFarthest = 1e100;  // in the file's length unit
+  for (Eigen::Index e = 0; e < mesh.TetCount(); ++e)
+    for (const int node : mesh.tets.col(e))
+      if (mesh.nodes.col(node).cwiseAbs().maxCoeff() > kFarthest)
+        Fail(file, soup.lines[e],
+             fmt::format("tetrahedron {} has a coordinate beyond {}", e + 1, kFarthest));
   if (const Eigen::Index flat = FindFlatTet(mesh); flat >= 0)
     Fail(file, soup.lines[flat], fmt::format("tetrahedron {} has no volume", flat + 1));
   const Eigen::VectorXd volumes = TetVolumes(mesh);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/text_file.h"
 #include "scan/delimited_table.h"
 #include "scan/marker_files.h"
 
@@ -120,14 +121,16 @@ std::string TrimRight(std::string text) {
   return text;
 }
 
-std::vector<std::string> Texts(const Bytes& bytes, const Parameter& parameter) {
-  if (parameter.type != -1 || parameter.extents.empty()) return {};
+// The first texts of the parameter, at most `most`: its extents may announce any number.
+std::vector<std::string> Texts(const Bytes& bytes, const Parameter& parameter, size_t most) {
+  if (parameter.type != -1 || parameter.extents.empty() || parameter.extents[0] == 0) return {};
   size_t count = 1;
-  for (size_t i = 1; i < parameter.extents.size(); ++i) count *= parameter.extents[i];
+  for (size_t i = 1; i < parameter.extents.size(); ++i)
+    count = std::min(count * parameter.extents[i], most);
   std::vector<std::string> texts;
-  for (size_t i = 0; i < count; ++i) {
+  for (size_t i = 0; i < std::min(count, most); ++i) {
     const size_t length = parameter.extents[0];
-    texts.push_back(TrimRight(bytes.Text(parameter.data + i * length, length)));
+    texts.push_back(InUtf8(TrimRight(bytes.Text(parameter.data + i * length, length))));
   }
   return texts;
 }
@@ -152,6 +155,15 @@ Eigen::Index FramesOfTrial(const Bytes& bytes, const std::map<std::string, Param
   };
   const int64_t start = field("TRIAL:ACTUAL_START_FIELD"), end = field("TRIAL:ACTUAL_END_FIELD");
   return start >= 1 && end >= start ? end - start + 1 : 0;
+}
+
+// The number of frames in a parameter of real numbers.
+Eigen::Index FramesInReal(const Bytes& bytes, const Parameter& parameter) {
+  constexpr float kMost = 2147483648.0f;
+  const float value = bytes.Real(parameter.data);
+  if (!(value >= 0 && value <= kMost))
+    bytes.Fail(fmt::format("gives {} as its number of frames", value));
+  return static_cast<Eigen::Index>(value);
 }
 
 size_t FrameSize(const PointFormat& format) {
@@ -180,11 +192,11 @@ PointFormat ReadFormat(const Bytes& bytes, const std::map<std::string, Parameter
     return found == parameters.end() ? nullptr : &found->second;
   };
   if (const Parameter* frames = find("POINT:FRAMES"); frames && last == 65535) {
-    format.frame_count = frames->type == 4 ? static_cast<Eigen::Index>(bytes.Real(frames->data))
-                                           : bytes.Word(frames->data);
+    format.frame_count =
+        frames->type == 4 ? FramesInReal(bytes, *frames) : bytes.Word(frames->data);
   }
   if (const Parameter* frames = find("POINT:LONG_FRAMES"); frames && frames->type == 4) {
-    format.frame_count = static_cast<Eigen::Index>(bytes.Real(frames->data));
+    format.frame_count = FramesInReal(bytes, *frames);
   }
   const bool is_at_limit = last == 65535;
   const Parameter* used = find("POINT:USED");
@@ -229,11 +241,11 @@ std::vector<std::string> ReadNames(const Bytes& bytes,
                                    const std::map<std::string, Parameter>& parameters,
                                    size_t count) {
   std::vector<std::string> names;
-  for (int part = 1;; ++part) {
+  for (int part = 1; names.size() < count; ++part) {
     const auto found =
         parameters.find(part == 1 ? "POINT:LABELS" : fmt::format("POINT:LABELS{}", part));
     if (found == parameters.end()) break;
-    const std::vector<std::string> texts = Texts(bytes, found->second);
+    const std::vector<std::string> texts = Texts(bytes, found->second, count - names.size());
     names.insert(names.end(), texts.begin(), texts.end());
   }
   for (size_t i = names.size(); i < count; ++i) names.push_back(fmt::format("point {}", i + 1));
@@ -278,7 +290,7 @@ MarkerTracks ReadC3d(const std::filesystem::path& file) {
   }
   tracks.names = ReadNames(bytes, parameters, format.marker_count);
   if (const auto units = parameters.find("POINT:UNITS"); units != parameters.end()) {
-    const std::vector<std::string> texts = Texts(bytes, units->second);
+    const std::vector<std::string> texts = Texts(bytes, units->second, 1);
     if (!texts.empty()) tracks.length_unit = texts[0];
   }
   tracks.times =

@@ -58,6 +58,16 @@ bool IsBlank(const std::vector<std::string_view>& fields) {
                      [](std::string_view field) { return field.empty(); });
 }
 
+// How many columns stand in front of the coordinates in a row of Qualisys, at most 2. The entries
+// of a last marker that was not seen are empty, three each; what is empty beyond are tabs at the
+// end of the row.
+size_t ColumnsBefore(const std::vector<std::string_view>& fields, size_t coordinates) {
+  const auto last = std::find_if(fields.rbegin(), fields.rend(),
+                                 [](std::string_view field) { return !field.empty(); });
+  const size_t width = fields.size() - static_cast<size_t>(last - fields.rbegin()) % 3;
+  return std::min<size_t>(2, width - std::min(width, coordinates));
+}
+
 // Appends the positions in a row.
 void AddRow(const std::filesystem::path& file, std::string_view line, size_t row,
             const std::vector<std::string_view>& fields,
@@ -164,11 +174,11 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
   for (; row < lines.size(); ++row) {
     std::vector<std::string_view> fields = SplitFields(lines[row], '\t');
     if (lines[row].empty()) continue;  // a row of tabs is a frame without any marker
-    while (fields.size() > coordinates + before && fields.back().empty()) fields.pop_back();
     if (!has_columns) {  // the first row tells how many columns precede the coordinates
-      before = std::min<size_t>(2, fields.size() - std::min(fields.size(), coordinates));
+      before = ColumnsBefore(fields, coordinates);
       has_columns = true;
     }
+    while (fields.size() > coordinates + before && fields.back().empty()) fields.pop_back();
     if (fields.size() != coordinates + before)
       FailAt(file, row,
              fmt::format("has {} entries; expected {} for {} markers", fields.size(),
@@ -184,6 +194,7 @@ MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes use) {
   if (announced > 0 && static_cast<double>(tracks.positions.size()) != announced)
     throw InputError({file.string()}, fmt::format("holds {} frames where NO_OF_FRAMES says {}",
                                                   tracks.positions.size(), announced));
+  if (tracks.positions.empty()) throw InputError({file.string()}, "holds no frame");
   SetTimes(file, times, rate, use, &tracks);
   return tracks;
 }

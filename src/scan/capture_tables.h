@@ -19,7 +19,7 @@ CaptureTable CaptureTableOf(const std::filesystem::path& file);
 // 3-D data with MARKER_NAMES; lengths are in mm. Rows may begin with the frame and the time;
 // without a time, that of frame i is i/FREQUENCY. A marker was not seen where its entries are
 // empty, "NULL" or all zero. Throws InputError naming file and line when the header is incomplete,
-// a row does not fit it, or times that are used do not ascend.
+// a row does not fit it, there is no row, or times that are used do not ascend.
 MarkerTracks ReadQualisysTsv(const std::filesystem::path& file, FileTimes times);
 
 // The measured positions, i.e. the columns of the type "Marker"; those that a solver has computed

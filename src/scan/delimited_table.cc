@@ -36,9 +36,11 @@ size_t FindClosingQuote(std::string_view line, size_t begin) {
 
 // `entry` with one quote in the place of two.
 std::string WithSingleQuotes(std::string_view entry) {
-  std::string text(entry);
-  for (size_t at = text.find("\"\""); at != std::string::npos; at = text.find("\"\"", at + 1))
-    text.erase(at, 1);
+  std::string text;
+  for (size_t at = 0; at < entry.size(); ++at) {
+    text += entry[at];
+    if (entry.substr(at, 2) == "\"\"") ++at;
+  }
   return text;
 }
 

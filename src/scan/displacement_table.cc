@@ -37,6 +37,8 @@ constexpr Names kInPlane[] = {
     {"disp.Horizontal Displacement U", "disp.Vertical Displacement V", "disp.Out-Of-Plane: W"}};
 // The status flags of DICe of a correlation that has succeeded.
 const std::set<double> kSucceeded = {0, 1, 2, 3, 4, 6, 15, 18, 26};
+// A status that is missing is NaN, which the set takes for equal to any of its numbers.
+bool HasSucceeded(double status) { return !std::isnan(status) && kSucceeded.count(status) > 0; }
 
 // A name of a column without its unit, and the unit in brackets.
 struct NameAndUnit {
@@ -164,7 +166,7 @@ Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColu
   if (!columns.places_are_deformed) points += displacements;
   for (Eigen::Index i = 0; i < rows; ++i) {
     const bool has_failed = (columns.sigma && !(values(i, *columns.sigma) >= 0)) ||
-                            (columns.status && kSucceeded.count(values(i, *columns.status)) == 0) ||
+                            (columns.status && !HasSucceeded(values(i, *columns.status))) ||
                             (forgets_zeros && is_zero[i]);
     if (has_failed) points.col(i).setConstant(std::numeric_limits<double>::quiet_NaN());
   }

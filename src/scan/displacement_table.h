@@ -49,8 +49,8 @@ std::optional<DisplacementColumns> FindDisplacementColumns(DelimitedTable* table
 Eigen::Matrix3Xd PointsOf(const DelimitedTable& table, const std::array<Eigen::Index, 3>& columns);
 
 // 3 × rows: place + displacement, in the table's unit; NaN where a point failed: where one of its
-// numbers is missing, sigma is negative or missing, the status is one of failure, or places and
-// displacements are zero in several rows.
+// numbers is missing, sigma is negative or missing, the status is missing or one of failure, or
+// places and displacements are zero in several rows.
 Eigen::Matrix3Xd MovedPoints(const DelimitedTable& table, const DisplacementColumns& columns);
 
 // The column sigma, one entry for each row; empty where the table has none.

@@ -42,6 +42,13 @@ Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
+// The place of a row: "load.csv:7", or "load.npy: row 7" where the file is no text.
+std::string PlaceOf(const DelimitedTable& table, Eigen::Index row) {
+  const auto k = static_cast<size_t>(row);
+  return k < table.line.size() ? fmt::format("{}:{}", table.file.string(), table.line[k])
+                               : fmt::format("{}: row {}", table.file.string(), k + 1);
+}
+
 // The values `names` in the headers of the frame files.
 TimeSeries ReadFromHeaders(const Config& config, const FrameData& frames,
                            const std::vector<std::string>& names, double unit) {
@@ -95,6 +102,7 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data, const Fra
   TimeSeries series;
   series.table = ReadTableOrArray(file);
   const DelimitedTable& table = series.table;
+  if (table.values.rows() == 0) config.Fail("file", file.string() + " has no rows");
   const std::string time = config.Text("time", "");
   series.values = ColumnsOf(table, names, unit);
   if (!time.empty()) {
@@ -109,9 +117,8 @@ TimeSeries ReadColumns(const Config& config, const DataLocation& data, const Fra
   for (Eigen::Index i = 0; i < series.times.size(); ++i) {
     const bool ascends = i == 0 || series.times[i] > series.times[i - 1];
     if (!std::isfinite(series.times[i]) || !ascends || !series.values.col(i).allFinite()) {
-      config.Fail("file", fmt::format("{}: row {} is not finite or does not follow the one before "
-                                      "in time",
-                                      file.string(), i + 1));
+      config.Fail("file",
+                  PlaceOf(table, i) + ": is not finite or does not follow the row before in time");
     }
   }
   return series;

@@ -22,7 +22,8 @@ struct TimeSeries {
 // `unit` (SI), and the column `time` in `time_unit` (default s). Without `time` the file must have
 // one row for each of `frames`. With `from: headers` in place of `file` the values are those of
 // these names in the headers of the frame files (table_header.h). Throws InputError naming file and
-// row when a value is not finite or the times do not ascend.
+// line (of an .npy file: row) when it has no rows, a value is not finite or the times do not
+// ascend.
 TimeSeries ReadColumns(const Config& config, const DataLocation& data, const FrameData& frames,
                        const std::vector<std::string>& names, double unit);
 

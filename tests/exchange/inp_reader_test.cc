@@ -107,8 +107,80 @@ TEST(InpReader, RefusesWhatItCannotTrustWithTheLine) {
   EXPECT_THAT(ErrorOf(Replaced(tet, "type=c3d4", "type=s3")), HasSubstr("no tetrahedra"));
   EXPECT_THAT(ErrorOf(Replaced(tet, "type=c3d4, ", "")), HasSubstr("needs TYPE"));
   EXPECT_THAT(ErrorOf("*INCLUDE, INPUT=mesh.inp\n"), HasSubstr("*INCLUDE"));
+  EXPECT_THAT(ErrorOf(Replaced(tet, "*NODE", "*System\n1., 0., 0.\n*NODE")),
+              HasSubstr(":4: *SYSTEM is not read: give the coordinates of all nodes"));
   EXPECT_THAT(ErrorOf("1, 2, 3\n"), HasSubstr(":1: expected a keyword"));
   EXPECT_THAT(ErrorOf(""), HasSubstr("no tetrahedra"));
+}
+
+TEST(InpReader, OpensNoOtherFile) {
+  TemporaryFolder folder;
+  std::ofstream(folder / "nodes.inp") << " 10, 0., 0., 0.\n";
+  const auto error = [&](const std::string& old, const std::string& with) {
+    std::ofstream(folder / "model.inp") << Replaced(kTet, old, with);
+    try {
+      ReadInp(folder / "model.inp");
+    } catch (const InputError& problem) {
+      return std::string(problem.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(error("** comment", "*INCLUDE, INPUT=nodes.inp"),
+              HasSubstr("model.inp:3: *INCLUDE is not read"));
+  EXPECT_THAT(error("*NODE, nset=All", "*NODE, input=nodes.inp"),
+              HasSubstr("model.inp:4: *NODE with INPUT is not read"));
+  EXPECT_THAT(error("elset=soft", "input=nodes.inp"), HasSubstr(":9: *ELEMENT with INPUT"));
+  EXPECT_THAT(error("*Elastic", "*Elastic, input=nodes.inp"), HasSubstr("*ELASTIC with INPUT"));
+}
+
+TEST(InpReader, RefusesCylindricalCoordinates) {
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "nset=All", "system=C")),
+              HasSubstr(":4: only Cartesian coordinates are read, not SYSTEM=C"));
+  EXPECT_EQ(Read(Replaced(kTet, "nset=All", "system=R")).mesh.NodeCount(), 4);
+}
+
+TEST(InpReader, NamesTheFirstLineOfWhatContinues) {
+  EXPECT_THAT(Read(Replaced(kTet, "*Step, nlgeom", "*Step,\n**\n nlgeom")).not_read[1],
+              "line 25: *Step,");
+  // The third corner moves into the plane of the others.
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "40, 0., 0., 1.", "40, 1., 1., 0.")),
+              HasSubstr(":10: tetrahedron 1 has no volume"));
+}
+
+// What follows would be taken for parameters, so that a node or a keyword would be lost in silence.
+TEST(InpReader, RefusesAKeywordLineThatEndsWithACommaBeforeDataOrAKeyword) {
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "nset=All", "nset=All,")),
+              HasSubstr(":5: the keyword line above ends with a comma; got \"10, 0., 0., 0.\""));
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "*Static", "*Static,")), HasSubstr(":27: the keyword line"));
+}
+
+// A carriage return ends a line of YAML, in which the name stands as a comment.
+TEST(InpReader, RefusesControlCharactersInNames) {
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "name=Gel", "name=Gel\routput: /")),
+              HasSubstr(":18: a keyword line holds a control character"));
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "*Boundary", "*Bound\rary")), HasSubstr("control character"));
+  EXPECT_EQ(Read(Replaced(kTet, "name=Gel", "\tname=Gel\r")).materials[0].name, "GEL");
+}
+
+TEST(InpReader, GeneratesWithAStepThatSkipsNumbers) {
+  const auto foot = [](const std::string& range) {
+    return Read(Replaced(kTet, "10, 30, 10", range)).node_sets[1].nodes;
+  };
+  EXPECT_THAT(foot("10, 40, 30"), ElementsAre(0, 3));
+  EXPECT_THAT(foot("20, 40, 20"), ElementsAre(1, 3));
+  EXPECT_THAT(ErrorOf(Replaced(kTet, "10, 30, 10", "15, 2147483647, 2147483632")),
+              HasSubstr(":13: 2 of the 2 numbers do not exist"));
+}
+
+// A set costs what it names, each time that it is named: many sets that name a large one would fill
+// the memory.
+TEST(InpReader, RefusesShortFilesThatNameHugeSets) {
+  std::string text = "*NODE, NSET=A\n";
+  for (int n = 1; n <= 2000; ++n) text += std::to_string(n) + ", 0, 0, 0\n";
+  text += "*NSET, NSET=B\n";
+  for (int k = 0; k < 20000; ++k) text += "A\n";
+  EXPECT_THAT(ErrorOf(text),
+              HasSubstr(":17003: the sets up to here have more than 30000000 entries"));
 }
 
 // Each beginning of a sound file is either read or refused, and never crashes.

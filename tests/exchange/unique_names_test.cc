@@ -21,5 +21,13 @@ TEST(UniqueNames, GivesNoNameTwice) {
   EXPECT_EQ(names.Add("nodes"), "nodes_2");
 }
 
+// A search that begins at 2 for each of the names takes minutes.
+TEST(UniqueNames, AreFoundWhereAllAreEqual) {
+  UniqueNames names;
+  std::string last;
+  for (int k = 0; k < 30000; ++k) last = names.Add("clamp");
+  EXPECT_EQ(last, "clamp_30000");
+}
+
 }  // namespace
 }  // namespace lacuna

@@ -1,5 +1,6 @@
 #include "scan/capture_tables.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,6 +70,22 @@ TEST(QualisysTsv, RefusesWhatDoesNotFitItsHeader) {
   EXPECT_THAT(message("NO_OF_FRAMES\t1\nDATA_INCLUDED\t2D\n1\t2\n"),
               HasSubstr("bad.tsv:2:1: holds 2D data"));
   EXPECT_THAT(message("NO_OF_FRAMES\t1\n1\t2\t3\n"), HasSubstr("names no markers"));
+  EXPECT_THAT(message(Qualisys("", "0")), HasSubstr("bad.tsv: holds no frame"));
+}
+
+// The empty entries of the last marker must not be taken for tabs at the end of the row: frame and
+// time would become coordinates.
+TEST(QualisysTsv, FindsTheCoordinatesWhereTheLastMarkerIsUnseenAtFirst) {
+  const TestFolder folder;
+  for (const char* end : {"", "\t"}) {
+    const std::string rows =
+        fmt::format("1\t0.000\t1\t2\t3\t\t\t{0}\n2\t0.005\t1\t2\t3\t4\t5\t6{0}\n", end);
+    const MarkerTracks tracks = ReadMarkerTracks(folder.Write("a.tsv", Qualisys(rows, "2")), {});
+    ASSERT_EQ(tracks.positions.size(), 2u);
+    EXPECT_EQ(tracks.positions[0].col(0), Eigen::Vector3d(1, 2, 3));
+    EXPECT_TRUE(tracks.positions[0].col(1).array().isNaN().all());
+    EXPECT_EQ(tracks.positions[1].col(1), Eigen::Vector3d(4, 5, 6));
+  }
 }
 
 const std::string kMotive =

@@ -39,7 +39,14 @@ TEST(DelimitedTable, ANameInQuotesMayHoldDelimitersAndQuotes) {
   EXPECT_THAT(table.header, ElementsAre("t", "a;b,c", "said \"so, so\"", "\""));
   EXPECT_EQ(table.values(0, 3), 3);
   EXPECT_THAT(Table("t;\"a,b\"\n0;1,5\n").header, ElementsAre("t", "a,b"));
+  EXPECT_EQ(Table("t,\"\"\"\"\"\"\n0,1\n").header[1], "\"\"") << "each two stand for one";
   EXPECT_EQ(Table("\"1,5\"\n\"2,5\"\n").values(1, 0), 2.5) << "all in quotes";
+}
+
+// Where each pair is removed from the whole name, this takes minutes.
+TEST(DelimitedTable, ANameOfAMillionQuotesIsReadAtOnce) {
+  const DelimitedTable table = Table("t,\"" + std::string(2'000'000, '"') + "\"\n0,1\n");
+  EXPECT_EQ(table.header[1].size(), 1'000'000u);
 }
 
 TEST(DelimitedTable, NamesDecimalCommasThatCannotBeTold) {

@@ -59,6 +59,16 @@ TEST_F(DisplacementTable, OfDiceFollowsItsBlockOfStars) {
   for (int failed = 1; failed < 4; ++failed) EXPECT_FALSE(points.col(failed).allFinite()) << failed;
 }
 
+TEST_F(DisplacementTable, OfDiceWithoutAStatusHasFailed) {
+  const Eigen::Matrix3Xd points =
+      Moved(Table("MODEL_COORDINATES_X,MODEL_COORDINATES_Y,MODEL_COORDINATES_Z,"
+                  "MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,MODEL_DISPLACEMENT_Z,STATUS_FLAG\n"
+                  "1,2,3,1,1,1,4\n1,2,3,1,1,1,\n1,2,3,1,1,1,nan\n"));
+  ASSERT_EQ(points.cols(), 3);
+  EXPECT_EQ(points.col(0), Eigen::Vector3d(2, 3, 4));
+  for (const int unknown : {1, 2}) EXPECT_TRUE(points.col(unknown).array().isNaN().all());
+}
+
 TEST_F(DisplacementTable, OfAramisHasItsNamesInTheLastComment) {
   DelimitedTable table = Table(
       "####\n# Facet size: 19.0\n# Force; with a semicolon: 12 N\n####\n#\n"

@@ -1,11 +1,13 @@
 #include "scan/marker_files.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "scan/test_files.h"
 
@@ -304,6 +306,51 @@ TEST(C3d, WarnsOfFramesThatNothingAnnounces) {
               ElementsAre(HasSubstr("the file has room for 70000 frames; 65535 are "
                                     "read")));
   EXPECT_TRUE(ReadC3d(folder.Write("b.c3d", MakeLongC3d(65535, 65535, false))).warnings.empty());
+}
+
+// Their extents announce 255·255·255 texts without letters.
+TEST(C3d, LabelsWithoutLettersAreNumbered) {
+  const TestFolder folder;
+  std::string content = MakeC3d(kIntel, true);
+  const std::string labels("\xff\x02\x05\x02", 4);
+  content.replace(content.find(labels), 6, std::string("\xff\x04\x00\xff\xff\xff", 6));
+  EXPECT_THAT(ReadC3d(folder.Write("a.c3d", content)).names, ElementsAre("point 1", "point 2"));
+}
+
+TEST(C3d, ReadsAsManyLabelsAsPoints) {
+  const TestFolder folder;
+  std::string content = MakeC3d(kIntel, true);
+  const std::string labels("\xff\x02\x05\x02", 4);
+  content.replace(content.find(labels), 4, std::string("\xff\x02\x05\xff", 4));  // 255 of them
+  EXPECT_THAT(ReadC3d(folder.Write("a.c3d", content)).names, ElementsAre("LEFT", "RIGHT"));
+}
+
+TEST(C3d, GivesLabelsInUtf8) {
+  const TestFolder folder;
+  std::string content = MakeC3d(kIntel, true);
+  content.replace(content.find("RIGHT"), 5,
+                  "F\xfc\xdf"
+                  "e ");  // Latin-1
+  EXPECT_THAT(ReadC3d(folder.Write("a.c3d", content)).names, ElementsAre("LEFT", "Füße"));
+}
+
+// Of a number of frames that is no number, the conversion to an integer would be undefined.
+TEST(C3d, RefusesANumberOfFramesThatIsNoNumber) {
+  const TestFolder folder;
+  const float bad = std::numeric_limits<float>::quiet_NaN();
+  for (const float frames : {bad, 1e30f, -3.0f}) {
+    C3dWriter c3d(kIntel);
+    c3d.Text(MakeC3d(kIntel, true).substr(0, 512 + 4));
+    c3d.Group("POINT", 1);
+    C3dWriter body(kIntel);
+    body.Byte(4), body.Byte(0), body.Real(frames);
+    c3d.Parameter("LONG_FRAMES", 1, body.Content());
+    c3d.PadTo(1536);
+    const auto file = folder.Write("a.c3d", c3d.Content());
+    EXPECT_THAT(
+        ErrorOf([&] { ReadC3d(file); }),
+        HasSubstr("a.c3d: gives " + fmt::format("{}", frames) + " as its number of frames"));
+  }
 }
 
 TEST(C3d, AShorterRecordingDoesNotFollowTheFieldsOfItsTrial) {

@@ -52,5 +52,13 @@ TEST_F(RecordingCheckTest, SaysWhereItStopped) {
   EXPECT_THAT(Findings(24), ElementsAre("only the first 2 of 5 frames were examined"));
 }
 
+TEST_F(RecordingCheckTest, GivesEachFrameToAFurtherExamination) {
+  WriteClouds(4);
+  std::vector<int> given;
+  const auto also = [&](const Frame& frame) { given.push_back(frame.index); };
+  ExamineFrames(Load(Yaml("  {kind: points, files: f/*.csv, rate: 10 Hz}\n")), 1'000'000, also);
+  EXPECT_THAT(given, ElementsAre(0, 1, 2, 3));
+}
+
 }  // namespace
 }  // namespace lacuna
